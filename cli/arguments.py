@@ -46,11 +46,12 @@ def find_system(case: Case) -> System:
         letters of a formula are also parameters: 0.5(x^2+y^2)-a x y^2@a=1.5.
     """
     name, _, parameters = case.partition("@")
-    chosen = _read_parameters(case, name, parameters) if parameters else {}
+    values = _read_parameters(case, name, parameters) if parameters else {}
     if name in POTENTIALS:
-        return System(name, "", chosen)
-    system = System(TYPED, name, chosen)
+        return System(name, "", values)
+    system = System(TYPED, name, values)
     try:
+        # The first access parses the formula.
         _ = system.potential
     except ValueError as error:
         raise ValueError(
@@ -66,8 +67,8 @@ Slow = Annotated[bool, typer.Option(help=f"Whether to compute the measures that 
 
 def check_measures(chosen: Collection[str] | None, known: Collection[str]) -> list[str]:
     """Return the chosen names of measures in the order of `known`; ValueError for a name that is not known."""
-    if wrong := [name for name in chosen or () if name not in known]:
-        raise ValueError(f"measure={wrong[0]}: must be one of {', '.join(known)}")
+    if unknown := [name for name in chosen or () if name not in known]:
+        raise ValueError(f"measure={unknown[0]}: must be one of {', '.join(known)}")
     return [name for name in known if name in (chosen or ())]
 
 
@@ -144,8 +145,8 @@ def find_energy(system: System, energy: float | None = None, jacobi: float | Non
         return energy
     if energy is not None:
         raise ValueError(f"jacobi={jacobi}: give either --energy H or --jacobi C")
-    found: float = system.potential.jacobi_energy(jacobi)
-    return found
+    h: float = system.potential.jacobi_energy(jacobi)
+    return h
 
 
 def need_energy(energy: GivenEnergy) -> OneEnergy:
@@ -160,7 +161,7 @@ def choose_energy(
     energy: GivenEnergy = None,
     energies: Annotated[tuple[float, float] | None, typer.Option(metavar="LOW HIGH")] = None,
 ) -> Energy:
-    """Return the energy of a map, or the range of an axis h; ValueError if an option is missing that the slice needs.
+    """Return the energy of a map, or the range of an axis h; ValueError unless exactly the option for the slice is given.
 
     Parameters
     ----------
@@ -173,14 +174,15 @@ def choose_energy(
     """
     if plane.energy_axis is not None:
         if energies is None or energy is not None:
-            raise ValueError(f"energies: the plane {plane.key} needs --energies LOW HIGH{_not_given('--energy', energy)}")
+            raise ValueError(f"energies: the plane {plane.key} needs --energies LOW HIGH{_describe_excess('--energy', energy)}")
         return energies
     if energy is None or energies is not None:
-        raise ValueError(f"energy: the plane {plane.key} needs --energy H{_not_given('--energies', energies)}")
+        raise ValueError(f"energy: the plane {plane.key} needs --energy H{_describe_excess('--energies', energies)}")
     return energy
 
 
-def _not_given(option: str, value: object) -> str:
+def _describe_excess(option: str, value: object) -> str:
+    """Return the end of a message about an option that must be left out; empty if it is left out."""
     return "" if value is None else f", not {option}"
 
 
@@ -203,7 +205,7 @@ def read_resolution(text: str) -> tuple[int, int]:
 def space_values(
     low: float | None, high: float | None, count: int | None, listed: Sequence[float] | None = None
 ) -> tuple[float, ...]:
-    """Return the values of a sweep: evenly spaced including both ends, or as listed; ValueError for other combinations.
+    """Return the values of a sweep: evenly spaced with both ends, or as listed; ValueError for any other combination of options.
 
     Parameters
     ----------
@@ -216,8 +218,8 @@ def space_values(
     listed
         One energy, instead of --low, --high and --count; can be repeated.
     """
-    span = (low, high, count)
-    if listed and not any(one is not None for one in span):
+    has_span = any(one is not None for one in (low, high, count))
+    if listed and not has_span:
         return tuple(listed)
     if listed or low is None or high is None or count is None:
         raise ValueError("energies: give --low, --high and --count, or repeat --energy")
@@ -237,18 +239,18 @@ READERS: Mapping[Any, Callable[..., Any]] = {
     Palette: find_palette,
     LayerOptions: read_layers,
 }
-"""Functions, by type, that make a value from options. Parameters of these functions may have the same types."""
+"""Functions that make values from options, by type of the value. Their parameters may have types with a function here."""
 
 OPTION_TYPES: Mapping[Any, Any] = {
     GivenWindow | None: Annotated[tuple[float, float, float, float] | None, typer.Option(metavar="X0 X1 Y0 Y1")],
     tuple[int, int]: Annotated[str, typer.Option(metavar="N or NxM", parser=read_resolution)],
 }
-"""For some types of parameters, the type that Typer reads."""
+"""The types that Typer reads, by type of the parameter. Typer reads other types as they are."""
 
 
 def _read_parameters(case: str, formula: str, text: str) -> dict[str, float]:
     legal = CATALOGUE[formula].adjustable if formula in CATALOGUE else (*WELL_PARAMETERS, *_letters(formula))
-    chosen: dict[str, float] = {}
+    values: dict[str, float] = {}
     for part in text.split(","):
         name, _, value = part.partition("=")
         try:
@@ -257,12 +259,12 @@ def _read_parameters(case: str, formula: str, text: str) -> dict[str, float]:
             number = None
         if name.strip() not in legal or number is None:
             raise ValueError(f"case={reprlib.repr(case)}: parameters are {', '.join(legal)}, as in III@omega_1=1.1,epsilon=0.5")
-        chosen[name.strip()] = number
-    return chosen
+        values[name.strip()] = number
+    return values
 
 
 def _letters(formula: str) -> tuple[str, ...]:
-    """Return the letters of a formula, or none for text that is not a formula, which is refused later."""
+    """Return the letters of a formula; none for text that is not a formula, because such text is refused later."""
     try:
         return formula_letters(formula)
     except ValueError:

@@ -93,9 +93,9 @@ class Place:
 
     def _executor(self) -> AbstractContextManager[Executor | None]:
         """Return the executor; None for the default pool of threads."""
-        given = [field.name for field in fields(self) if getattr(self, field.name)]
-        if len(given) > 1:
-            raise ValueError(f"{' and '.join(given)}: choose one place to compute")
+        given_places = [field.name for field in fields(self) if getattr(self, field.name)]
+        if len(given_places) > 1:
+            raise ValueError(f"{' and '.join(given_places)}: choose one place to compute")
         if self.scheduler is not None or self.local_cluster is not None:
             return _cluster_executor(self.scheduler, self.local_cluster)
         return nullcontext() if self.threads is None else ThreadPoolExecutor(self.threads)
@@ -108,9 +108,9 @@ THREADS_ONLY = But(without=("scheduler", "local_cluster"))
 @contextmanager
 def _cancel_on_ctrl_c(cancel: threading.Event) -> Iterator[None]:
     """Set `cancel` at the first Ctrl-C, and raise KeyboardInterrupt at the second."""
-    in_thread = threading.current_thread() is not threading.main_thread()
-    if in_thread or signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
-        # Only the main thread can set signal handlers, and a shell starts background jobs with SIGINT ignored.
+    is_main_thread = threading.current_thread() is threading.main_thread()
+    if not is_main_thread or signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        # Only the main thread can set signal handlers. A shell starts background jobs with SIGINT ignored, which must remain so.
         yield
         return
 
@@ -119,11 +119,11 @@ def _cancel_on_ctrl_c(cancel: threading.Event) -> Iterator[None]:
             signal.default_int_handler(number, frame)
         cancel.set()
 
-    before = signal.signal(signal.SIGINT, stop)
+    previous_handler = signal.signal(signal.SIGINT, stop)
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
+        signal.signal(signal.SIGINT, previous_handler)
 
 
 @contextmanager
@@ -161,7 +161,7 @@ def _connect(scheduler: str | None, local_workers: int | None) -> Client:
 
 @contextmanager
 def describe_losses() -> Iterator[None]:
-    """Replace Dask's errors for a lost scheduler or lost workers by sentences."""
+    """Replace Dask's errors about a lost scheduler or lost workers by ConnectionErrors with a remedy."""
     from distributed import KilledWorker
     from distributed.comm.core import CommClosedError
 
@@ -172,7 +172,7 @@ def describe_losses() -> Iterator[None]:
             "several workers died in turn of the same part of the computation; check their memory, then run the command again"
         ) from error
     except (BrokenExecutor, OSError) as error:
-        # Errors of the operating system have a number; a plain OSError without one means that the scheduler does not answer.
+        # Errors of the operating system have a number. A plain OSError without a number means that the scheduler does not answer.
         if isinstance(error, BrokenExecutor | CommClosedError) or (type(error) is OSError and error.errno is None):
             raise ConnectionError("the scheduler of the cluster is lost; start it, then run the same command again") from error
         raise
@@ -184,8 +184,8 @@ def _ignore_ctrl_c() -> Iterator[None]:
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    previous_handler = signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
+        signal.signal(signal.SIGINT, previous_handler)

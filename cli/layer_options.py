@@ -33,19 +33,20 @@ class LayerOptions:
 
     @property
     def pictures(self) -> list[str]:
-        """The pictures of these layers."""
+        """The pictures of the layers that are switched on."""
         return [layer.picture.name for layer in self.layers if layer.picture is not None]
 
     def with_pictures(self, pictures: Collection[str]) -> LayerOptions:
-        """Return a copy that also requests the layers that some pictures show."""
-        needed = {LAYER_OF[picture].name: True for picture in pictures if picture in LAYER_OF}
-        return replace(self, values={**self.values, **needed})
+        """Return a copy that also requests the layers of some pictures."""
+        picture_layers = {LAYER_OF[picture].name: True for picture in pictures if picture in LAYER_OF}
+        return replace(self, values={**self.values, **picture_layers})
 
     def check(self, spec: MapSpec) -> None:
         """Raise ValueError if a layer is not defined for the map, or a setting is out of range."""
         for layer in self.layers:
             if sentence := layer.refusal(spec):
                 raise ValueError(f"{layer.name}: {sentence}")
+            # This raises the ValueError of a setting.
             layer.job(spec, self.values)
 
 
@@ -78,4 +79,5 @@ def _setting_option(setting: Setting) -> tuple[Any, Any]:
     return Annotated[type(setting.default), typer.Option(help=setting.help)], setting.default
 
 
+# `cli.options` makes options from this signature.
 read_layers.__signature__ = inspect.Signature(_list_options(LAYERS.values()))  # type: ignore[attr-defined]

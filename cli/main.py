@@ -29,28 +29,32 @@ INTERRUPTED = 130
 """Exit code after Ctrl-C, as in shells: 128 + SIGINT."""
 
 COMMANDS = ("map", "orbit", "lyapunov", "measures", "curves", "ensemble", "sweep", "reproduce", "potential", "serve")
-"""Names of the modules in `commands`, which are imported when needed."""
+"""Names of the modules in `commands`. A module is imported when its command runs."""
 
 FORMER_OPTIONS = {"--certify": "--evidence", "--no-certify": "--no-evidence"}
-"""Present names of options, by former names."""
+"""Present names of options, by their former names."""
 
 
 class _Command(TyperCommand):
-    """A command whose arguments may begin with a minus, as formulas do. All its options begin with two."""
+    """A command whose arguments may begin with a minus, as formulas do. All its options begin with two minuses."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Parse the words after moving the arguments to the end, behind ``--``."""
-        values = {name: _count_values(option) for option in self.params for name in option.opts}
-        words, rest, arguments = deque(args), list[str](), list[str]()
+        """Move the arguments to the end, behind ``--``, and parse the words."""
+        value_counts = {name: _count_values(option) for option in self.params for name in option.opts}
+        words = deque(args)
+        other_words: list[str] = []
+        arguments: list[str] = []
         while words and words[0] != "--":
             word = words.popleft()
             word = FORMER_OPTIONS.get(word, word)
             if re.match("-[^-]", word):
                 arguments.append(word)
                 continue
-            rest.append(word)
-            rest.extend(words.popleft() for _ in range(min(values.get(word, 0), len(words))))
-        return super().parse_args(ctx, [*rest, "--", *arguments, *list(words)[1:]])
+            other_words.append(word)
+            # The values of an option may begin with a minus, too.
+            other_words.extend(words.popleft() for _ in range(min(value_counts.get(word, 0), len(words))))
+        # `words` is empty or begins with "--".
+        return super().parse_args(ctx, [*other_words, "--", *arguments, *list(words)[1:]])
 
     def get_params(self, ctx: Any) -> list[Any]:
         """Return the parameters in the form that the help shows."""
@@ -62,7 +66,7 @@ def _count_values(option: Any) -> int:
 
 
 def _without_types_of_flags(params: list[Any]) -> list[Any]:
-    """Return the parameters with no type name for flags."""
+    """Remove the type names of flags, in place, and return the parameters."""
     for option in params:
         if _count_values(option) == 0:
             option.metavar = ""
@@ -78,17 +82,17 @@ class _Commands(TyperGroup):
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """Return the name of a command, the imported command, and its words."""
-        name, known, words = super().resolve_command(ctx, args)
-        return name, known and _import_command(str(known.name)), words
+        name, command, words = super().resolve_command(ctx, args)
+        return name, command and _import_command(str(command.name)), words
 
 
 def _import_command(name: str) -> Any:
     """Return the command of a module."""
     module = import_module(f"{__package__}.commands.{name}")
     text, _, examples = inspect.cleandoc(module.__doc__ or "").partition("Examples:")
-    alone = typer.Typer(add_completion=False, rich_markup_mode="rich")
-    alone.command(name, cls=_Command, help=text, epilog=f"Examples:{examples}")(module.run)
-    return typer.main.get_command(alone)
+    command_program = typer.Typer(add_completion=False, rich_markup_mode="rich")
+    command_program.command(name, cls=_Command, help=text, epilog=f"Examples:{examples}")(module.run)
+    return typer.main.get_command(command_program)
 
 
 def _read_summary(name: str) -> str:
@@ -98,6 +102,7 @@ def _read_summary(name: str) -> str:
 
 
 program = typer.Typer(name=NAME, cls=_Commands, no_args_is_help=False, pretty_exceptions_enable=False, rich_markup_mode="rich")
+# The help of the program has the summaries. `_Commands` replaces the functions.
 for _name in COMMANDS:
     program.command(_name, help=_read_summary(_name))(lambda: None)
 
@@ -131,7 +136,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     and no file is half written.
     """
     try:
-        returned = program(arguments, prog_name=NAME, standalone_mode=False)
+        exit_code = program(arguments, prog_name=NAME, standalone_mode=False)
     except (KeyboardInterrupt, CancelledError) as stop:
         return _fail(str(stop) or "interrupted; nothing was written", INTERRUPTED)
     except (typer.TyperException, ValueError) as error:
@@ -142,10 +147,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _fail(_message(error), FAILED)
     except Exception as error:
         return _fail(f"{type(error).__name__}: {_message(error)}", FAILED)
-    if returned == INTERRUPTED:
+    if exit_code == INTERRUPTED:
         # Typer turns a second Ctrl-C into this exit code.
         return _fail("interrupted", INTERRUPTED)
-    return returned if isinstance(returned, int) else 0
+    return exit_code if isinstance(exit_code, int) else 0
 
 
 def _message(error: Exception) -> str:

@@ -13,10 +13,10 @@ from plots.layers.map_analyses import MapAnalyses
 def compute_map_with_layers(spec: MapSpec, wanted: LayerOptions, run: RunContext) -> tuple[EscapeMap, MapAnalyses]:
     """Return the complete map and the results of its layers; CancelledError if interrupted."""
     frame = compute_whole_map(spec, run, "map")
-    found = {}
+    results = {}
     for layer in wanted.layers:
-        found[layer.name] = run_job(layer.job(spec, wanted.values), run.start_stage(layer.stage), {map_job(spec): frame})
-    return frame, MapAnalyses(found)
+        results[layer.name] = run_job(layer.job(spec, wanted.values), run.start_stage(layer.stage), {map_job(spec): frame})
+    return frame, MapAnalyses(results)
 
 
 def compute_whole_map(spec: MapSpec, run: RunContext, stage: str) -> EscapeMap:

@@ -9,14 +9,14 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Of:
-    """Gives an option the help of a parameter of a request or function, and the parameter's default unless another is given.
+    """Gives an option the help of a parameter of a request or function, and also its default if the option has none.
 
     Attributes
     ----------
     owner
         The request or the function.
     name
-        Name of the parameter there, if it differs.
+        Name of the parameter; empty if the option has the same name.
     """
 
     owner: Callable[..., Any]
@@ -25,7 +25,7 @@ class Of:
 
 @dataclass(frozen=True)
 class But:
-    """Removes options from a request in a command, or gives them other defaults."""
+    """Removes options of a request from a command, or gives options other defaults."""
 
     without: tuple[str, ...] = ()
     defaults: Mapping[str, Any] = field(default_factory=dict)

@@ -18,11 +18,11 @@ from cli.option_marks import But, Of
 MISSING = inspect.Parameter.empty
 
 NAMES = {"use_evidence": ("--evidence/--no-evidence",)}
-"""Names of options that differ from the names of their parameters."""
+"""Names of options by parameter, where they differ from the name of the parameter."""
 
 
 def with_options(function: Callable[..., None]) -> Callable[..., None]:
-    """Return a function for Typer whose parameters are the options. It makes the requests and calls the command with them."""
+    """Return a function for Typer whose parameters are the options. This function makes the requests, and calls the command."""
 
     def run(**values: Any) -> None:
         _build(function, values)
@@ -34,7 +34,7 @@ def with_options(function: Callable[..., None]) -> Callable[..., None]:
 
 
 def _list_options(make: Callable[..., Any]) -> dict[str, inspect.Parameter]:
-    """Return the options, by name, from which the arguments of a function or a request are made."""
+    """Return the options, by name, from whose values `_build` makes the arguments of a function or a request."""
     options: dict[str, inspect.Parameter] = {}
     for parameter in _parameters(make):
         kind, marks = _split(parameter.annotation)
@@ -42,10 +42,10 @@ def _list_options(make: Callable[..., Any]) -> dict[str, inspect.Parameter]:
         if reader is None:
             options[parameter.name] = _make_option(make, parameter)
             continue
-        but = next((mark for mark in marks if isinstance(mark, But)), But())
+        changes = next((mark for mark in marks if isinstance(mark, But)), But())
         for name, option in _list_options(reader).items():
-            if name not in but.without:
-                options[name] = option.replace(default=but.defaults.get(name, option.default))
+            if name not in changes.without:
+                options[name] = option.replace(default=changes.defaults.get(name, option.default))
     return options
 
 
@@ -71,14 +71,14 @@ def _find_reader(kind: Any) -> Callable[..., Any] | None:
 def _make_option(make: Callable[..., Any], parameter: inspect.Parameter) -> inspect.Parameter:
     """Return a keyword parameter for Typer, with names, help and default."""
     kind, marks = _split(parameter.annotation)
-    of = next((mark for mark in marks if isinstance(mark, Of)), Of(make))
-    source = of.name or parameter.name
+    origin = next((mark for mark in marks if isinstance(mark, Of)), Of(make))
+    source_name = origin.name or parameter.name
     default = parameter.default
-    if default is MISSING and of.owner is not make:
-        default = inspect.signature(of.owner).parameters[source].default
-    # Typer's object for an option or argument has properties that only the command line needs, such as a name for the value.
+    if default is MISSING and origin.owner is not make:
+        default = inspect.signature(origin.owner).parameters[source_name].default
+    # Typer's object has properties that only the command line needs, such as a name for the value.
     info = copy(next((mark for mark in marks if isinstance(mark, ParameterInfo)), typer.Option()))
-    info.help = info.help or _describe(of.owner, source)
+    info.help = info.help or _describe(origin.owner, source_name)
     # Typer treats the first name as the default value.
     if isinstance(info, OptionInfo) and info.default is ...:
         info.param_decls = _name(parameter.name, default)
@@ -114,6 +114,6 @@ def _split(annotation: Any) -> tuple[Any, tuple[Any, ...]]:
     """Return the type of an option and the marks of its annotation."""
     kind, *marks = get_args(annotation) if get_origin(annotation) is Annotated else (annotation,)
     if kind in OPTION_TYPES:
-        kind, *own = get_args(OPTION_TYPES[kind])
-        marks += own
+        kind, *more_marks = get_args(OPTION_TYPES[kind])
+        marks += more_marks
     return kind, tuple(marks)

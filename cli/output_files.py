@@ -15,6 +15,7 @@ from cli.option_marks import Of
 from engine.foundations.output_lock import hold_lock
 
 Content = str | bytes
+"""Content of a file: text or bytes."""
 
 
 def add_ending(stem: Path, ending: str) -> Path:
@@ -23,7 +24,7 @@ def add_ending(stem: Path, ending: str) -> Path:
 
 
 def split_ending(path: Path, endings: Collection[str], default: Sequence[str]) -> tuple[Path, Sequence[str]]:
-    """Return stem and ending of a file name, or, of a name without an ending, the name and the default endings.
+    """Return stem and ending of a file name. For a name without an ending, return the name and the default endings.
 
     An ending begins with a letter, so ``map-0.19`` has none.
 
@@ -51,9 +52,10 @@ def name_files(
     output: Path | None, endings: Collection[str], default: Sequence[str], stem: Path | None = None
 ) -> dict[str, Path]:
     """Return the output files by ending, named after --output, or else after the stem; none without both."""
+    chosen = default
     if output is not None:
-        stem, default = split_ending(output, endings, default)
-    return {} if stem is None else {ending: add_ending(stem, ending) for ending in default}
+        stem, chosen = split_ending(output, endings, default)
+    return {} if stem is None else {ending: add_ending(stem, ending) for ending in chosen}
 
 
 @contextmanager
@@ -68,7 +70,7 @@ def reserve_output(output: Path | None) -> Iterator[None]:
     Raises
     ------
     ValueError
-        If its folder does not exist.
+        If the folder of the output does not exist.
     BlockingIOError
         If another process is writing the output. The message names the process.
     """
@@ -95,7 +97,7 @@ def write_files(contents: Mapping[Path, Content]) -> list[str]:
     Raises
     ------
     OSError
-        If a file cannot be written; the files written before remain.
+        If a file cannot be written. Files that are already written remain.
     """
     for path, content in contents.items():
         _write(path, content.encode() if isinstance(content, str) else content)
@@ -104,16 +106,16 @@ def write_files(contents: Mapping[Path, Content]) -> list[str]:
 
 def _write(path: Path, content: bytes) -> None:
     # The temporary file is in the same folder, because replacing is atomic only within one file system.
-    part = path.with_name(f".{path.name}.{os.getpid()}.part")
+    temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
-        with part.open("xb") as file:
+        with temporary.open("xb") as file:
             file.write(content)
             file.flush()
             os.fsync(file.fileno())
-        part.replace(path)
+        temporary.replace(path)
     except OSError as error:
-        part.unlink(missing_ok=True)
+        temporary.unlink(missing_ok=True)
         raise OSError(error.errno, error.strerror, str(path)) from error
     except BaseException:
-        part.unlink(missing_ok=True)
+        temporary.unlink(missing_ok=True)
         raise

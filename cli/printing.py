@@ -17,7 +17,7 @@ from rich.table import Table as RichTable
 
 from cli.option_marks import Of
 
-# In characters. No table is wider, so that nothing is cut; a terminal wraps the lines.
+# Width of the console, in characters. No table is wider, so nothing is cut. A terminal wraps the lines.
 _WIDTH = 10_000
 
 
@@ -30,14 +30,14 @@ class Table:
 
 
 def print_result(as_json: bool, answer: Mapping[str, Any], *parts: Table | str, files: Sequence[str] | None = None) -> None:
-    """Print the answer as one JSON object, in which NaN and infinity become null, or print the tables and sentences.
+    """Print the answer as a JSON object, with null for NaN and infinity, or print the tables and sentences.
 
     Parameters
     ----------
     as_json
         Print JSON instead of tables and sentences; missing numbers are null.
     answer
-        Content of the object.
+        Content of the JSON object.
     parts
         Tables and sentences.
     files
@@ -66,12 +66,12 @@ def list_rows(columns: Mapping[str, np.ndarray]) -> list[dict[str, Any]]:
 
 
 def _lay_out(table: Table) -> RichTable:
-    shown = RichTable(box=box.SIMPLE_HEAD, show_edge=False)
+    rich_table = RichTable(box=box.SIMPLE_HEAD, show_edge=False)
     for number, name in enumerate(table.head):
-        shown.add_column(name, justify="right" if number else "left", no_wrap=True)
+        rich_table.add_column(name, justify="right" if number else "left", no_wrap=True)
     for row in table.rows:
-        shown.add_row(*row)
-    return shown
+        rich_table.add_row(*row)
+    return rich_table
 
 
 def _to_json(value: Any) -> Any:

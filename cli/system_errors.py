@@ -6,6 +6,7 @@ import errno
 
 _WRITABLE = "choose a folder that you may write to"
 _SPACE = "free some space or choose another disk, then run the same command again"
+# Remedies by number of the error.
 _ADVICE = {
     errno.ENOENT: "check the path",
     errno.ENOTDIR: "a part of this path is a file; choose another path",
@@ -26,7 +27,7 @@ _ADVICE = {
 
 
 def describe_system_error(error: OSError) -> str:
-    """Return a sentence without a full stop, or the text of an error without an error number."""
+    """Return a sentence without a full stop. For an error without a number, return its text."""
     if error.errno is None or error.strerror is None:
         return str(error)
     advice = _ADVICE.get(error.errno)

@@ -37,7 +37,7 @@ class MapCache:
     Parameters
     ----------
     quality
-        Resolution.
+        Resolution and integration time.
     execution
         How the computations run.
     on_map
@@ -53,14 +53,14 @@ class MapCache:
         self.quality = quality
         self.execution = execution
         self._on_map = on_map
-        self._kept: dict[Hashable, Any] = {}
+        self._values: dict[Hashable, Any] = {}
 
     def map(self, case: str, plane: Slice, energy: float | tuple[float, float], window: Window | None = None) -> EscapeMap:
         """Return a map of a case of `engine.CASES`. Other parameters are those of `engine.MapSpec`."""
         return self._stored(self._spec(case, plane, energy, window))
 
     def curves(self, case: str, plane: Slice) -> Sweep:
-        """Return shares at the energies of `curve_energies`, and the largest energy error. New maps are not stored."""
+        """Return shares, and the largest energy error, at the energies of `curve_energies`. New maps are not stored."""
         return self._once(("curves", case, plane), lambda: self._sweep(case, plane))
 
     def regularity(self, frame: EscapeMap) -> RegularityMap:
@@ -77,32 +77,34 @@ class MapCache:
 
     def exponent(self, case: str, plane: Slice, energy: float) -> UncertaintyExponent:
         """Return the uncertainty exponent of the basins of a case."""
-        spec, work = self._spec(case, plane, energy), self.quality.exponent_work
+        spec = self._spec(case, plane, energy)
+        work = self.quality.exponent_work
         return self._once(("exponent", spec), lambda: compute_uncertainty_exponent(spec, work=work, execution=self.execution))
 
-    def _once[Found](self, key: Hashable, compute: Callable[[], Found]) -> Found:
+    def _once[Value](self, key: Hashable, compute: Callable[[], Value]) -> Value:
         """Return the value stored under a key. The first call computes the value."""
-        if key not in self._kept:
-            self._kept[key] = compute()
-        found: Found = self._kept[key]
-        return found
+        if key not in self._values:
+            self._values[key] = compute()
+        value: Value = self._values[key]
+        return value
 
     def _search(self, case: str, energy: float, side: int) -> SuperStickySearch:
         frame = self._stored(replace(self._spec(case, Plane.X_PX, energy), resolution=(side, side)))
-        t_max, execution = self.quality.search_t_max, self.execution
+        t_max = self.quality.search_t_max
         return self._once(
             ("search", frame.spec),
-            lambda: find_super_sticky_orbits(frame, self.regularity(frame), t_max, execution=execution),
+            lambda: find_super_sticky_orbits(frame, self.regularity(frame), t_max, execution=self.execution),
         )
 
     def _sweep(self, case: str, plane: Slice) -> Sweep:
         """Compute a sweep that uses the stored maps."""
-        energies, side, t_max = curve_energies(case, self.quality.curve_points), self.quality.resolution, self.quality.t_max
-        spec = SweepSpec(CASES[case], plane, energies, (side, side), t_max=t_max, measures=("shares", "accuracy"))
+        energies = curve_energies(case, self.quality.curve_points)
+        resolution = self.quality.resolution, self.quality.resolution
+        spec = SweepSpec(CASES[case], plane, energies, resolution, t_max=self.quality.t_max, measures=("shares", "accuracy"))
         return compute_sweep(
             spec,
             measure=lambda point: compute_point(
-                point, escape_map=self._kept.get(point.map_spec) or self._compute(point.map_spec)
+                point, escape_map=self._values.get(point.map_spec) or self._compute(point.map_spec)
             ),
             execution=self.execution,
         )
@@ -114,15 +116,16 @@ class MapCache:
         return regularity
 
     def _spec(self, case: str, plane: Slice, energy: float | tuple[float, float], window: Window | None = None) -> MapSpec:
-        side, t_max = self.quality.resolution, self.quality.t_max
-        return MapSpec(CASES[case], plane, energy, (side, side), window, t_max)
+        resolution = self.quality.resolution, self.quality.resolution
+        return MapSpec(CASES[case], plane, energy, resolution, window, self.quality.t_max)
 
     def _stored(self, spec: MapSpec) -> EscapeMap:
         return self._once(spec, lambda: self._compute(spec))
 
     def _compute(self, spec: MapSpec) -> EscapeMap:
-        computed = compute_map(spec, execution=self.execution)
-        if not computed.complete:
+        frame = compute_map(spec, execution=self.execution)
+        if not frame.complete:
             raise CancelledError
-        self._on_map(computed)
-        return replace(computed, batch=None)
+        self._on_map(frame)
+        # The states of the orbits would take much memory.
+        return replace(frame, batch=None)

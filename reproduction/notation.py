@@ -1,4 +1,4 @@
-"""Write names of slices and axes as in the paper, in Matplotlib's math notation, and tables in Markdown."""
+"""Write names of slices and axes as in the paper, for Matplotlib's math mode, and tables in Markdown."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 
 from engine import Slice
 
+# Symbols of the axes in the paper.
 _SYMBOLS = {"x": "x", "y": "y", "px": r"\dot{x}", "py": r"\dot{y}", "h": "h"}
 
 
@@ -20,6 +21,6 @@ def plane_label(plane: Slice) -> str:
 
 
 def write_rows(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """Return a table with headings. Bars inside cells are escaped."""
+    """Return a Markdown table with headings. Bars inside cells are escaped."""
     lines = [heads, ["---"] * len(heads), *rows]
     return "\n".join("| " + " | ".join(cell.replace("|", "\\|") for cell in line) + " |" for line in lines)

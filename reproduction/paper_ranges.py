@@ -17,7 +17,7 @@ STICKY_CASE = "III"
 STICKY_ENERGY = 0.26
 """Energy of these orbits."""
 
-# Decimals of energies. Maps are looked up by energy, so equal energies must be equal to the bit.
+# Number of decimals of energies. Maps are looked up by energy, so equal energies must be identical to the bit.
 _DECIMALS = 6
 
 
@@ -27,7 +27,7 @@ def nine_energies(case: str) -> tuple[float, ...]:
 
 
 def three_energies(case: str) -> tuple[float, ...]:
-    """Return the first, the middle and the last of the nine energies: long, medium and short escape times."""
+    """Return the first, the middle and the last of the nine energies, with long, medium and short escape times."""
     return nine_energies(case)[::4]
 
 

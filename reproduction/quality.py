@@ -28,7 +28,7 @@ class Quality:
         Columns and rows of the maps of I and II whose chaotic bounded orbits are continued. Classifying these orbits takes ten
         times as long as the map.
     exponent_work
-        Limit of the work for each uncertainty exponent, the `work` of `engine.compute_uncertainty_exponent`.
+        Limit of the work for each uncertainty exponent: the parameter `work` of `engine.compute_uncertainty_exponent`.
     """
 
     name: str

@@ -21,23 +21,24 @@ def find_sample_starts(frame: EscapeMap) -> dict[int, tuple[float, float, float,
     Returns
     -------
     dict
-        (x, y, px, py) by exit, of the orbit with the fewest crossings, but at least `SHOWN_CROSSINGS`, or with the most crossings
-        if all have fewer. Of several, the first to escape is chosen, and of these the lowest and leftmost pixel.
+        (x, y, px, py) by exit. The selected orbit has the smallest number of crossings that is at least `SHOWN_CROSSINGS`, or the
+        largest number if all orbits have fewer crossings. Among several such orbits, the first to escape is selected, then the
+        lowest and leftmost pixel.
     """
-    found: dict[int, tuple[float, float, float, float]] = {}
+    starts: dict[int, tuple[float, float, float, float]] = {}
     for channel in range(1, frame.spec.potential.channels + 1):
         rows, columns = np.nonzero(frame.fate == channel)
         if rows.size == 0:
             continue
         crossings = frame.crossings[rows, columns]
-        enough = crossings >= SHOWN_CROSSINGS
-        wanted = int(crossings[enough].min()) if enough.any() else int(crossings.max())
-        times = np.where(crossings == wanted, frame.escape_time[rows, columns], np.inf)
-        place = int(np.argmin(times))
-        x, ordinate = frame.x[columns[place : place + 1]], frame.ordinate[rows[place : place + 1]]
-        first, second, third, fourth = frame.spec.start_states(x, ordinate)[0].tolist()
-        found[channel] = (first, second, third, fourth)
-    return found
+        is_enough = crossings >= SHOWN_CROSSINGS
+        selected = int(crossings[is_enough].min()) if is_enough.any() else int(crossings.max())
+        times = np.where(crossings == selected, frame.escape_time[rows, columns], np.inf)
+        index = int(np.argmin(times))
+        x, ordinate = frame.x[columns[index : index + 1]], frame.ordinate[rows[index : index + 1]]
+        x_start, y_start, px_start, py_start = frame.spec.start_states(x, ordinate)[0].tolist()
+        starts[channel] = (x_start, y_start, px_start, py_start)
+    return starts
 
 
 def find_lyapunov_r2(potential: Potential, energy: float) -> tuple[float, float]:

@@ -15,8 +15,12 @@ from engine.slices.portable_system import PortableSystem, make_portable_system
 EXIT_NUMBER_DISTANCE = 0.86
 """Distance of the number of an exit from the origin, as a share of the distance of the middle of the exit."""
 
-# Numbers of energies with a tabulated window: below the escape energy, where windows change slowly, and above it.
-_ENERGIES_BELOW, _ENERGIES_ABOVE = 5, 13
+# Number of energies with a tabulated window below the escape energy, where windows change slowly.
+_ENERGIES_BELOW = 5
+# Number of energies with a tabulated window above the escape energy.
+_ENERGIES_ABOVE = 13
+# Approximate size of key and windows, in bytes.
+_TABLE_BYTES = 4096
 
 
 @dataclass(frozen=True)
@@ -40,12 +44,12 @@ class BrowserSystem:
     @property
     def nbytes(self) -> int:
         """Approximate size in bytes."""
-        return self.portable.nbytes + 4096
+        return self.portable.nbytes + _TABLE_BYTES
 
     def to_dict(self) -> dict[str, Any]:
         """Return the system in the form of `System` in modules/engine/system.js, with its module and its windows."""
-        own = {"key": self.key, "module": self.portable.module, "windows": self.windows, "numberDistance": EXIT_NUMBER_DISTANCE}
-        return {**self.portable.to_dict(), **own}
+        page_data = {"windows": self.windows, "numberDistance": EXIT_NUMBER_DISTANCE}
+        return {**self.portable.to_dict(), "key": self.key, "module": self.portable.module, **page_data}
 
 
 def system_key(potential: Potential) -> str:
@@ -61,10 +65,10 @@ def make_browser_system(potential: Potential, low: float, high: float, *, execut
     return BrowserSystem(system_key(potential), make_portable_system(potential, high), windows)
 
 
-def _tabulate_windows(potential: Potential, plane: Slice, ends: tuple[float, float], execution: Execution) -> dict[str, Any]:
-    """Return default windows from the lowest to the highest energy with a window."""
+def _tabulate_windows(potential: Potential, plane: Slice, energies: tuple[float, float], execution: Execution) -> dict[str, Any]:
+    """Return the default windows of the energies in a range, from the first to the last energy with a window."""
     windows: dict[float, list[float]] = {}
-    for energy in _energies(potential, *ends).tolist():
+    for energy in _energies(potential, *energies).tolist():
         execution.raise_if_cancelled()
         try:
             window = default_window(potential, plane, energy)

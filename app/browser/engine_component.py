@@ -1,4 +1,4 @@
-"""The engine in the visitor's browser, which shows previews while energy or window moves, and the orbit under the cursor."""
+"""The engine in the visitor's browser: previews while the energy or the window changes, and the orbit under the cursor."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class BrowserEngine(JSComponent):
         self.view = describe_view(self._state)
 
     def play(self) -> None:
-        """Animate the energy up to its highest value, from the lowest if it is there already, or stop the animation."""
+        """Animate the energy up to its highest value, from the lowest if it is there already; stop a running animation."""
         state, energies = self._state, self._state.energies
         if self.playing:
             self.stop()

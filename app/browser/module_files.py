@@ -1,6 +1,6 @@
 """The files of the engine in the browser: its modules and the kernels.
 
-Their addresses contain a hash of everything on which the files depend, so browsers can keep them.
+The addresses contain a hash of everything on which the files depend, so browsers can keep the files.
 """
 
 from __future__ import annotations
@@ -76,4 +76,4 @@ ROUTES: tuple[tuple[str, type[RequestHandler], dict[str, Any]], ...] = (
     (rf"/{_FOLDER}/((?:[a-z]+/)?[a-z_]+\.js)", ModuleHandler, {"path": str(MODULES)}),
     (f"/{KERNELS_ADDRESS}", KernelsHandler, {}),
 )
-"""Paths below the server's prefix, with their handlers and the arguments of these."""
+"""Paths below the server's prefix, with their handlers and the handlers' arguments."""

@@ -9,7 +9,7 @@ from engine.foundations.wording import format_number
 
 log = logging.getLogger(__name__)
 
-# Beginnings of the library's messages about an energy, which the page calls h, and the text for visitors; "" matches any other.
+# Texts for visitors by the beginnings of the library's messages about an energy, which the page calls h. "" begins any message.
 _ENERGY_PROBLEMS = {
     "the interior is empty on": "no orbit of this energy starts on this slice, as the well lies higher.",
     "no Lyapunov orbit was found": "there is no neck to leave through; choose another energy.",
@@ -22,13 +22,13 @@ ZOOM_ENDS = "Double precision ends here: pixels cannot be closer together."
 
 
 def sentence(error: Exception) -> str:
-    """Return the message of a `ValueError`, which is meant for users; log another error, and refer to the log."""
+    """Return the message of a `ValueError`, which is meant for users. Log any other error, and return a reference to the log."""
     if isinstance(error, ValueError):
         return _ENERGY.sub(_explain, str(error))
     log.error("a job failed", exc_info=error)
     return "This could not be computed; the server's log says why."
 
 
-def _explain(found: re.Match[str]) -> str:
-    explained = next(words for start, words in _ENERGY_PROBLEMS.items() if found["rest"].startswith(start))
-    return f"h = {format_number(float(found['energy']), 6)}: {found.expand(explained)}"
+def _explain(match: re.Match[str]) -> str:
+    template = next(text for beginning, text in _ENERGY_PROBLEMS.items() if match["rest"].startswith(beginning))
+    return f"h = {format_number(float(match['energy']), 6)}: {match.expand(template)}"

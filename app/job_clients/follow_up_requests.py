@@ -1,4 +1,4 @@
-"""Requests for follow-up analyses of each complete map, while the view state asks for them."""
+"""Requests for follow-up analyses of complete maps, while the view state asks for these analyses."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ class FollowUp:
     job
         Returns the job for a complete map; None if the analysis is not wanted.
     show
-        Shows a result, perhaps a partial one, of the map.
+        Shows a result of the map, which may be partial.
     watched
-        Attributes of the view state that the job depends on.
+        Attributes of the view state on which the job depends.
     """
 
     job: Callable[[EscapeMap], Job[Any] | None]

@@ -28,13 +28,13 @@ class LatestRequest:
     jobs
         Computes the results.
     show, fail
-        Show each result, partial or final, and say in a sentence why there is none, under the session's lock.
+        Show each result, partial or final, and show a sentence that says why there is none, under the session's lock.
     locked
         Wraps a function to run under the session's lock; it may run only the latest of several waiting calls.
     convert
-        Makes what is shown from a result, or `SKIPPED`, on the thread of the job. A ValueError counts as an error of the job.
+        Converts a result to what is shown, or to `SKIPPED`, on the thread of the job. A ValueError counts as an error of the job.
     begin
-        Is told of each job that is requested.
+        Takes each job that is requested.
     """
 
     def __init__(
@@ -58,7 +58,7 @@ class LatestRequest:
         self._number_lock = threading.RLock()
 
     def submit(self, *jobs: Job[Any]) -> None:
-        """Request the result of the last of some jobs, each of which needs the previous ones, unless it is requested already."""
+        """Request the result of the last job, unless it is requested already. Each job needs the results of the previous jobs."""
         if jobs[-1] == self._job:
             return
         self.cancel()
@@ -87,7 +87,7 @@ class LatestRequest:
                 result = self._convert(result)
             except ValueError as error:
                 result = error
-        # An outdated call could replace the only waiting call of the session.
+        # The lock keeps `number` valid until the call waits: an outdated call could replace the only waiting call of the session.
         with self._number_lock:
             if number == self._number and result is not SKIPPED:
                 self._handle_later(number, is_last, result)

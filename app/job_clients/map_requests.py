@@ -1,4 +1,4 @@
-"""Requests for the map of the view state, whose frames go to a listener."""
+"""Requests for the map of the view state. A listener takes the frames of the map."""
 
 from __future__ import annotations
 
@@ -21,23 +21,27 @@ Columns = dict[str, list[Any]]
 
 
 def jobs_of_map(spec: MapSpec) -> list[Job[Any]]:
-    """Return the jobs of a map in order; the last computes the map.
+    """Return the jobs of a map in order. The last job computes the map.
 
-    Before it, the kernels are compiled if they are not, and along a parameter of a typed formula the potentials are found.
+    Earlier jobs compile the kernels if necessary, and find the potentials along a parameter of a typed formula.
     """
-    potential, members = spec.potential, members_job(spec.plane.parameter)
-    compilation = [] if is_ready_for_maps(potential) else [Job(prepare_for_maps, (potential,), queue=Queue.COMPILATION)]
-    return [*compilation, *([] if members is None else [members]), map_job(spec)]
+    jobs: list[Job[Any]] = []
+    if not is_ready_for_maps(spec.potential):
+        jobs.append(Job(prepare_for_maps, (spec.potential,), queue=Queue.COMPILATION))
+    members = members_job(spec.plane.parameter)
+    if members is not None:
+        jobs.append(members)
+    return [*jobs, map_job(spec)]
 
 
 class MapListener(Protocol):
-    """Receives the progress of a map."""
+    """Shows the progress of a map."""
 
     def map_requested(self, *, compiling: bool = False) -> None:
-        """Take note of a request of the map, or with `compiling` of the compilation of its kernels."""
+        """Show that the map is requested, or with `compiling`, that its kernels are compiled."""
 
     def map_arrived(self, frame: EscapeMap, columns: Columns) -> None:
-        """Show a frame; the last frame is complete."""
+        """Show a frame of the map. The last frame is complete."""
 
     def map_stopped(self) -> None:
         """Show that the user has cancelled the map."""
@@ -56,11 +60,11 @@ class MapRequests:
     jobs
         Computes the maps.
     listener
-        Receives frames and errors, under the session's lock.
+        Takes frames and errors, under the session's lock.
     locked
         Wraps callbacks to run under the session's lock; it may run only the latest of several waiting calls.
     is_crowded
-        Whether the server is crowded. It then skips the frames between the first and the last.
+        Whether the server is crowded. Then only the first and the last frame of a map are shown.
     prepare
         Computes what the listener needs for a map, on the thread of the job, before a frame of the map is delivered.
     """
@@ -102,25 +106,26 @@ class MapRequests:
         self._listener.map_requested(compiling=job.queue is Queue.COMPILATION)
 
     def _with_columns(self, frame: EscapeMap) -> Any:
-        """Return a frame with its columns; ValueError if the interior is empty. A crowded server skips the frames in between."""
-        # The ranges of the maps need this window. Finding it is slow, so it is found here and cached.
+        """Return a frame with its columns, or `SKIPPED`; ValueError if the interior is empty."""
+        # The ranges of the maps need the default window. Find and cache it here, because finding it is slow.
         replace(frame.spec, window=None).find_window()
         self._prepare(frame.spec)
-        before = self._delivered_columns
-        if before is not None and before[0] == frame.spec and not frame.complete and self._is_crowded():
+        last_spec, last_columns = self._delivered_columns or (None, {})
+        # A crowded server skips the frames between the first and the last.
+        if last_spec == frame.spec and not frame.complete and self._is_crowded():
             return SKIPPED
         columns = map_columns(frame) | layer_columns(frame, self._state.layers)
-        if before is not None and _has_same_starts(before[0], frame.spec):
-            columns = draw_over(columns, before[1], frame.spec.resolution)
+        if last_spec is not None and _has_same_plane(last_spec, frame.spec):
+            columns = draw_over(columns, last_columns, frame.spec.resolution)
         self._delivered_columns = frame.spec, columns
         return frame, columns
 
-    def _show(self, shown: tuple[EscapeMap, Columns]) -> None:
-        frame, columns = shown
+    def _show(self, result: tuple[EscapeMap, Columns]) -> None:
+        frame, columns = result
         self._listener.map_arrived(frame, columns)
         self._has_complete_map = frame.complete
 
 
-def _has_same_starts(one: MapSpec, other: MapSpec) -> bool:
+def _has_same_plane(one: MapSpec, other: MapSpec) -> bool:
     """Whether two maps show the same plane at the same energy; window, resolution and t_max may differ."""
     return (one.potential, one.plane, one.energy) == (other.potential, other.plane, other.energy)

@@ -22,7 +22,7 @@ from plots.pictures.orbit_curves import OrbitCurves, compute_orbit_curves
 
 @dataclass(frozen=True)
 class ChosenOrbit:
-    """A start, and what is known of its orbit.
+    """A start, and what is known about its orbit.
 
     Attributes
     ----------
@@ -61,7 +61,7 @@ class ChosenOrbit:
 
 
 class OrbitRequests:
-    """Requests the orbits of one session, then the Birkhoff digits of the bounded orbits, for which these are integrated again.
+    """Requests the orbits of one session, then the Birkhoff digits of bounded orbits. The digits need a second integration.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ class OrbitRequests:
     show
         Shows the orbits after each change, under the session's lock.
     notify
-        Says why digits could not be computed.
+        Shows a sentence that says why digits could not be computed.
     latest
         Wraps a function so that only the latest of its waiting calls runs.
     """
@@ -103,9 +103,9 @@ class OrbitRequests:
         self._update()
 
     def _update(self) -> None:
-        """Request missing digits, and show what is known of the orbits."""
-        bounded = [job for job, found in self._orbits.found.items() if _is_bounded(found)]
-        self._digits.follow([_digits_job(job) for job in bounded])
+        """Request missing digits, and show what is known about the orbits."""
+        bounded_jobs = [job for job, result in self._orbits.found.items() if _is_bounded(result)]
+        self._digits.follow([_digits_job(job) for job in bounded_jobs])
         orbits = tuple(map(self._orbit_of, self._state.starts))
         # Showing unchanged orbits again would delay a map that is requested at the same time.
         if orbits != self._last_orbits:
@@ -116,15 +116,15 @@ class OrbitRequests:
         job = self._state.orbit_job(start)
         if job is None:
             return ChosenOrbit(start, problem=describe_fate(Fate.FORBIDDEN))
-        found = self._orbits.found.get(job)
-        if isinstance(found, str):
-            return ChosenOrbit(start, problem=found)
+        curves = self._orbits.found.get(job)
+        if isinstance(curves, str):
+            return ChosenOrbit(start, problem=curves)
         digits = self._digits.found.get(_digits_job(job))
-        return ChosenOrbit(start, found, digits=None if isinstance(digits, str) else digits)
+        return ChosenOrbit(start, curves, digits=None if isinstance(digits, str) else digits)
 
 
-def _is_bounded(found: OrbitCurves | str) -> bool:
-    return not isinstance(found, str) and found.orbit.fate == Fate.BOUNDED
+def _is_bounded(result: OrbitCurves | str) -> bool:
+    return not isinstance(result, str) and result.orbit.fate == Fate.BOUNDED
 
 
 def _digits_job(job: Job[Orbit]) -> Job[BirkhoffDigits]:

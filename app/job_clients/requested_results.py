@@ -1,4 +1,4 @@
-"""Results of several jobs at once. Results that are no longer wanted are dropped, and their requests cancelled."""
+"""Results of several jobs at once. A job that is no longer wanted is cancelled, and its result is dropped."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class RequestedResults:
     jobs
         Computes the results.
     convert
-        Makes the value to keep from a job and its result or error, on the thread that delivers the result.
+        Takes a job and its result or error, and returns the value to keep. Runs on the thread that delivers the result.
     on_arrival
         Handles the values that have arrived, under the session's lock.
     latest
@@ -37,7 +37,7 @@ class RequestedResults:
         self._jobs, self._convert, self._on_arrival = jobs, convert, on_arrival
         self.found: dict[Job[Any], Any] = {}
         self._subscriptions: dict[Job[Any], Subscription | None] = {}
-        # Values that are not handled yet; any thread may append to this queue.
+        # Values that are not handled yet. Any thread may append to this queue.
         self._new_values: deque[tuple[Job[Any], Any]] = deque()
         self._handle_later = latest(self._handle)
 
@@ -57,7 +57,7 @@ class RequestedResults:
             self._new_values.append((job, self._convert(job, result)))
             self._handle_later()
 
-        # A cached result is delivered before `request` returns, so the job is entered first.
+        # Enter the job first, because a cached result is delivered before `request` returns.
         self._subscriptions[job] = None
         subscription = self._jobs.request(job, deliver, deliver)
         if job in self._subscriptions:

@@ -1,4 +1,4 @@
-"""Request for the separation of the chosen orbit from the orbit that was chosen before, once both are computed."""
+"""Request for the separation of the chosen orbit from the previously chosen orbit, once both are computed."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Pair = tuple[int, int]
 
 
 class SeparationRequests:
-    """Requests the separation for one session. `show(pair, separation)` receives it, or None twice without a pair of orbits."""
+    """Requests the separation for one session. `show(pair, separation)` takes it; without a pair of orbits, both are None."""
 
     def __init__(
         self,
@@ -30,15 +30,15 @@ class SeparationRequests:
     ) -> None:
         self._state, self._show = state, show
         self._pair: Pair | None = None
-        # Place of the orbit that was chosen before. The list may be shorter now.
-        self._place_before = 0
-        state.param.watch(lambda event: setattr(self, "_place_before", event.old), "chosen")
+        # Place of the previously chosen orbit. The list may be shorter now.
+        self._previous_place = 0
+        state.param.watch(lambda event: setattr(self, "_previous_place", event.old), "chosen")
         self._request = LatestRequest(jobs, lambda separation: show(self._pair, separation), notify, locked)
 
     def follow(self, orbits: Sequence[ChosenOrbit]) -> None:
-        """Request the separation of the chosen orbit from the orbit chosen before, or else from a neighbour in the list."""
+        """Request the separation of the chosen orbit from the previously chosen orbit, or else from a neighbour in the list."""
         self._pair = self._find_pair(orbits)
-        job = self._job(*(orbits[place].orbit for place in self._pair)) if self._pair is not None else None
+        job = None if self._pair is None else self._job(*(orbits[place].orbit for place in self._pair))
         if job is not None:
             self._request.submit(job)
         else:
@@ -48,10 +48,12 @@ class SeparationRequests:
     def _find_pair(self, orbits: Sequence[ChosenOrbit]) -> Pair | None:
         """Return the pair to compare; None unless both orbits are computed."""
         chosen = self._state.chosen
-        others = [place for place in (self._place_before, chosen - 1, chosen + 1) if place != chosen and 0 <= place < len(orbits)]
-        if not others or chosen >= len(orbits):
+        other_places = [
+            place for place in (self._previous_place, chosen - 1, chosen + 1) if place != chosen and 0 <= place < len(orbits)
+        ]
+        if not other_places or chosen >= len(orbits):
             return None
-        pair = min(chosen, others[0]), max(chosen, others[0])
+        pair = min(chosen, other_places[0]), max(chosen, other_places[0])
         return pair if all(orbits[place].orbit is not None for place in pair) else None
 
     def _job(self, first: Orbit | None, second: Orbit | None) -> Job[Separation] | None:

@@ -1,4 +1,4 @@
-"""The results that the page shows, for its statistics, tables, files and figures."""
+"""The results that the page shows. Its statistics, tables, files and figures use them."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""The number of pages for which the processors suffice, by which work is postponed and new pages are refused.
+"""The number of pages for which the processors suffice. It decides when work is postponed and new pages are refused.
 
-Each open page reserves the processor time that an active visitor uses: otherwise a server would fill up while its visitors are
-still reading. Two values are measured: the processor time that other programs leave, and the use of the event loop.
+Each open page reserves the processor time that an active visitor uses: otherwise, a server would admit too many visitors while
+they are still reading. Two values are measured: the processor time that other programs leave, and the use of the event loop.
 """
 
 from __future__ import annotations
@@ -22,19 +22,19 @@ FULL = 0.85
 """Largest share of the processors, and of the event loop's time, for all pages together. Above it, new pages are refused."""
 
 CROWDED = 0.5
-"""Share above which work that can wait is postponed for the visitors of open pages."""
+"""Share above which work that can wait is postponed, so that open pages stay fast."""
 
 OF_ONE_VISITOR = 0.5
-"""Largest share of the capacity that the pages of one visitor take from other visitors."""
+"""Largest share of the capacity for the pages of one visitor, as far as other visitors are concerned."""
 
 MOST_CORES = 1.0
 """Most processors that a process uses, because its threads share the interpreter lock."""
 
 LEAST_CORES = 0.2
-"""Fewest processors of a process: the part that the system gives it when other programs keep all processors busy."""
+"""Fewest processors of a process: what the operating system gives to it when other programs keep all processors busy."""
 
 LEAST_SPARE = 0.1
-"""Number of spare processors below which other programs may get less than they need, because this program uses the rest."""
+"""If fewer processors are spare, other programs may get less than they need, because this program uses the rest."""
 
 WINDOW_SECONDS = 20
 """Time over which the use of the processors is averaged."""
@@ -43,7 +43,7 @@ ACTING_SECONDS = 300.0
 """Time for which a page counts in full after the visitor's last action."""
 
 IDLE_WEIGHT = 0.1
-"""An idle page counts as this fraction of a page."""
+"""Fraction of a page as which an idle page counts."""
 
 CONNECTION_SECONDS = 15.0
 """Time for which a page without a connection counts after its last action, because it may be opening or reconnecting."""
@@ -65,7 +65,7 @@ class ProcessorTimes(NamedTuple):
 
 
 class _Use(NamedTuple):
-    """Processors that other programs and the event loop used between two measurements, which are `seconds` apart."""
+    """Average numbers of processors that other programs and the event loop used, over a time of `seconds`."""
 
     seconds: float
     others: float
@@ -80,7 +80,7 @@ class Capacity:
     cores_per_page
         Processors that an active visitor uses.
     processes
-        Number of server processes that share the processors; all are assumed to be equally busy.
+        Number of server processes that share the processors. All processes are assumed to be equally busy.
     measure
         Returns the present processor times; called on the thread of the event loop.
     clock
@@ -106,20 +106,23 @@ class Capacity:
     ) -> None:
         self._cores_per_page, self._processes, self._measure, self._clock = cores_per_page, processes, measure, clock
         self._all_cores = count_cores() if cores is None else cores
-        self._times, self._uses = measure(), deque[_Use](maxlen=WINDOW_SECONDS)
-        self.cores, self.loop = self._share_of(0.0), 0.0
+        self._times = measure()
+        self._uses = deque[_Use](maxlen=WINDOW_SECONDS)
+        self.cores = self._share_of(0.0)
+        self.loop = 0.0
 
     def update(self) -> bool:
         """Measure unless the last measurement is less than a second old; return whether a measurement was made."""
         if self._clock() < self._times.now + 1.0:
             return False
-        before, self._times = self._times, self._measure()
-        now, programs, own, loop = (new - old for new, old in zip(self._times, before, strict=True))
-        others = (programs - self._processes * own) / now
-        if self._all_cores - programs / now < LEAST_SPARE:
+        previous_times, self._times = self._times, self._measure()
+        seconds, programs, own, loop = (new - old for new, old in zip(self._times, previous_times, strict=True))
+        others = (programs - self._processes * own) / seconds
+        if self._all_cores - programs / seconds < LEAST_SPARE:
             others = max(others, self._mean_others())
-        self._uses.append(_Use(now, others, loop / now))
-        self.cores, self.loop = self._share_of(max(self._mean_others(), 0.0)), self._mean(use.loop for use in self._uses)
+        self._uses.append(_Use(seconds, others, loop / seconds))
+        self.cores = self._share_of(max(self._mean_others(), 0.0))
+        self.loop = self._mean(use.loop for use in self._uses)
         return True
 
     def is_crowded(self, pages: Mapping[str, float]) -> bool:
@@ -128,12 +131,12 @@ class Capacity:
 
     def has_room(self, pages: Mapping[str, float], visitor: str = "") -> bool:
         """Whether another page of a visitor is admitted, given the number of pages by visitor."""
-        most = OF_ONE_VISITOR * FULL * self.cores / self._cores_per_page
-        counted = {other: count if other == visitor else min(count, most) for other, count in pages.items()}
+        most_pages = OF_ONE_VISITOR * FULL * self.cores / self._cores_per_page
+        counted = {other: count if other == visitor else min(count, most_pages) for other, count in pages.items()}
         return self.taken(counted | {visitor: counted.get(visitor, 0.0) + 1.0}) <= FULL
 
     def taken(self, pages: Mapping[str, float]) -> float:
-        """Return the share of the processors that the pages may use, or the busy share of the event loop if it is larger."""
+        """Return the share of the processors that the pages may use, or the busy share of the event loop, whichever is larger."""
         return max(self._cores_per_page * sum(pages.values()) / self.cores, self.loop)
 
     def _mean_others(self) -> float:
@@ -143,11 +146,12 @@ class Capacity:
         return fmean(values, [use.seconds for use in self._uses]) if self._uses else 0.0
 
     def _share_of(self, others: float) -> float:
+        """Return the processors of this process when other programs use `others` processors."""
         return min(max((self._all_cores - others) / self._processes, LEAST_CORES), MOST_CORES)
 
 
 def count_page(share: FairShare, *, connected: bool) -> float:
-    """Return the fraction of a page that counts: less than 1 for an idle page, 0 for a page that has been left."""
+    """Return the fraction of a page that counts: less than 1 for an idle page, and 0 for a page that the visitor has left."""
     idle = share.idle_seconds()
     if not connected:
         return float(idle < CONNECTION_SECONDS)
@@ -164,8 +168,10 @@ def processor_times(low: float, elsewhere: float) -> ProcessorTimes:
     elsewhere
         Processor time that helper processes have used for this process, in seconds.
     """
-    usable = os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else None
-    processors = [each for number, each in enumerate(psutil.cpu_times(percpu=True)) if usable is None or number in usable]
+    usable_numbers = os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else None
+    processors = [
+        each for number, each in enumerate(psutil.cpu_times(percpu=True)) if usable_numbers is None or number in usable_numbers
+    ]
     return ProcessorTimes(
         now=time.monotonic(),
         all_programs=sum(_urgent(each) for each in processors),

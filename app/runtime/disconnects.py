@@ -1,4 +1,4 @@
-"""Callbacks for pages that lose their last connection, which cancel jobs long before the session expires."""
+"""Callbacks for pages that lose their last connection. They cancel jobs long before the session expires."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class DisconnectMonitor:
 
     def __init__(self, sessions: Callable[[], Iterable[Any]]) -> None:
         self._sessions = sessions
-        # Sessions that have had a connection; a new session has none yet.
+        # Sessions that have had a connection. A new session has none yet.
         self._once_connected: WeakSet[Any] = WeakSet()
 
     def check(self) -> None:

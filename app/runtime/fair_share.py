@@ -15,7 +15,7 @@ SHARE = 0.5
 """Largest share of the thread's time that a page uses in the long run. A drag with 30 messages per second uses 0.2."""
 
 BURST_SECONDS = 3.0
-"""Time that a page may use at once after a pause, and most time that it can owe."""
+"""Largest time that a page may use at once after a pause, and largest time that a page can owe."""
 
 
 class FairShare:
@@ -32,7 +32,9 @@ class FairShare:
 
     def __init__(self, clock: Callable[[], float] = time.monotonic, busy_clock: Callable[[], float] = time.thread_time) -> None:
         self._clock, self._busy_clock = clock, busy_clock
-        self._balance, self._last_take = BURST_SECONDS, clock()
+        # Time that the page may use now; negative if the page owes time.
+        self._balance = BURST_SECONDS
+        self._last_take = clock()
         self._last_use = self._last_take
 
     def take(self, seconds: float) -> None:
@@ -48,13 +50,13 @@ class FairShare:
         return self._clock() - self._last_use
 
     def wait_seconds(self) -> float:
-        """Return the time until the next message may be handled; 0 within the share."""
+        """Return the time until the next message may be handled: 0 unless the page owes time."""
         self.take(0.0)
         return max(0.0, -self._balance / SHARE)
 
     @types.coroutine
     def count[Result](self, coroutine: Coroutine[Any, Any, Result]) -> Generator[Any, Any, Result]:
-        """Await a coroutine and count the processor time of its own steps, but not of code that runs while it waits."""
+        """Await a coroutine, and count the processor time of its steps, but not of code that runs while the coroutine waits."""
         step: Callable[[], Any] = partial(coroutine.send, None)
         while True:
             begin = self._busy_clock()

@@ -29,7 +29,8 @@ def not_ready_reason(state: ProcessState) -> str | None:
         return "The integrators could not be compiled; the log says why."
     if not state.kernels_ready.is_set():
         return "The integrators are being compiled."
-    ceiling, memory = state.settings.memory_ceiling, resident_bytes()
+    ceiling = state.settings.memory_ceiling
+    memory = resident_bytes()
     if ceiling and memory > ceiling:
         return f"The server holds {memory} bytes, above {variable_name('memory_ceiling')}={ceiling}."
     if compiled_operations.is_nearly_full():
@@ -41,7 +42,7 @@ def not_ready_reason(state: ProcessState) -> str | None:
 def refusal_reason(state: ProcessState, network: str) -> str | None:
     """Return a sentence that says why no session can be created; None if a session can.
 
-    This is weaker than readiness: while the integrators are compiled, sessions are created, and their pages wait.
+    Unlike readiness, this does not need the integrators: sessions are created during the compilation, and their pages wait.
 
     Parameters
     ----------
@@ -65,7 +66,7 @@ def _full_reason(state: ProcessState, network: str = "") -> str | None:
 
 
 def _is_alone(state: ProcessState, network: str) -> bool:
-    """Whether a visitor disturbs nobody: on this machine, or with the only open page, if any, which may be reloading."""
+    """Whether a visitor disturbs nobody: on this machine, or if no other visitor has a page. One own page may be reloading."""
     return (network != "" and is_near(network)) or state.sockets.total() <= min(state.sockets[network], 1)
 
 
@@ -76,7 +77,7 @@ class StateCollector(Collector):
         self._state = state
 
     def describe(self) -> list[Metric]:
-        """Return nothing: the registry then asks for no values at registration."""
+        """Return nothing, so that the registry does not collect values at registration."""
         return []
 
     def collect(self) -> Iterator[Metric]:

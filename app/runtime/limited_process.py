@@ -1,4 +1,4 @@
-"""Processes with limits of time and memory, for formulas that visitors type: the server goes on when such a process ends."""
+"""Processes with limits of time and memory, for formulas that visitors type. The server survives the end of such a process."""
 
 from __future__ import annotations
 
@@ -23,24 +23,22 @@ COMPILATION_SECONDS = 60
 """Limit of the processor time for compiling one kernel. The kernels of the largest formulas need 10 s."""
 
 PROCESSES = 2
-"""Number of processes. While one is busy with a visitor's formula, the other serves other visitors."""
+"""Number of processes. While one process is busy with a visitor's formula, the other serves other visitors."""
 
-START_SECONDS = 60.0
-"""Longest time until a process begins, in seconds."""
+PATIENCE = 60.0
+"""Longest time until a process begins, and longest time that a call waits for a processor, in seconds."""
 
 IDLE_SECONDS = 300
-"""Time without a call after which a process ends, because it uses 100 MB."""
+"""Time without a call after which a process ends, in seconds. A process uses 100 MB."""
 
 MEMORY = 2**30
 """Memory that the process may use in addition to its memory at the start, in bytes."""
 
 # Interval at which a process checks whether the server still exists, in seconds.
 _WATCH_SECONDS = 2.0
-# Longest duration of a call on a busy machine, in units of the limit of its processor time.
-_PATIENCE = 4
 # Interval at which a waiting call checks whether it is cancelled, in seconds.
 _POLL_SECONDS = 0.1
-# Time from its start for which even a cancelled call goes on, in seconds.
+# Time from the start of a call during which the call cannot be cancelled, in seconds.
 _ABANDONED_SECONDS = 1.0
 
 
@@ -62,8 +60,8 @@ class LimitedProcess:
         Memory that the process may use in addition to its memory at the start, in bytes.
     task
         The task of the process, which begins the sentence about a call that exceeds a limit.
-    start_seconds
-        Longest time until the process begins, in seconds.
+    patience
+        Longest time until the process begins, and longest time that a call waits for a processor, in seconds.
 
     Attributes
     ----------
@@ -80,13 +78,15 @@ class LimitedProcess:
         seconds: int = SECONDS,
         memory: int = MEMORY,
         task: str = "reviewing this formula",
-        start_seconds: float = START_SECONDS,
+        patience: float = PATIENCE,
     ) -> None:
-        self._seconds, self._memory, self._task, self._start_seconds = seconds, memory, task, start_seconds
+        self._seconds, self._memory, self._task, self._patience = seconds, memory, task, patience
         self._lock = threading.Lock()
         self._executor: ProcessPoolExecutor | None = None
         self._is_closed = False
-        self.stopped, self.computed, self.has_begun = 0, 0.0, False
+        self.stopped = 0
+        self.computed = 0.0
+        self.has_begun = False
 
     def __call__[Result](self, function: Callable[[], Result], cancel: threading.Event | None = None) -> Result:
         """Return the result of a function. Function and result are pickled.
@@ -131,21 +131,24 @@ class LimitedProcess:
 
     def _call[Result](self, function: Callable[[], Result], cancel: threading.Event) -> Result:
         try:
-            self._wait(self._submit(os.getpid), cancel, self._start_seconds)
+            self._wait(self._submit(os.getpid), cancel, self._patience)
             self.has_begun = True
         except (BrokenExecutor, FutureTimeoutError, MemoryError):
             self._end()
             raise LimitError(f"{self._task} could not begin: the machine is busy or short of memory; try again later") from None
         try:
-            result, computed = self._wait(
-                self._submit(partial(_call_limited, self._seconds, function)), cancel, _PATIENCE * self._seconds
-            )
-        except (BrokenExecutor, FutureTimeoutError, MemoryError):
+            call = self._submit(partial(_call_limited, self._seconds, function))
+            result, computed = self._wait(call, cancel, self._seconds + self._patience)
+        except FutureTimeoutError:
+            self._replace()
+            raise LimitError(f"{self._task} takes too long while the machine is busy; try again later") from None
+        except (BrokenExecutor, MemoryError):
             self._replace()
         except CancelledError:
             self._replace()
             raise
         except RecursionError:
+            # The process survives.
             pass
         else:
             self.computed += computed
@@ -154,9 +157,9 @@ class LimitedProcess:
 
     def _wait[Result](self, future: Future[Result], cancel: threading.Event, most_seconds: float) -> Result:
         """Return the result of a call; raise an error if it takes too long or is cancelled."""
-        begun = time.monotonic()
+        begin = time.monotonic()
         while not wait([future], _POLL_SECONDS).done:
-            seconds = time.monotonic() - begun
+            seconds = time.monotonic() - begin
             if cancel.is_set() and seconds > _ABANDONED_SECONDS:
                 raise CancelledError
             if seconds > most_seconds:
@@ -172,8 +175,8 @@ class LimitedProcess:
         self._executor = ProcessPoolExecutor(
             max_workers=1, timeout=IDLE_SECONDS, initializer=_begin, initargs=(self._memory, os.getpid())
         )
-        first: Future[Result] = self._executor.submit(call)
-        return first
+        first_future: Future[Result] = self._executor.submit(call)
+        return first_future
 
 
 class LimitedProcesses:
@@ -214,41 +217,41 @@ class LimitedProcesses:
 
 
 def _call_limited[Result](seconds: int, function: Callable[[], Result]) -> tuple[Result, float]:
-    """Return the result of a function and its processor time. The system ends the process at the limit of time."""
-    begun = time.process_time()
+    """Return the result of a function and the processor time. The operating system ends the process at the limit."""
+    begin = time.process_time()
     # Without `resource`, on Windows, only the time for which the caller waits is limited.
     with suppress(ImportError):
         import resource
 
-        used = resource.getrusage(resource.RUSAGE_SELF)
+        usage = resource.getrusage(resource.RUSAGE_SELF)
         _, hard = resource.getrlimit(resource.RLIMIT_CPU)
-        resource.setrlimit(resource.RLIMIT_CPU, (ceil(used.ru_utime + used.ru_stime) + seconds, hard))
-    return function(), time.process_time() - begun
+        resource.setrlimit(resource.RLIMIT_CPU, (ceil(usage.ru_utime + usage.ru_stime) + seconds, hard))
+    return function(), time.process_time() - begin
 
 
-def _begin(memory: int, server: int) -> None:
+def _begin(memory: int, server_id: int) -> None:
     """Prepare the process for calls."""
-    threading.Thread(target=_end_with, args=(server,), daemon=True).start()
+    threading.Thread(target=_end_with, args=(server_id,), daemon=True).start()
     # A visitor would wait for this import, which the first review needs.
     importlib.import_module("engine.systems.review.potential_review")
     _limit_memory(memory)
 
 
-def _end_with(server: int) -> None:
+def _end_with(server_id: int) -> None:
     """End the process when the server has ended, even if the server was killed."""
-    while os.getppid() == server:
+    while os.getppid() == server_id:
         time.sleep(_WATCH_SECONDS)
     os._exit(0)
 
 
-def _limit_memory(most: int) -> None:
+def _limit_memory(additional_bytes: int) -> None:
     with suppress(ImportError):
         import resource
 
         import psutil
 
-        # The system writes no core file when it ends the process.
+        # Write no core file when the operating system ends the process.
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         _, hard = resource.getrlimit(resource.RLIMIT_AS)
-        soft = psutil.Process().memory_info().vms + most
+        soft = psutil.Process().memory_info().vms + additional_bytes
         resource.setrlimit(resource.RLIMIT_AS, (soft if hard == resource.RLIM_INFINITY else min(soft, hard), hard))

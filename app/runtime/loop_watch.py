@@ -1,4 +1,4 @@
-"""The delay of the event loop. While the delay is high, work is postponed, and causes of long delays are logged.
+"""The delay of the event loop. While the delay is high, work is postponed. Causes of long delays are logged.
 
 A callback runs periodically on the loop. While a run is overdue, a thread reads the stack of the loop's thread.
 """
@@ -23,11 +23,11 @@ TICK_SECONDS = 0.02
 HIGH_SECONDS = 0.05
 """Delay of a tick above which the load is high."""
 
-# Factor by which the delay decays per tick: 0.7 in 0.1 s, so the load is normal again half a second after a peak.
+# Factor by which the delay decays per tick: 0.7 in 0.1 s. The load is normal again half a second after a peak.
 _DECAY = 0.7 ** (TICK_SECONDS / 0.1)
 
 LONGEST_SECONDS = 2.0
-"""Time after which a high load is reported as normal for one tick: postponed work is delayed but never blocked."""
+"""Time after which a high load counts as normal for one tick, so that postponed work is not blocked for ever."""
 
 
 class LoadMonitor:
@@ -48,17 +48,17 @@ class LoadMonitor:
     def tick(self) -> float:
         """Return the delay of this tick in seconds; call every `TICK_SECONDS` on the event loop."""
         now = self._clock()
-        late = max(0.0, now - self._due) if self._due is not None else 0.0
-        self.delay = max(late, _DECAY * self.delay)
+        delay = max(0.0, now - self._due) if self._due is not None else 0.0
+        self.delay = max(delay, _DECAY * self.delay)
         self._due = now + TICK_SECONDS
-        if not self.delay > HIGH_SECONDS or (self._high_since is not None and now - self._high_since > LONGEST_SECONDS):
+        if self.delay <= HIGH_SECONDS or (self._high_since is not None and now - self._high_since > LONGEST_SECONDS):
             self._high_since = None
         elif self._high_since is None:
             self._high_since = now
-        return late
+        return delay
 
     def overdue_seconds(self) -> float:
-        """Return the time since the next tick was due, negative before then; any thread may call this."""
+        """Return the time since the next tick was due; negative if it is not due yet. Any thread may call this."""
         return self._clock() - self._due if self._due is not None else 0.0
 
     def is_high(self) -> bool:
@@ -69,16 +69,17 @@ class LoadMonitor:
 SLOW_SECONDS = 0.05
 """Duration above which an iteration of the event loop is logged and counted."""
 
-# Delay of a tick that is reported. It is shorter than the slow iteration by up to one interval, because the iteration may begin
-# before the tick is due.
+# Smallest delay of a tick that is reported. A slow iteration may begin up to one interval before the tick is due, and then delays
+# the tick by less than its own duration.
 _REPORTED_DELAY = SLOW_SECONDS - TICK_SECONDS
 # Interval at which the stack is read, in seconds.
 _SAMPLE_SECONDS = 0.5 * TICK_SECONDS
+# Folder of the app.
 _APP = Path(__file__).parents[1]
 # Folders of the app whose functions only pass calls on.
 _PLUMBING = ("runtime", "server", "browser/bokeh_patches")
-# Modules outside the app that run the loop. A loop whose stack contains nothing else waits for events or for a processor.
-_LOOP = (
+# Modules outside the app that run the loop. If the stack contains nothing else, the loop waits for events or for a processor.
+_LOOP_MODULES = (
     "asyncio",
     "selectors",
     "tornado.platform",
@@ -98,8 +99,8 @@ log = logging.getLogger(f"bokeh.{__name__}")
 class LoopWatch:
     """Logs and counts iterations of the event loop that take longer than `SLOW_SECONDS`; created on the loop's thread.
 
-    The duration of an iteration is known only to within `TICK_SECONDS`. Iterations that are shorter than `SLOW_SECONDS` by less
-    than this may also be reported.
+    The duration of an iteration is known only to within `TICK_SECONDS`, so iterations that are shorter than `SLOW_SECONDS` by up
+    to `TICK_SECONDS` may be reported too.
 
     Parameters
     ----------
@@ -116,34 +117,38 @@ class LoopWatch:
         self._thread = threading.get_ident()
         self._samples: list[str] = []
         self._last_processor_time = self._processor_time()
-        self._collection_begin, self._collected = 0.0, 0.0
+        # Processor time at the beginning of a garbage collection.
+        self._collection_begin = 0.0
+        # Processor time of the garbage collections since the last tick.
+        self._collection_seconds = 0.0
 
     def on_collection(self, phase: str, info: dict[str, int]) -> None:
-        """Measure garbage collections on the loop's thread, which any allocation may start; a member of `gc.callbacks`."""
+        """Measure garbage collections on the loop's thread, where any allocation may start one. Call from `gc.callbacks`."""
         if threading.get_ident() != self._thread:
             return
         if phase == "start":
             self._collection_begin = self._processor_time()
         else:
-            self._collected += self._processor_time() - self._collection_begin
+            self._collection_seconds += self._processor_time() - self._collection_begin
 
     def tick(self) -> None:
         """Measure the delay, and report a long delay; call every `TICK_SECONDS` on the event loop."""
-        late = self._load.tick()
-        busy, self._last_processor_time = self._processor_time() - self._last_processor_time, self._processor_time()
-        collected, self._collected = self._collected, 0.0
+        delay = self._load.tick()
+        own_seconds = self._processor_time() - self._last_processor_time
+        self._last_processor_time = self._processor_time()
+        collection_seconds, self._collection_seconds = self._collection_seconds, 0.0
         samples, self._samples = self._samples, []
-        if late > _REPORTED_DELAY:
+        if delay > _REPORTED_DELAY:
             cause = Counter(samples).most_common(1)[0][0] if samples else WAITING
-            self._delays.labels(cause).observe(late)
+            self._delays.labels(cause).observe(delay)
             # Other threads and processes also delay the loop, so the message contains the loop's own processor time.
             log.info(
                 "event loop %.0f ms late, %.0f ms of its own, with %.0f ms of garbage collection; cause: %s",
-                *(1000.0 * seconds for seconds in (late, busy, collected)), cause,
+                *(1000.0 * seconds for seconds in (delay, own_seconds, collection_seconds)), cause,
             )  # fmt: skip
 
     def watch(self, stopping: threading.Event) -> None:
-        """Read the loop's stack while a tick is overdue, until the server stops; call on a separate thread."""
+        """Read the loop's stack whenever a tick is overdue, until the server stops; call on a separate thread."""
         while not stopping.wait(_SAMPLE_SECONDS):
             frame = sys._current_frames().get(self._thread) if self._load.overdue_seconds() > _SAMPLE_SECONDS else None
             if frame is not None:
@@ -151,13 +156,15 @@ class LoopWatch:
 
 
 def find_cause(innermost: FrameType) -> str:
-    """Return the outermost function of the app on a stack, apart from those that only pass calls on, or else of a library."""
+    """Return the outermost function of the app on a stack that does more than pass calls on, or else of a library."""
     frames = [frame for frame, _ in traceback.walk_stack(innermost)][::-1]
     app_places = [place for place in map(_place_in_app, frames) if place is not None]
     library_places = [place for place in map(_place_in_library, frames) if place is not None]
-    named = next((place for place in app_places if not place.startswith(_PLUMBING)), None)
-    if named is not None or not app_places:
-        return named or next(iter(library_places), WAITING)
+    cause = next((place for place in app_places if not place.startswith(_PLUMBING)), None)
+    if cause is not None:
+        return cause
+    if not app_places:
+        return library_places[0] if library_places else WAITING
     return f"{app_places[0]}, {library_places[-1]}" if library_places else app_places[0]
 
 
@@ -169,6 +176,6 @@ def _place_in_app(frame: FrameType) -> str | None:
 def _place_in_library(frame: FrameType) -> str | None:
     module = frame.f_globals.get("__name__", "")
     top = module.partition(".")[0]
-    if top in sys.stdlib_module_names or top in ("__main__", "app", "") or module.startswith(_LOOP):
+    if top in sys.stdlib_module_names or top in ("__main__", "app", "") or module.startswith(_LOOP_MODULES):
         return None
     return f"{module}: {frame.f_code.co_qualname}"

@@ -1,4 +1,4 @@
-"""Memory allocation of glibc: settings and calls with which a server of many threads returns free memory to the system."""
+"""Memory allocation of glibc: settings and calls by which a server with many threads returns free memory to the system."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ class _Option(NamedTuple):
 _OPTIONS = (
     # Number of arenas. By default there are eight per core, and each keeps the memory that its threads have freed.
     _Option("MALLOC_ARENA_MAX", -8, 2),
-    # Smallest size of an array with its own memory mapping, in bytes: arrays of a map with 224 × 224 pixels are larger. By
-    # default this size grows to 32 MiB.
+    # Smallest size of an array with its own memory mapping, in bytes. Arrays of a map with 224 × 224 pixels are larger. By
+    # default, this smallest size grows to 32 MiB.
     _Option("MALLOC_MMAP_THRESHOLD_", -3, 2**17),
 )
 

@@ -88,7 +88,7 @@ class ProcessState:
         self.capacity = Capacity(self.settings.cores_per_page, self.settings.processes, self._processor_times)
 
     def fair_share(self, document: Document) -> FairShare:
-        """Return the share of a page's document, which all connections of the page use."""
+        """Return the share of a page, given its document. All connections of the page use the same share."""
         return self._shares.setdefault(document, FairShare())
 
     def _processor_times(self) -> ProcessorTimes:
@@ -119,7 +119,7 @@ _started: ProcessState | None = None
 
 
 def process_state() -> ProcessState:
-    """Return the state of this process; the first call starts it with the settings of the environment.
+    """Return the state of this process. The first call starts the state with the settings of the environment.
 
     Raises
     ------
@@ -131,7 +131,7 @@ def process_state() -> ProcessState:
 
 
 def start_process_state(settings: Settings) -> ProcessState:
-    """Start a new state of this process; open sessions keep the earlier state."""
+    """Start a new state of this process. Open sessions keep the earlier state."""
     with _lock:
         return _start(settings)
 

@@ -1,8 +1,8 @@
-"""Callbacks that any thread may call, and that run on the event loop under the lock of a session.
+"""Callbacks that any thread may call. They run on the event loop under the lock of a session.
 
 Bokeh's ``Document.locked_callback`` is not used, because it schedules calls through events of the document. While a
-callback holds events back (``pn.io.hold``), Panel and Bokeh copy the list of held events and then replace it: an
-event that a thread appends in between is lost. With ``policy="latest"`` a lost event blocks all later frames.
+callback holds events back (``pn.io.hold``), Panel and Bokeh copy the list of held events, then replace the list: an
+event that a thread appends in between is lost. With ``policy="latest"``, a lost event blocks all later frames.
 """
 
 from __future__ import annotations
@@ -105,8 +105,8 @@ class _LockedCallback:
         if self._calls:
             call = self._calls.popleft()
             try:
-                # Panel may hold back changes of widgets until the socket is free. Other changes must not overtake these,
-                # because they may concern models that the held changes add.
+                # Panel may hold back changes of widgets until the socket is free. Changes by the call must not overtake held
+                # changes, because they may concern models that held changes add.
                 with set_curdoc(document), pn.io.hold(document):
                     call()
             except Exception:

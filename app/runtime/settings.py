@@ -26,7 +26,7 @@ class LogFormat(StrEnum):
 
 @dataclass(frozen=True)
 class _Parser:
-    """Converts the text of a variable with `parse`; `legal` describes the legal values."""
+    """Converts the text of a variable with `parse`. `legal` describes the legal values."""
 
     parse: Callable[[str], Any]
     legal: str
@@ -48,7 +48,7 @@ def _in_range[Number: (int, float)](value: Number, low: Number, high: Number) ->
 
 def _parse_origins(text: str) -> tuple[str, ...]:
     origins = tuple(text.split())
-    # Separators of directives and headers are rejected, because they could begin another directive or header.
+    # A separator of directives or headers could begin another directive or header.
     if not all(origin.isascii() and origin.isprintable() and not set(origin) & set(";,'\"") for origin in origins):
         raise ValueError
     return origins
@@ -76,16 +76,16 @@ class Settings:
     most_orbits
         Largest number of orbits in all large running jobs: pixels of maps, and pixels times values of sweeps.
     most_sessions
-        Largest number of sessions, and of WebSockets; further requests for the page get status 503.
+        Largest number of sessions, and of WebSockets. Further requests for the page get status 503.
     pages_per_address
         Largest number of sessions, and of WebSockets, of one address (IPv6: of one network).
     most_connections
-        Largest number of open connections, WebSockets apart; more connections are closed.
+        Largest number of open connections without WebSockets. Further connections are closed.
     compiled_operations
-        Largest number of compiled operations in the integrators of all potentials outside the catalogue; compiled code is never
-        unloaded.
+        Largest number of compiled operations in the integrators of all potentials outside the catalogue. Compiled code stays
+        loaded.
     cache_bytes
-        Size limit of the result cache, in bytes; a complete map of 224 × 224 pixels takes 1.4 MB.
+        Size limit of the result cache, in bytes. A complete map of 224 × 224 pixels takes 1.4 MB.
     memory_ceiling
         Resident memory, in bytes, above which the server reports that it is not ready; 0 for no limit.
     threads
@@ -125,7 +125,7 @@ def variable_name(setting: str) -> str:
 
 
 def read_settings(environment: Mapping[str, str]) -> Settings:
-    """Read the settings from environment variables; missing and empty variables keep their defaults.
+    """Read the settings from environment variables. Settings of missing and empty variables keep their defaults.
 
     Raises
     ------

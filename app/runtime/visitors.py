@@ -8,7 +8,7 @@ from bokeh.document import Document
 
 
 def network_of(address: str) -> str:
-    """Return the network of an address: the whole IPv4 address, or the 64 bits of an IPv6 address that identify its network."""
+    """Return the network of an address: an IPv4 address itself, or the network of the first 64 bits of an IPv6 address."""
     try:
         parsed = ipaddress.ip_address(address)
     except ValueError:
@@ -30,6 +30,6 @@ def visitor_of(document: Document) -> str:
 
 
 def account_of(document: Document) -> str | None:
-    """Return the visitor whose share of compiled code a page uses; None on this machine, which has no limit."""
+    """Return the visitor whose share of compiled code a page uses; None for this machine, which has no limit."""
     visitor = visitor_of(document)
     return None if is_near(visitor) else visitor

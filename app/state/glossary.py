@@ -58,21 +58,23 @@ _TERMS_BY_LOWER_CASE = {term.lower(): term for term in GLOSSARY}
 def with_terms(html: str) -> str:
     """Return HTML in which the first occurrence of each term is a button that opens its explanation.
 
-    A term must not occur in two such texts of one shadow root, where its identifier must be unique.
+    Two such texts of one shadow root must not have a common term, because identifiers must be unique.
     """
-    found: dict[str, None] = {}
+    explained_terms: dict[str, None] = {}
 
     def explain(match: re.Match[str]) -> str:
         term = _TERMS_BY_LOWER_CASE[match[0].lower()]
-        if term in found:
+        if term in explained_terms:
             return match[0]
-        found[term] = None
+        explained_terms[term] = None
         return f"<button type='button' class='term' popovertarget='{_identifier(term)}'>{match[0]}</button>"
 
-    # Text and tags alternate, and only texts contain terms.
+    # Texts and tags alternate, and only texts contain terms.
     parts = re.split(r"(<[^>]*>)", html)
     parts[::2] = [_TERM.sub(explain, part) for part in parts[::2]]
-    meanings = (f"<span id='{_identifier(term)}' class='help-text' popover>{escape(GLOSSARY[term])}</span>" for term in found)
+    meanings = (
+        f"<span id='{_identifier(term)}' class='help-text' popover>{escape(GLOSSARY[term])}</span>" for term in explained_terms
+    )
     return "".join([*parts, *meanings])
 
 

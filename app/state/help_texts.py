@@ -1,4 +1,4 @@
-"""Help texts, which say what each picture and plot shows, and how to read it."""
+"""Help texts: what each picture and plot shows, and how to read it."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ from engine import Window
 from plots.pictures.palette import MOST_ORBITS
 from plots.pictures.time_scale import TimeScale
 
-# Lower end of a scale of escape times whose link contains only the upper end, dimensionless.
+# Lower end of a scale of escape times if the link contains only the upper end (dimensionless).
 _DEFAULT_LOW_TIME = 1.0
 
 
@@ -26,7 +26,7 @@ class Format:
     write
         Returns the text for a value.
     read
-        Returns the value for a text; raises ValueError or KeyError for other texts.
+        Returns the value for a text; raises ValueError or KeyError for a text that is not legal.
     legal
         Returns a description of the legal values, which may depend on the settings of the server.
     """
@@ -70,7 +70,7 @@ def name_format(names: Iterable[str]) -> Format:
 
 
 def number_choice_format(choices: Callable[[], Mapping[str, float]]) -> Format:
-    """Return the form of one of several labelled numbers, read in any usual format: 100000, 1e5, 1E+5, 100 000 or 100,000."""
+    """Return the form of one of several labelled numbers. Any usual format can be read: 100000, 1e5, 1E+5, 100 000 or 100,000."""
 
     def read(text: str) -> float:
         by_value = {float(choice): choice for choice in choices().values()}
@@ -112,7 +112,7 @@ def _read_numbers(text: str, count: int) -> tuple[float, ...]:
     return numbers
 
 
-def _joined(numbers: Iterable[float]) -> str:
+def _write_numbers(numbers: Iterable[float]) -> str:
     return ",".join(repr(float(number)) for number in numbers)
 
 
@@ -137,7 +137,7 @@ SWITCH = choice_format({"yes": True, "no": False})
 """Text form of a switch."""
 
 WINDOW = Format(
-    lambda window: _joined(astuple(window)),
+    lambda window: _write_numbers(astuple(window)),
     lambda text: Window(*_read_numbers(text, 4)),
     lambda: "four numbers x_low,x_high,ordinate_low,ordinate_high, each low below its high",
 )
@@ -149,7 +149,7 @@ TIMES = Format(
 )
 
 STARTS = Format(
-    lambda starts: ";".join(map(_joined, starts)),
+    lambda starts: ";".join(map(_write_numbers, starts)),
     _read_starts,
     lambda: f"up to {MOST_ORBITS} starts x,ordinate, separated by semicolons",
 )

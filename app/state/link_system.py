@@ -12,7 +12,7 @@ from engine.systems.formulas.formula_parser import LARGEST_VALUE, LONGEST_TEXT, 
 from engine.systems.parameters import WELL_PARAMETERS
 from engine.systems.system import TYPED
 
-# All letters of a formula share one link parameter, because single letters already name other parameters.
+# Names of link parameters. All letters of a formula share one parameter, because single letters already name other parameters.
 _CASE, _FORMULA, _LETTERS = "case", "V", "letters"
 
 
@@ -29,20 +29,21 @@ def write_system(system: System) -> dict[str, str]:
 
 
 def system_of(parts: Mapping[str, Any]) -> tuple[System, list[str]]:
-    """Return the system in a link, not reviewed, and a message if the link contains letters that the formula does not."""
+    """Return the system in a link, not reviewed yet, and a message if the link has letters that the formula does not have."""
     case = parts.get(_CASE, TYPED if _FORMULA in parts else FIRST_VIEW.system.case)
-    formula, given = parts.get(_FORMULA, ""), parts.get(_LETTERS, {})
+    formula = parts.get(_FORMULA, "")
+    letter_values = parts.get(_LETTERS, {})
     letters = _letters(case, formula)
-    known = {name: value for name, value in given.items() if name in letters}
-    system = System(case, formula, {**{name: parts[name] for name in WELL_PARAMETERS if name in parts}, **known})
-    if len(known) == len(given):
+    used_values = {name: value for name, value in letter_values.items() if name in letters}
+    system = System(case, formula, {**{name: parts[name] for name in WELL_PARAMETERS if name in parts}, **used_values})
+    if len(used_values) == len(letter_values):
         return system, []
     legal = f"letters of the formula: {', '.join(letters)}" if letters else "a formula with letters"
     return system, [f"Ignored the values of letters that the formula does not have: choose {legal}."]
 
 
 def _letters(case: str, formula: str) -> tuple[str, ...]:
-    """Return the adjustable letters of a system of the catalogue, or the letters of a formula, if it can be parsed."""
+    """Return the adjustable letters of a system of the catalogue, or the letters of a formula; none if it cannot be parsed."""
     if case != TYPED:
         return System(case).entry.adjustable
     try:

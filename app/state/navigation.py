@@ -8,13 +8,13 @@ from functools import partial
 from engine import Window
 
 PAN_SHARE = 0.25
-"""Share of a side of the window by which an arrow key moves it."""
+"""Distance by which an arrow key moves the window, as a share of its side."""
 
 ZOOM_FACTOR = 2.0
-"""Factor of a zoom key."""
+"""Factor by which a zoom key enlarges or shrinks the sides of the window."""
 
 DIVE_FACTOR = 4.0
-"""Factor of the zoom to a double-clicked point."""
+"""Factor by which a double click shrinks the sides of the window."""
 
 DIRECTIONS = {"ArrowLeft": (-1, 0), "ArrowRight": (1, 0), "ArrowDown": (0, -1), "ArrowUp": (0, 1)}
 """Direction of each arrow key in x and in the ordinate."""
@@ -22,9 +22,9 @@ DIRECTIONS = {"ArrowLeft": (-1, 0), "ArrowRight": (1, 0), "ArrowDown": (0, -1), 
 
 def pan(window: Window, key: str) -> Window:
     """Return a window moved by an arrow key."""
-    across, up = DIRECTIONS[key]
-    dx = PAN_SHARE * across * window.width
-    dy = PAN_SHARE * up * window.height
+    x_direction, ordinate_direction = DIRECTIONS[key]
+    dx = PAN_SHARE * x_direction * window.width
+    dy = PAN_SHARE * ordinate_direction * window.height
     return Window(window.x_low + dx, window.x_high + dx, window.ordinate_low + dy, window.ordinate_high + dy)
 
 

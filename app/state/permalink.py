@@ -31,17 +31,18 @@ LONGEST_VALUE = LONGEST_TEXT
 """Largest length of a value in a link, in characters."""
 
 EMBED = "embed"
-"""Link parameter that embeds the page in a frame of another page: its value names the only picture that is shown."""
+"""Link parameter of a page in a frame of another page. Its value is the name of the only picture that is shown."""
 
 _DEFAULT_EMBEDDED = "basins"
 # Longest part of a value that a message repeats, in characters.
 _LONGEST_QUOTE = 40
+# Names of link parameters.
 _PLANE, _FIX, _ENERGY, _JACOBI = "plane", "fix", "h", "C"
 # Prefix of the parameters of the view with which the state is compared.
 _COMPARED = "with_"
 _VIEW_NAMES = (*SYSTEM_FORMATS, _PLANE, _FIX, _ENERGY)
 
-# Attributes of the view state with one link parameter each: those of a view, then the visitor's own choices.
+# Link parameters of attributes of the view state with one parameter each: fields of `View`, then the visitor's own choices.
 _LINKED: dict[str, LinkParameter] = {
     **VIEW_PARAMETERS,
     "focus": LinkParameter("focus", name_format(PICTURES)),
@@ -51,7 +52,7 @@ _LINKED: dict[str, LinkParameter] = {
 
 _SETTING_FORMATS = {name: choice_format(setting.choices) for name, setting in SETTINGS.items()}
 
-# Text forms of the values with one parameter each.
+# Text forms of all values with one parameter each, by parameter.
 _FORMATS: dict[str, Format] = {
     **SYSTEM_FORMATS,
     _ENERGY: number_format(-LARGEST_NUMBER, LARGEST_NUMBER, "a number, such as 0.25"),
@@ -109,33 +110,34 @@ def read_link(parameters: Mapping[str, str], prefix: str = "") -> tuple[dict[str
     problems : list of str
         A message for each invalid value.
     """
-    found, problems = _read_each(parameters, prefix)
-    values = {attribute: found[parameter.name] for attribute, parameter in _LINKED.items() if parameter.name in found}
-    values |= _read_layers(found)
-    if _JACOBI in found:
-        values["jacobi"] = found[_JACOBI]
-    if EMBED in found:
-        picture = values["focus"] = found[EMBED]
-        values |= {"layers": values.get("layers", frozenset()) | {LAYER_OF[picture].name}} if picture in LAYER_OF else {}
+    parts, problems = _read_each(parameters, prefix)
+    values = {attribute: parts[parameter.name] for attribute, parameter in _LINKED.items() if parameter.name in parts}
+    values |= _read_layers(parts)
+    if _JACOBI in parts:
+        values["jacobi"] = parts[_JACOBI]
+    if EMBED in parts:
+        picture = values["focus"] = parts[EMBED]
+        if picture in LAYER_OF:
+            values["layers"] = values.get("layers", frozenset()) | {LAYER_OF[picture].name}
     if values.get("chosen", 0) >= len(values.get("starts", (0,))):
         values["chosen"] = 0
-    for part, more in (_read_view(parameters, found, prefix), _read_compared(parameters)):
-        values |= part
-        problems += more
+    for more_values, more_problems in (_read_view(parameters, parts, prefix), _read_compared(parameters)):
+        values |= more_values
+        problems += more_problems
     return values, problems
 
 
 def linked_view(values: Mapping[str, Any]) -> View:
-    """Return the view of a link, whose system need not be reviewed; missing values are those of the first view."""
+    """Return the view of a link, before or after the review of its system. Missing values are those of the first view."""
     return View(**{name: values[name] for name in FIRST_VIEW.values() if name in values})
 
 
 def without_system(values: Mapping[str, Any]) -> dict[str, Any]:
     """Return the values of a link that do not depend on its system."""
-    dropped = {"system", "energy", "jacobi", *(name for name, parameter in VIEW_PARAMETERS.items() if parameter.of_system)}
+    dropped_names = {"system", "energy", "jacobi", *(name for name, parameter in VIEW_PARAMETERS.items() if parameter.of_system)}
     if linked_view(values).plane.parameter is not None:
-        dropped.add("plane")
-    return {name: value for name, value in values.items() if name not in dropped}
+        dropped_names.add("plane")
+    return {name: value for name, value in values.items() if name not in dropped_names}
 
 
 def fit_to_system(values: Mapping[str, Any], reviewed: SystemReview) -> tuple[dict[str, Any], list[str]]:
@@ -148,20 +150,21 @@ def fit_to_system(values: Mapping[str, Any], reviewed: SystemReview) -> tuple[di
     reviewed
         The review of the system in the link, which was not refused.
     """
-    constant = values.get("jacobi")
+    jacobi_constant = values.get("jacobi")
     values = {name: value for name, value in values.items() if name != "jacobi"}
-    if constant is not None and "energy" not in values:
+    if jacobi_constant is not None and "energy" not in values:
         if not reviewed.potential.rotation:
-            fitting, problems = fit_to_system(values, reviewed)
-            return fitting, [f"Ignored C={constant:.6g}: the frame of this system does not rotate.", *problems]
-        values["energy"] = reviewed.potential.jacobi_energy(constant)
-    lowest, first = float(reviewed.potential.value(0.0, 0.0)), reviewed.energies.first
+            fitted, problems = fit_to_system(values, reviewed)
+            return fitted, [f"Ignored C={jacobi_constant:.6g}: the frame of this system does not rotate.", *problems]
+        values["energy"] = reviewed.potential.jacobi_energy(jacobi_constant)
+    lowest = float(reviewed.potential.value(0.0, 0.0))
+    first = reviewed.energies.first
     t_max = min(ViewState.param.t_max.default, longest_first_t_max(reviewed.potential))
-    shown = {"energy": first, "t_max": t_max, **values, "system": reviewed.system}
-    if shown["energy"] > lowest:
-        return shown, []
-    problem = f"Ignored h={shown['energy']:.6g}: choose an energy above {lowest:.6g}, such as {first:.6g}."
-    return shown | {"energy": first}, [problem]
+    completed = {"energy": first, "t_max": t_max, **values, "system": reviewed.system}
+    if completed["energy"] > lowest:
+        return completed, []
+    problem = f"Ignored h={completed['energy']:.6g}: choose an energy above {lowest:.6g}, such as {first:.6g}."
+    return completed | {"energy": first}, [problem]
 
 
 def refused_link(problem: str) -> str:
@@ -188,19 +191,19 @@ def _write_layers(state: ViewState) -> dict[str, str]:
     return layers | {name: _SETTING_FORMATS[name].write(value) for name, value in changed.items()}
 
 
-def _read_layers(found: Mapping[str, Any]) -> dict[str, Any]:
+def _read_layers(parts: Mapping[str, Any]) -> dict[str, Any]:
     """Return the layers and settings of a link, if it contains any."""
     values: dict[str, Any] = {}
-    if any(name in found for name in LAYERS):
-        values["layers"] = frozenset(name for name in LAYERS if found.get(name))
-    if any(name in found for name in SETTINGS):
-        values["settings"] = default_settings() | {name: found[name] for name in SETTINGS if name in found}
+    if any(name in parts for name in LAYERS):
+        values["layers"] = frozenset(name for name in LAYERS if parts.get(name))
+    if any(name in parts for name in SETTINGS):
+        values["settings"] = default_settings() | {name: parts[name] for name in SETTINGS if name in parts}
     return values
 
 
 def _read_each(parameters: Mapping[str, str], prefix: str) -> tuple[dict[str, Any], list[str]]:
     """Return the values with one parameter each, by parameter, and a message for each invalid value."""
-    found: dict[str, Any] = {}
+    parts: dict[str, Any] = {}
     problems: list[str] = []
     for name, form in _FORMATS.items():
         text = parameters.get(name)
@@ -209,29 +212,29 @@ def _read_each(parameters: Mapping[str, str], prefix: str) -> tuple[dict[str, An
         try:
             if len(text) > LONGEST_VALUE:
                 raise ValueError
-            found[name] = form.read(text)
+            parts[name] = form.read(text)
         except (ValueError, KeyError):
             problems.append(f"Ignored {_quoted(prefix + name, text)}: choose {form.legal()}.")
-    return found, problems
+    return parts, problems
 
 
-def _read_view(parameters: Mapping[str, str], found: Mapping[str, Any], prefix: str) -> tuple[dict[str, Any], list[str]]:
-    """Return system, slice and energy of a link, and messages; `found` contains the values with one parameter each."""
-    system, problems = system_of(found)
-    view: dict[str, Any] = {"system": system} if any(name in found for name in SYSTEM_FORMATS) else {}
-    if _ENERGY in found:
-        view["energy"] = found[_ENERGY]
-    given = {name: parameters[name] for name in (_PLANE, _FIX) if parameters.get(name)}
-    if not given:
+def _read_view(parameters: Mapping[str, str], parts: Mapping[str, Any], prefix: str) -> tuple[dict[str, Any], list[str]]:
+    """Return system, slice and energy of a link, and messages; `parts` contains the values with one parameter each."""
+    system, problems = system_of(parts)
+    view: dict[str, Any] = {"system": system} if any(name in parts for name in SYSTEM_FORMATS) else {}
+    if _ENERGY in parts:
+        view["energy"] = parts[_ENERGY]
+    slice_texts = {name: parameters[name] for name in (_PLANE, _FIX) if parameters.get(name)}
+    if not slice_texts:
         return view, problems
     try:
-        if sum(map(len, given.values())) > LONGEST_VALUE:
+        if sum(map(len, slice_texts.values())) > LONGEST_VALUE:
             raise ValueError
-        view["plane"] = read_slice(given.get(_PLANE, ""), given.get(_FIX, ""), system)
+        view["plane"] = read_slice(slice_texts.get(_PLANE, ""), slice_texts.get(_FIX, ""), system)
     except ValueError:
-        shown = ", ".join(_quoted(prefix + name, text) for name, text in given.items())
+        quoted = ", ".join(_quoted(prefix + name, text) for name, text in slice_texts.items())
         legal = f"{listed(plane.key for plane in Plane)}, or two axes such as x,theta held by y=0.1"
-        problems.append(f"Ignored {shown}: choose {legal}.")
+        problems.append(f"Ignored {quoted}: choose {legal}.")
     return view, problems
 
 
@@ -241,7 +244,7 @@ def _read_compared(parameters: Mapping[str, str]) -> tuple[dict[str, Any], list[
     if not given:
         return {}, []
     if _ENERGY in given:
-        # Links of earlier versions contain both ends of an axis h: the first is used.
+        # Links of earlier versions contain both ends of an axis h. The first end is used.
         given[_ENERGY], _, _ = given[_ENERGY].partition(",")
     values, problems = read_link(given, _COMPARED)
     return {} if problems else {"compared": linked_view(values)}, problems
@@ -249,10 +252,10 @@ def _read_compared(parameters: Mapping[str, str]) -> tuple[dict[str, Any], list[
 
 def _quoted(name: str, text: str) -> str:
     # A message with "nan" would look like a result of the page.
-    return name if "nan" in text.lower() else f"{name}={_shown(text)}"
+    return name if "nan" in text.lower() else f"{name}={_safe_text(text)}"
 
 
-def _shown(text: str) -> str:
+def _safe_text(text: str) -> str:
     """Return text from a link for messages: truncated, and without markup characters."""
     safe = "".join(c if c.isascii() and (c.isalnum() or c in " .,+-") else "?" for c in text[:_LONGEST_QUOTE])
     return safe + " …" if len(text) > _LONGEST_QUOTE else safe

@@ -23,7 +23,7 @@ class Preset:
     key
         Stem of the file name of its thumbnail.
     title, caption
-        A few words, and a few sentences, on the page.
+        A few words, and a few sentences, for the page.
     group
         One of `GROUPS`.
     picture
@@ -31,7 +31,7 @@ class Preset:
     link
         The view as a link, without its question mark.
     invitation
-        Line of text with which the page offers the preset until there is an orbit; empty if it does not.
+        Line of text with which a page without orbits offers the preset; empty if it does not offer the preset.
     """
 
     key: str

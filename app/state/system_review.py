@@ -16,11 +16,11 @@ def is_known(system: System) -> bool:
 
 
 def review_job(system: System) -> Job[SystemReview]:
-    """Return the job of `review_system`, which has limits of time and memory for a typed formula."""
+    """Return the job of `review_system`. For a typed formula, the job has limits of time and memory."""
     return Job(review_system, (system,), queue=Queue.LIMITED if system.case == TYPED else Queue.LONG_CALL)
 
 
 @cache
 def review_catalogue_entry(case: str) -> SystemReview:
-    """Return the review of an entry of the catalogue, which is computed once."""
+    """Return the cached review of an entry of the catalogue."""
     return review_system(System(case))

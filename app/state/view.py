@@ -32,7 +32,7 @@ Start = tuple[float, float]
 
 
 class Analysis(StrEnum):
-    """The analysis beside the maps. Links contain the values, which therefore do not change."""
+    """The analysis beside the maps. Links contain the values, so the values must not change."""
 
     ORBIT = "orbit"
     STATISTICS = "statistics"
@@ -42,7 +42,9 @@ class Analysis(StrEnum):
 
 
 _FIRST_SYSTEM = System("I")
+# Key of a field's link parameter in its metadata.
 _LINK = "link"
+# Indices of starts by the number that the page shows.
 _PLACES = {str(place + 1): place for place in range(MOST_ORBITS)}
 
 
@@ -89,7 +91,7 @@ def _sides() -> dict[str, int]:
 
 @dataclass(frozen=True)
 class View:
-    """A view. By default it is the first view of the page. Colours do not belong to it.
+    """A view. By default it is the first view of the page. Colours do not belong to a view.
 
     Attributes
     ----------
@@ -104,7 +106,7 @@ class View:
     resolution
         Columns and rows of the map.
     window, box
-        The part of the plane in view, None for the whole interior; the part that the statistics count, None for the window.
+        The part of the plane in view (None for the whole interior), and the part that the statistics count (None for the window).
     layers
         Names of the layers that are on, as in `plots.layers.table.LAYERS`.
     settings

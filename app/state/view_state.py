@@ -37,7 +37,7 @@ from plots.pictures.time_scale import TimeScale
 WINDOW_UNKNOWN = "The window is not known before the integrator is compiled."
 """Message while the default window is not known."""
 
-# Longest first t_max of systems without evidence from tori, in natural units of time.
+# Longest initial t_max of systems without evidence from tori, in natural units of time.
 _LONGEST_FIRST = 1000.0
 
 
@@ -80,7 +80,7 @@ class _Settings(param.Parameter):
 
 
 def longest_first_t_max(potential: Potential) -> float:
-    """Return the longest first t_max of a system: it is short if all bounded orbits must be integrated until then."""
+    """Return the longest initial t_max of a system. It is short if all bounded orbits must be integrated until t_max."""
     allowed = allowed_t_max().values()
     longest = np.inf if potential.tori_are_evidence else _LONGEST_FIRST * potential.well.exact_time_unit
     return max((each for each in allowed if each <= longest), default=min(allowed))
@@ -175,7 +175,7 @@ class ViewState(param.Parameterized):
         return self.view.map_spec(self.reviewed)
 
     def find_window(self) -> Window:
-        """Return the window in view; ValueError for a default window whose kernels the event loop would have to compile."""
+        """Return the window in view; ValueError for a default window that needs kernels that are not compiled yet."""
         if self.window is None and not is_ready_for_maps(self.potential):
             raise ValueError(WINDOW_UNKNOWN)
         return self.map_spec().find_window()
@@ -220,7 +220,7 @@ class ViewState(param.Parameterized):
         values["plane"] = plane_of_system(values.get("plane", self.plane), reviewed.system)
         values["system"] = reviewed.system
         if reviewed.system == self.system:
-            # Param would call the watchers for an equal system.
+            # Param would call the watchers even for an equal system.
             del values["system"]
         self.param.update(**values)
 
@@ -230,9 +230,9 @@ class ViewState(param.Parameterized):
 
     def show_system(self, reviewed: SystemReview, energy: float | None = None) -> None:
         """Set a reviewed system at an energy, by default its initial energy, and remove window and starts."""
-        chosen = reviewed.energies.first if energy is None else energy
-        longest = self.t_max if reviewed.system.case == self.system.case else longest_first_t_max(reviewed.potential)
-        self.show(reviewed, energy=chosen, window=None, starts=(), chosen=0, t_max=min(self.t_max, longest))
+        new_energy = reviewed.energies.first if energy is None else energy
+        longest_t_max = self.t_max if reviewed.system.case == self.system.case else longest_first_t_max(reviewed.potential)
+        self.show(reviewed, energy=new_energy, window=None, starts=(), chosen=0, t_max=min(self.t_max, longest_t_max))
 
     def remove_start(self, place: int) -> None:
         """Remove the start at an index."""

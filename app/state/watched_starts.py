@@ -41,16 +41,16 @@ EXPLANATIONS = {
         "Orbits enter through the exits, as often as the flux says. The curve is the distribution of the times until they leave."
     ),
 }
-"""Explanations of the places whose names are not enough."""
+"""Explanations of the places that need more than their phrase."""
 
 
 def places_for(potential: Potential) -> dict[StartsFrom, str]:
-    """Return the places of a system, with their phrases: exits need saddles, and tubes also a frame that does not rotate."""
+    """Return the places of a system, with their phrases. Exits need saddles; tubes also need a frame that does not rotate."""
     missing = set[StartsFrom]()
     if potential.escape_radius is not None:
         missing |= {StartsFrom.EXITS, StartsFrom.TUBES}
     if potential.rotation:
-        missing |= {StartsFrom.TUBES}
+        missing.add(StartsFrom.TUBES)
     return {where: words for where, words in PLACES.items() if where not in missing}
 
 
@@ -61,7 +61,7 @@ SMALLEST_RADIUS = -9.0
 """Decimal logarithm of the smallest radius of a disc, as a share of half the window."""
 
 LARGEST_RADIUS = -1.0
-"""Decimal logarithm of the largest radius."""
+"""Decimal logarithm of the largest radius of a disc, as a share of half the window."""
 
 
 @dataclass(frozen=True)

@@ -35,7 +35,7 @@ from plots.texts.exports import curves_csv, dataset_bytes
 AGAINST_HELP = f"h, or a parameter: {', '.join(WELL_PARAMETERS)} or a letter of the formula."
 MEASURE_HELP = f"{', '.join(CURVES)}; all by default. Can be repeated."
 
-# Columns for files and JSON, not for the printed table.
+# Names of the columns that are only in files and JSON, not in the printed table.
 _ERROR_BAR = re.compile(r"_(low|high)(_|$)|_error$")
 
 
@@ -94,7 +94,7 @@ def _content(curves: Sweep, ending: str, style: FigureStyle) -> Content:
 def _print(curves: Sweep, files: Sequence[str], as_json: bool) -> None:
     columns = curves.columns()
     points = list_rows(columns)
-    shown = [name for name in columns if not _ERROR_BAR.search(name)]
-    rows = [[f"{point[name]:.4g}".replace("nan", "–") for name in shown] for point in points]
-    table = Table([name.replace("_", " ") for name in shown], rows)
+    shown_names = [name for name in columns if not _ERROR_BAR.search(name)]
+    rows = [[f"{point[name]:.4g}".replace("nan", "–") for name in shown_names] for point in points]
+    table = Table([name.replace("_", " ") for name in shown_names], rows)
     print_result(as_json, {"points": points}, table, files=files)

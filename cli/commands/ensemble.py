@@ -82,8 +82,8 @@ def run(
         Number of times in the movie or the NetCDF file, evenly spaced.
     """
     paths = name_files(output, ["csv", "nc", *MovieFormat], ["csv", MovieFormat.WEBP])
-    with_paths = paths.keys() - {"csv"}
-    if with_paths and count > MOST_PATHS:
+    needs_paths = bool(paths.keys() - {"csv"})
+    if needs_paths and count > MOST_PATHS:
         raise ValueError(f"count={count}: movies and files of paths have at most {MOST_PATHS} orbits")
     entrances, starts = _draw_starts(potential, energy, count, seed, plane, window, entering)
 
@@ -99,7 +99,7 @@ def run(
             outcomes = classify_orbits(potential, energy, starts, t_max, execution=context.start_stage("orbits"))
             context.execution.raise_if_cancelled()
             laws = fit_decay_laws(outcomes)
-            if with_paths:
+            if needs_paths:
                 times = np.linspace(0.0, outcomes.t_max, frames)
                 orbits = sample_orbits(potential, starts, times, execution=context.start_stage("paths"))
             contents = {path: content(ending) for ending, path in paths.items()}
@@ -117,7 +117,7 @@ def _draw_starts(
     window: GivenWindow | None,
     entering: bool,
 ) -> tuple[np.ndarray | None, np.ndarray]:
-    """Return the entrances, if orbits enter, and the states, (count, 4); ValueError for options that exclude each other."""
+    """Return the entrances, if orbits enter, and states of shape (count, 4); ValueError for options that exclude each other."""
     if not entering:
         return None, sample_starts(potential, energy, count, plane=plane, window=window, seed=seed)
     if plane is not None or window is not None:
@@ -127,8 +127,8 @@ def _draw_starts(
 
 def _table(starts: np.ndarray, outcomes: Outcomes) -> str:
     """Return a line for each orbit: start at full precision, fate, escape time and crossings."""
-    ends = (column.tolist() for column in (outcomes.fate, outcomes.escape_time, outcomes.crossings))
-    rows = ((*start, *end) for start, *end in zip(starts.tolist(), *ends, strict=True))
+    end_columns = (column.tolist() for column in (outcomes.fate, outcomes.escape_time, outcomes.crossings))
+    rows = ((*start, *end) for start, *end in zip(starts.tolist(), *end_columns, strict=True))
     return write_csv(("x", "y", "px", "py", "fate", "escape_time", "crossings"), rows)
 
 
@@ -141,14 +141,14 @@ def _print(
     as_json: bool,
 ) -> None:
     shares, intervals = statistics.shares, statistics.share_intervals
-    shown = {code: name_fate(code, statistics.outcomes) for code in shares if code >= Fate.BOUNDED or shares[code]}
+    names = {code: name_fate(code, statistics.outcomes) for code in shares if code >= Fate.BOUNDED or shares[code]}
     answer: dict[str, Any] = {
-        "outcomes": [{"outcome": name, "share": shares[code], "interval": intervals[code]} for code, name in shown.items()],
+        "outcomes": [{"outcome": name, "share": shares[code], "interval": intervals[code]} for code, name in names.items()],
         "mean_escape_time": statistics.mean_escape_time,
         "flux": flux.numbers(),
         "escape_laws": laws.describe(),
     }
-    rows = [(name, f"{shares[code]:.4f}", "{:.4f} … {:.4f}".format(*intervals[code])) for code, name in shown.items()]
+    rows = [(name, f"{shares[code]:.4f}", "{:.4f} … {:.4f}".format(*intervals[code])) for code, name in names.items()]
     table = Table(("outcome", "share", "95 % interval"), rows)
     mean = f"Mean time of the escapes: {statistics.mean_escape_time:.4g}."
     parts: list[Table | str] = [table]
@@ -161,7 +161,7 @@ def _print(
 def _matching_table(matching: ExitMatching) -> Table:
     """Return a table with a row for each entrance: the share of each end with its interval."""
     low, high = matching.share_intervals
-    numbers = zip(matching.shares.tolist(), low.tolist(), high.tolist(), strict=True)
-    cells = [[f"{share:.3f} ({a:.3f} … {b:.3f})" for share, a, b in zip(*row, strict=True)] for row in numbers]
+    number_rows = zip(matching.shares.tolist(), low.tolist(), high.tolist(), strict=True)
+    cells = [[f"{share:.3f} ({a:.3f} … {b:.3f})" for share, a, b in zip(*row, strict=True)] for row in number_rows]
     names = [name_fate(entrance, matching.outcomes) for entrance in matching.entrances.tolist()]
     return Table(("entered through", *matching.name_ends()), [[name, *row] for name, row in zip(names, cells, strict=True)])

@@ -50,8 +50,8 @@ def run(
 def _paths_csv(orbits: Sequence[LyapunovOrbit]) -> str:
     lines = ["channel,t,x,y"]
     for orbit in orbits:
-        last = orbit.x.size - 1
-        times = [orbit.period * k / last for k in range(last + 1)]
+        intervals = orbit.x.size - 1
+        times = [orbit.period * k / intervals for k in range(intervals + 1)]
         points = zip(times, orbit.x.tolist(), orbit.y.tolist(), strict=True)
         lines += [f"{orbit.channel},{t!r},{x!r},{y!r}" for t, x, y in points]
     return "\n".join(lines) + "\n"
@@ -70,23 +70,27 @@ def _print(
         sentence = f"No Lyapunov orbits: h = {energy:g} is not above the escape energy {escape_energy:.12g}."
         print_result(as_json, answer | {"orbits": []}, sentence, files=files)
         return
-    through = [None] * len(orbits) if flux is None else flux.flux.tolist()
-    found = [
-        {"channel": orbit.channel, "name": orbit.name, "period": orbit.period, "flux": share, "ends": _ends(orbit)}
-        for orbit, share in zip(orbits, through, strict=True)
+    exit_fluxes = [None] * len(orbits) if flux is None else flux.flux.tolist()
+    descriptions = [
+        {"channel": orbit.channel, "name": orbit.name, "period": orbit.period, "flux": exit_flux, "ends": _ends(orbit)}
+        for orbit, exit_flux in zip(orbits, exit_fluxes, strict=True)
     ]
     rows = [
         (
-            *(orbit.name, f"{orbit.period:.12g}", "" if share is None else f"{share:.9g}"),
+            *(orbit.name, f"{orbit.period:.12g}", "" if exit_flux is None else f"{exit_flux:.9g}"),
             *(f"({x:.12f}, {y:.12f})" for x, y in _ends(orbit)),
         )
-        for orbit, share in zip(orbits, through, strict=True)
+        for orbit, exit_flux in zip(orbits, exit_fluxes, strict=True)
     ]
-    # In a rotating frame orbits have no turning points: the start and the point half a period later are printed instead.
-    point = ("turning point (x, y)",) * 2 if flux is not None else ("point (x, y)", "half a period later")
-    table = Table(("channel", "period", "flux", *point), rows)
-    of_all = ({}, []) if flux is None else (flux.numbers(), [flux.describe()])
-    print_result(as_json, answer | {"orbits": found} | of_all[0], table, *of_all[1], files=files)
+    # In a rotating frame, orbits have no turning points: the start and the point half a period later are printed instead.
+    point_names = ("turning point (x, y)",) * 2 if flux is not None else ("point (x, y)", "half a period later")
+    table = Table(("channel", "period", "flux", *point_names), rows)
+    answer["orbits"] = descriptions
+    sentences: list[str] = []
+    if flux is not None:
+        answer |= flux.numbers()
+        sentences.append(flux.describe())
+    print_result(as_json, answer, table, *sentences, files=files)
 
 
 def _ends(orbit: LyapunovOrbit) -> list[list[float]]:

@@ -63,7 +63,7 @@ DEFAULT_FORMATS: Sequence[str] = (Format.NC, Format.PNG)
 
 @dataclass(frozen=True)
 class Drawing:
-    """Pictures to draw, their palette and style."""
+    """Pictures to draw, with their palette and style."""
 
     pictures: tuple[str, ...]
     palette: Palette
@@ -103,18 +103,19 @@ def run(
     wanted.check(spec)
     pictures = dict.fromkeys(picture or [*FIRST_PICTURES, *wanted.pictures])
     drawing = Drawing(tuple(pictures), palette, style)
-    stem, endings = Path(file_stem(spec, file_name_part(case))), DEFAULT_FORMATS
+    stem = Path(file_stem(spec, file_name_part(case)))
+    endings = DEFAULT_FORMATS
     if output is not None:
         stem, endings = split_ending(output, list(Format), DEFAULT_FORMATS)
     with reserve_output(stem):
         with place.run() as context:
-            frame, found = compute_map_with_layers(spec, wanted, context)
-        # The cluster is closed before, because with a Dask client xarray uses locks that in-memory files do not support.
+            frame, analyses = compute_map_with_layers(spec, wanted, context)
+        # The cluster is closed now: with a Dask client, xarray would use locks that in-memory files do not support.
         with Place().run() as context:
             context.start_stage("writing")
-            contents = _contents(stem, formats or endings, frame, found, drawing)
+            contents = _contents(stem, formats or endings, frame, analyses, drawing)
         files = write_files(contents)
-    _print(frame, found, files, count_outside, as_json)
+    _print(frame, analyses, files, count_outside, as_json)
 
 
 def _contents(

@@ -45,9 +45,10 @@ def run(
     names = _choose(measure, exponent)
     with place.run() as context:
         frame = compute_whole_map(spec, context, "map")
-        found = {name: measure_map(frame, name, execution=context.start_stage(DESCRIBED[name].title.lower())) for name in names}
-    sentences = {name: _tell(name, result) for name, result in found.items()}
-    answer = {name: {"sentence": sentences[name], **_numbers(result)} for name, result in found.items()}
+        stages = {name: DESCRIBED[name].title.lower() for name in names}
+        results = {name: measure_map(frame, name, execution=context.start_stage(stages[name])) for name in names}
+    sentences = {name: _describe(name, result) for name, result in results.items()}
+    answer = {name: {"sentence": sentences[name], **_numbers(result)} for name, result in results.items()}
     print_result(as_json, {"request": frame.provenance(), **answer}, *sentences.values())
 
 
@@ -57,7 +58,7 @@ def _choose(chosen: Sequence[str] | None, slow: bool) -> list[str]:
     return [name for name in names if slow or not DESCRIBED[name].slow]
 
 
-def _tell(name: str, result: Any) -> str:
+def _describe(name: str, result: Any) -> str:
     sentence = DESCRIBED[name].sentence
     return f"{DESCRIBED[name].title}: not defined for this map." if result is None or sentence is None else sentence(result)
 
@@ -68,7 +69,7 @@ def _numbers(result: Result | None) -> dict[str, Any]:
 
 
 def _plain(value: Any) -> Any:
-    """Replace results by their shown fields, also inside other results."""
+    """Replace a result by its shown fields, and results in these fields as well."""
     if not is_dataclass(value) or isinstance(value, type):
         return value
     return {field.name: _plain(getattr(value, field.name)) for field in fields(value) if field.repr}

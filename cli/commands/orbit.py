@@ -62,21 +62,22 @@ def run(
     state
         Full initial state, instead of --start and --energy.
     """
-    whole = _find_start(potential, plane, energy, start, state)
+    initial_state = _find_start(potential, plane, energy, start, state)
     paths = name_files(output, ["csv", *FigureFormat], ["csv", FigureFormat.PNG])
 
     def content(ending: str) -> Content:
         if ending == "csv":
             return orbits_csv([orbit], most_rows, [verdict])
-        curves, format = [compute_orbit_curves(potential, orbit)], FigureFormat(ending)
-        return orbits_figure_bytes(potential, curves, palette, [verdict.describe()], format, style)
+        curves = [compute_orbit_curves(potential, orbit)]
+        return orbits_figure_bytes(potential, curves, palette, [verdict.describe()], FigureFormat(ending), style)
 
     with reserve_output(output):
         with Place().run() as context:
             context.start_stage("orbit")
-            orbit = integrate_orbit(potential, whole, t_max, execution=context.execution)
-            bounded = orbit.fate == Fate.BOUNDED
-            digits = compute_birkhoff_digits(potential, whole, t_max, execution=context.execution) if bounded else None
+            orbit = integrate_orbit(potential, initial_state, t_max, execution=context.execution)
+            digits = None
+            if orbit.fate == Fate.BOUNDED:
+                digits = compute_birkhoff_digits(potential, initial_state, t_max, execution=context.execution)
         verdict = judge_orbit(orbit, digits)
         files = write_files({path: content(ending) for ending, path in paths.items()})
     _print(orbit, verdict, evaluate_indicators(orbit, digits), files, as_json)
@@ -99,11 +100,12 @@ def _find_start(
     if plane.energy_axis is None and energy is None:
         raise ValueError(f"energy: a start on the plane {plane.key} needs --energy H")
     x, ordinate = np.array(start)[:, None]
-    found = plane.states(potential, energy, x, ordinate)[0]
-    if np.isnan(found).any():
+    found_state = plane.states(potential, energy, x, ordinate)[0]
+    if np.isnan(found_state).any():
         raise ValueError(f"start={start}: forbidden, an orbit there would have negative kinetic energy")
-    first, second, third, fourth = found.tolist()
-    return first, second, third, fourth
+    # mypy does not know the length of a list.
+    x_start, y_start, px_start, py_start = found_state.tolist()
+    return x_start, y_start, px_start, py_start
 
 
 def _print(

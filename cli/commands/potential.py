@@ -45,22 +45,22 @@ def _print_catalogue(as_json: bool) -> None:
     print_result(as_json, answer, Table(("name", "V(x, y)", "escape energy"), rows))
 
 
-def _print(found: PotentialReview, as_json: bool) -> None:
+def _print(review: PotentialReview, as_json: bool) -> None:
     points: list[dict[str, Any]] = [
         {"kind": point.kind.value, "x": point.x, "y": point.y, "energy": point.energy, "channel": point.channel}
-        for point in found.critical_points
+        for point in review.critical_points
     ]
     rows = [
         (point.kind.value, f"({point.x:.9g}, {point.y:.9g})", f"{point.energy:.9g}", str(point.channel or ""))
-        for point in found.critical_points
+        for point in review.critical_points
     ]
     answer = {
-        "formula": found.formula,
-        "escape_energy": found.escape_energy,
-        "channels": found.channels,
-        "highest_energy": found.highest_energy,
+        "formula": review.formula,
+        "escape_energy": review.escape_energy,
+        "channels": review.channels,
+        "highest_energy": review.highest_energy,
         "critical_points": points,
-        "remarks": list(found.remarks),
+        "remarks": list(review.remarks),
     }
-    sentence = f"V = {found.formula}: {found.channels} exits above h = {found.escape_energy:.12g}."
-    print_result(as_json, answer, sentence, Table(("critical point", "(x, y)", "V", "channel"), rows), *found.remarks)
+    sentence = f"V = {review.formula}: {review.channels} exits above h = {review.escape_energy:.12g}."
+    print_result(as_json, answer, sentence, Table(("critical point", "(x, y)", "V", "channel"), rows), *review.remarks)

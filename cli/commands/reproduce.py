@@ -56,33 +56,35 @@ def run(
         captions = {name: members.CAPTIONS[name] for name in chosen}
         print_result(as_json, {"figures": captions}, Table(("name", "shows"), list(captions.items())))
         return
-    wanted = quality.QUICK if quick else quality.FULL
+    map_quality = quality.QUICK if quick else quality.FULL
     _make_folder(output)
-    began, made = time.perf_counter(), list[dict[str, Any]]()
+    begin = time.perf_counter()
+    made_figures: list[dict[str, Any]] = []
     try:
         with reserve_output(output), place.run() as context:
-            cache = MapCache(wanted, context.execution)
+            cache = MapCache(map_quality, context.execution)
             for name in chosen:
                 context.start_stage(name)
-                made.append(_make(name, cache, output))
+                made_figures.append(_make(name, cache, output))
     except CancelledError:
-        raise CancelledError(f"stopped; {len(made)} of {len(chosen)} are made and stay in {output}") from None
-    seconds, side = time.perf_counter() - began, wanted.resolution
-    rows = [(one["name"], f"{one['seconds']:.1f} s", ", ".join(Path(file).name for file in one["files"])) for one in made]
-    sentence = f"Written to {output} in {seconds:.0f} s, {wanted.name} quality: {side} x {side} starts a map."
-    answer = {"quality": wanted.name, "seconds": seconds, "figures": made}
+        raise CancelledError(f"stopped; {len(made_figures)} of {len(chosen)} are made and stay in {output}") from None
+    seconds = time.perf_counter() - begin
+    side = map_quality.resolution
+    rows = [(one["name"], f"{one['seconds']:.1f} s", ", ".join(Path(file).name for file in one["files"])) for one in made_figures]
+    sentence = f"Written to {output} in {seconds:.0f} s, {map_quality.name} quality: {side} x {side} starts a map."
+    answer = {"quality": map_quality.name, "seconds": seconds, "figures": made_figures}
     print_result(as_json, answer, Table(("made", "in", "files"), rows), sentence)
 
 
 def _make_folder(folder: Path) -> None:
-    """Create the output folder; ValueError if that is not possible."""
+    """Create the output folder unless it exists; ValueError if it cannot be created."""
     if not folder.absolute().parent.is_dir() or (folder.exists() and not folder.is_dir()):
         raise ValueError(f"output='{folder}': must be a folder, or a new folder inside an existing one")
     folder.mkdir(exist_ok=True)
 
 
 def _make(name: str, cache: MapCache, folder: Path) -> dict[str, Any]:
-    """Make and write one figure; return its name, files and seconds."""
-    began = time.perf_counter()
+    """Make and write a figure. Return its name, its files, and the duration in seconds."""
+    begin = time.perf_counter()
     files = write_files({folder / file: content for file, content in members.make_files(name, cache).items()})
-    return {"name": name, "files": files, "seconds": time.perf_counter() - began}
+    return {"name": name, "files": files, "seconds": time.perf_counter() - begin}

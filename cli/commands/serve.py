@@ -32,7 +32,7 @@ def run(
 ) -> None:
     """Run the program that serves the installed page."""
     if importlib.util.find_spec("panel") is None:
-        # The engine is slow to import.
+        # Imported here, because the engine is slow to import.
         from engine.foundations.extras import require_package
 
         require_package("panel", "page")
@@ -47,7 +47,7 @@ def run(
 def serve_arguments(port: int, address: str, origins: list[str], show: bool) -> list[str]:
     """Return the command that starts the server.
 
-    Option -P keeps a folder named app in the working directory from being imported.
+    With the option -P, Python does not import a folder named app in the working directory.
     """
     command = [sys.executable, "-P", "-m", app_package(), "--port", str(port), "--address", address]
     command += [f"--allow-websocket-origin={origin}" for origin in origins]
@@ -62,7 +62,7 @@ def server_environment() -> dict[str, str]:
 
 
 def app_package() -> str:
-    """Return the name of the installed package of the page; the package is a program of its own and is not imported here."""
+    """Return the name of the installed package of the page. The package is a program of its own, so it is not imported."""
     spec = importlib.util.find_spec("app")
     if spec is None:
         raise RuntimeError("the package app is not installed beside the command line")

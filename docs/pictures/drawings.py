@@ -52,8 +52,8 @@ from plots.printed.figure_axes import (
     add_panel_legend,
     label_axes,
     legend_handles,
-    name_panel,
     save_figure,
+    set_title,
     style_axes,
 )
 from plots.printed.figure_style import FigureFormat
@@ -103,7 +103,7 @@ def sali() -> Figure:
     draw_quantity(right, quantity, [compute_orbit_curves(case, orbit) for orbit in orbits], PAPER)
     draw_limits(left, case, SECTION, energy, window)
     show_window(left, window, "x", "px")
-    name_panel(left, "Two orbits where they cross y = 0 upward")
+    set_title(left, "Two orbits where they cross y = 0 upward")
     return figure
 
 
@@ -113,7 +113,7 @@ def trust() -> Figure:
     frame = compute_map(MapSpec(CASE, Plane.X_PX, ENERGY, (200, 200), t_max=1e4))
     first, second = start_states(CASE, Plane.X_PX, ENERGY, np.array([-0.3, -0.3 + 1e-11]), np.zeros(2))
     compute_separation(CASE, first, second, 200.0).plot(growth)
-    name_panel(growth, "Distance of two orbits")
+    set_title(growth, "Distance of two orbits")
     draw_picture(basins, frame, "basins", PAPER)
     compute_trust(frame).plot(pixels)
     return figure
@@ -132,7 +132,7 @@ def basin_entropy() -> Figure:
         axes.hlines(np.arange(13) / 12.0, 0.0, 1.0, color=LIGHT.halo, linewidth=0.4)
         axes.vlines(np.arange(13) / 12.0, 0.0, 1.0, color=LIGHT.halo, linewidth=0.4)
     show_window(right, frame.spec.find_window(), "x", "px")
-    name_panel(right, "Entropies of the boxes")
+    set_title(right, "Entropies of the boxes")
     return figure
 
 
@@ -142,7 +142,7 @@ def wada() -> Figure:
     frame = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.25, (SIDE, SIDE), t_max=1e4))
     draw_picture(left, frame, "basins", PAPER)
     compute_wada_test(frame).plot(right)
-    name_panel(right, "Share of the boundary that is close to all basins")
+    set_title(right, "Share of the boundary that is close to all basins")
     return figure
 
 
@@ -152,7 +152,7 @@ def uncertainty_exponent() -> Figure:
     for axes, energy in zip(panels, (0.2, 0.3), strict=True):
         found = compute_uncertainty_exponent(MapSpec(CASES["II"], Plane.X_PX, energy), work=3e7)
         found.plot(axes)
-        name_panel(axes, f"h = {energy}: α = {found.exponent:.2f}")
+        set_title(axes, f"h = {energy}: α = {found.exponent:.2f}")
     return figure
 
 
@@ -170,7 +170,7 @@ def slices() -> Figure:
     stronger = MapSpec(CASE, Slice(Coordinate.X, ParameterAxis("epsilon", 0.5, 2.0, System("I"))), 0.2, (SIDE, SIDE), t_max=1e3)
     for axes, spec in zip(panels, (throws, stronger), strict=True):
         draw_picture(axes, compute_map(spec), "basins", PAPER)
-        name_panel(axes, f"Basins on {spec.plane.title}")
+        set_title(axes, f"Basins on {spec.plane.title}")
     return figure
 
 
@@ -210,12 +210,12 @@ def evidence() -> Figure:
     frame = compute_map(MapSpec(case, Plane.X_PX, energy, (SIDE, SIDE), t_max=1e4))
     window = frame.spec.find_window()
     draw_pixels(left, rgba(list(_EVIDENCE_COLOURS.values()))[frame.evidence][::-1], window, window)
-    name_panel(left, "Why an orbit is called bounded")
+    set_title(left, "Why an orbit is called bounded")
     starts = start_states(case, SECTION, energy, np.array([0.3, 0.6]), np.zeros(2))
     for start, colour in zip(starts, PAPER.orbits, strict=False):
         orbit = integrate_orbit(case, start, 1e4)
         mark_section(right, orbit, window, colour)
-    name_panel(right, "Two orbits on the section y = 0")
+    set_title(right, "Two orbits on the section y = 0")
     for axes in (left, right):
         draw_limits(axes, case, SECTION, energy, window)
         show_window(axes, window, "x", "px")

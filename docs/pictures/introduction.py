@@ -28,7 +28,7 @@ from plots.pictures.palette import PAPER
 from plots.printed.figure_axes import (
     add_figure_legend,
     legend_handles,
-    name_panel,
+    set_title,
 )
 from plots.printed.map_figure import draw_map_figure, draw_picture
 from plots.printed.orbit_figure import draw_path
@@ -42,7 +42,7 @@ def well() -> Figure:
     CASE.plot(left)
     starts = start_states(CASE, Plane.X_Y, ENERGY, np.array([-0.2, -0.1]), np.array([-0.2, -0.1]))
     draw_path(right, CASE, [compute_orbit_curves(CASE, integrate_orbit(CASE, start, 300.0)) for start in starts], PAPER)
-    name_panel(right, f"Two orbits at h = {ENERGY}")
+    set_title(right, f"Two orbits at h = {ENERGY}")
     return figure
 
 
@@ -67,7 +67,7 @@ def blob() -> Figure:
         colours = [PAPER.channels[orbit.fate - 1] if orbit.fate > 0 else PAPER.bounded for orbit in inside]
         axes.scatter(*window_shares(places, window), s=1.5, c=colours, zorder=3, linewidths=0.0)
         show_window(axes, window, "x", "y", equal=True)
-        name_panel(axes, f"t = {t:g}")
+        set_title(axes, f"t = {t:g}")
     return figure
 
 
@@ -80,7 +80,7 @@ def tubes() -> Figure:
         draw_limits(axes, CASE, SECTION, ENERGY, window)
         draw_strokes(axes, manifold_strokes(select_image(manifolds, image)), window, PAPER)
         show_window(axes, window, "x", "px")
-        name_panel(axes, f"Image {image} of the tubes")
+        set_title(axes, f"Image {image} of the tubes")
     draw_picture(panels[2], compute_map(MapSpec(CASE, SECTION, ENERGY, (SIDE, SIDE), t_max=1e4)), "basins", PAPER)
     return figure
 
@@ -91,7 +91,7 @@ def energies() -> Figure:
     for axes, energy in zip(panels, (0.13, 0.19, 0.4), strict=True):
         frame = compute_map(MapSpec(CASE, Plane.X_PX, energy, (SIDE, SIDE), t_max=1e4))
         draw_picture(axes, frame, "basins", PAPER)
-        name_panel(axes, f"h = {energy}: {100.0 * frame.fractions()[Fate.BOUNDED]:.1f} % bounded")
+        set_title(axes, f"h = {energy}: {100.0 * frame.fractions()[Fate.BOUNDED]:.1f} % bounded")
     add_figure_legend(figure, legend_handles([*PAPER.end_entries(CASES["I"].outcomes), PAPER.outcomes[Fate.BOUNDED]]))
     return figure
 
@@ -105,8 +105,8 @@ def exits() -> Figure:
             draw_curve(axes, [np.column_stack([orbit.x, orbit.y])], window, colors=colour, linewidths=1.4)
         draw_limits(axes, CASE, SPACE, ENERGY, window, PAPER.channels)
         show_window(axes, window, "x", "y", equal=True)
-    name_panel(left, "Three orbits from almost the same start")
-    name_panel(right, "At the Lyapunov orbit")
+    set_title(left, "Three orbits from almost the same start")
+    set_title(right, "At the Lyapunov orbit")
     return figure
 
 

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from docs.pictures.panels import new_panels
 from engine import Fate, compute_map
 from plots.pictures.palette import PAPER
-from plots.printed.figure_axes import add_figure_legend, legend_handles, name_panel
+from plots.printed.figure_axes import add_figure_legend, legend_handles, set_title
 from plots.printed.map_figure import draw_picture
 from reproduction.rotating.paper_maps import PAPER_MAPS, PaperMap
 
@@ -47,7 +47,7 @@ def _draw(paper_maps: tuple[PaperMap, ...], renamed: Mapping[str, str] = Mapping
     frames = [compute_map(replace(paper_map.spec, resolution=(_SIDE, _SIDE))) for paper_map in paper_maps]
     for axes, frame, paper_map in zip(panels, frames, paper_maps, strict=True):
         draw_picture(axes, frame, "basins", PAPER)
-        name_panel(axes, paper_map.name)
+        set_title(axes, paper_map.name)
     ends = np.unique([frame.fate for frame in frames])
     entries = [PAPER.entry(int(fate), paper_maps[0].spec.outcomes) for fate in ends if fate >= Fate.BOUNDED]
     for old, new in renamed.items():

@@ -1,15 +1,15 @@
 """Detection of quasi-periodic orbits by weighted Birkhoff averages.
 
 Along a quasi-periodic orbit, the average of a smooth observable, weighted by a window function that vanishes smoothly at both
-ends, converges fast with the window length T; along a chaotic orbit it converges no faster than 1/√T. The averages over two
-consecutive windows therefore agree to many digits on an invariant torus and to few digits otherwise (Das, Saiki, Sander & Yorke
-2017, Nonlinearity 30, 4111; Duignan & Meiss 2023, Physica D 449, 133749). On a weakly chaotic orbit two averages can agree by
-chance, so a third average, over a window that overlaps half of each of the two, must also agree. The observables are x² and y²,
-sampled at a fixed time step.
+ends, converges fast with the window length T. Along a chaotic orbit, the average converges no faster than 1/√T. The averages over
+two consecutive windows therefore agree to many digits on an invariant torus and to few digits otherwise (Das, Saiki, Sander &
+Yorke 2017, Nonlinearity 30, 4111; Duignan & Meiss 2023, Physica D 449, 133749). On a weakly chaotic orbit two averages can agree
+by chance. A third average, over a window that overlaps half of each of the two, must therefore also agree. The observables are x²
+and y², sampled at a fixed time step.
 
-The weight exp(−1/(s(1 − s))), s = t/T, of these papers converges faster than any power of T. Eight digits are enough here, and
-the Kaiser window (Kaiser & Schafer 1980, IEEE Trans. ASSP 28, 105) reaches them for motion that completes 7 or more revolutions
-within T, whereas the weight of these papers needs 30 revolutions.
+The weight exp(−1/(s(1 − s))), s = t/T, of these papers converges faster than any power of T. Here, eight digits are enough. With
+the Kaiser window (Kaiser & Schafer 1980, IEEE Trans. ASSP 28, 105), averages reach eight digits for motion that completes 7 or
+more revolutions within T, whereas the weight of these papers requires 30 revolutions.
 """
 
 from __future__ import annotations
@@ -28,18 +28,19 @@ WINDOWS = (1000.0, 4000.0, 16000.0, 64000.0)
 """Window lengths T to try in turn, dimensionless; the first window suffices for most tori."""
 
 TORUS_DIGITS = 8.0
-"""An orbit whose averages agree to this many digits or more counts as quasi-periodic.
+"""Smallest number of agreeing digits with which an orbit counts as quasi-periodic.
 
 Of 1975 orbits on five maps that escape after t = 1000, none exceeded 6.1 digits.
 """
 
 REGULAR_DIGITS = 7.0
-"""An orbit is regular if averages over its halves agree to this many digits or more, see `benchmarks.verdicts`."""
+"""Smallest number of agreeing digits of averages over its halves with which an orbit is regular, see `benchmarks.verdicts`."""
 
 # Shape parameter β of the Kaiser window. A larger β gives smaller weights at the ends but needs a longer window.
 _KAISER_SHAPE = 20.0
 # Largest change of the energy of an orbit whose averages count, in units of the well.
 _ENERGY_TOLERANCE = 1e-9
+# Largest number of digits, which stands for equal averages.
 _MOST_DIGITS = 16.0
 
 
@@ -65,8 +66,9 @@ def count_agreeing_digits(
 
     Returns
     -------
-    −log10 of the largest relative difference of the averages, from 0 to 16, of shape (n,); 0 for an orbit that escapes or whose
-    energy is not conserved. An orbit with `TORUS_DIGITS` or more counts as quasi-periodic.
+    −log10 of the largest relative difference of the averages, from 0 to 16, of shape (n,). It is 0 for an orbit that escapes,
+    whose energy is not conserved, or along which one observable is always 0. An orbit with `TORUS_DIGITS` or more counts as
+    quasi-periodic.
     """
     return compare_averages(potential, states, window, execution=execution)[:, 1]
 
@@ -78,7 +80,7 @@ def compare_averages(
     *,
     execution: Execution = DEFAULT_EXECUTION,
 ) -> np.ndarray:
-    """Return, of shape (n, 2), the digits to which the averages over two consecutive windows agree, and all three averages.
+    """Return the digits to which the first two averages of each orbit agree, and those to which all three agree, (n, 2).
 
     The parameters are those of `count_agreeing_digits`.
     """
@@ -98,28 +100,35 @@ def compare_halves(x: np.ndarray, y: np.ndarray) -> float:
     Digits from 0 to 16, as `count_agreeing_digits` with windows half as long as the orbit; 0 for an orbit along an axis.
     """
     half = len(x) // 2
-    squares, weights = np.array([x * x, y * y]), window_weights(float(half), 1.0)
+    squares = np.array([x * x, y * y])
+    weights = window_weights(float(half), 1.0)
     averages = np.array([squares[:, start : start + half] @ weights for start in (0, half, half // 2)])
     return float(_digits(averages[:, :, None])[1, 0])
 
 
 def _agreeing_digits(potential: Potential, tile: np.ndarray, window: float) -> np.ndarray:
     """Return the digits of the orbits in a tile (4, lanes), of shape (lanes, 2)."""
-    energy, step = potential.energy(tile.T), fixed_step_size(potential)
+    initial_energy = potential.energy(tile.T)
+    step = fixed_step_size(potential)
     averages = np.zeros((3, 2, tile.shape[1]))
+    # The kernel changes the states of the tile, and adds to the averages.
     kernels_of(potential).birkhoff_averages(step, window_weights(window, step), tile, averages)
     with np.errstate(all="ignore"):
-        conserved = np.abs(potential.energy(tile.T) - energy) <= _ENERGY_TOLERANCE
-    return np.where(conserved, _digits(averages), 0.0).T
+        is_conserved = np.abs(potential.energy(tile.T) - initial_energy) <= _ENERGY_TOLERANCE
+    return np.where(is_conserved, _digits(averages), 0.0).T
 
 
 def _digits(averages: np.ndarray) -> np.ndarray:
-    """Return the digits to which the first two, and all three, averages (3, 2, n) of two observables agree, of shape (2, n)."""
+    """Return the digits to which the first two of three averages agree, and those to which all three agree, of shape (2, n).
+
+    `averages`, (3, 2, n), are those of two observables; the observable with fewer digits decides.
+    """
     with np.errstate(all="ignore"):
         difference = np.array([np.ptp(averages[:count], axis=0) / np.abs(averages).max(axis=0) for count in (2, 3)])
         digits = -np.log10(np.maximum(difference.max(axis=1), 10.0**-_MOST_DIGITS))
-    agreeing: np.ndarray = np.where(np.isfinite(digits), np.maximum(digits, 0.0), 0.0)
-    return agreeing
+    # NaN, for an observable that is always 0, becomes 0 digits.
+    agreeing_digits: np.ndarray = np.where(np.isfinite(digits), np.maximum(digits, 0.0), 0.0)
+    return agreeing_digits
 
 
 @functools.lru_cache(maxsize=16)

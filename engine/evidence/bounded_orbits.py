@@ -20,58 +20,58 @@ from engine.propagation.fixed_step_batches import run_tiles
 from engine.propagation.section_points import find_section_points, trace_section_points
 from engine.systems.potential import Potential
 
-# An orbit is tested with the next window if its averages over the previous window agreed to at least this many digits.
+# Number of digits to which averages must agree for a test of the orbit with the next window.
 _PROMISING_DIGITS = 3.5
-# A window that takes longer than the time left is used for the few most promising orbits alone, because their curves can enclose
-# other orbits, and only if the test costs less than this share of the work left.
+# Largest cost of a test with a window that takes longer than the time left, as a share of the work left. Such a window is used
+# for the few most promising orbits alone, because their curves can enclose other orbits.
 _MAX_WORK_SHARE = 0.15
 # Largest number of these orbits in a round.
 _MAX_SEEDS = 2 * LANES
 # Distances in pixels between the orbits of successive rounds.
 _LATTICE_STRIDES = (16, 8, 4, 2, 1)
-# A coarse lattice with fewer candidates is skipped, because a round with few orbits does not keep all workers busy.
+# Smallest number of candidates on a coarse lattice; a round with fewer orbits would not keep all workers busy.
 _SMALLEST_ROUND = 16
-# Section points per orbit for an invariant curve.
+# Number of section points of an orbit for an invariant curve.
 _CURVE_POINTS = 800
-# Time to collect these points, dimensionless.
+# Time to collect these points, in units of the well.
 _CURVE_TIME = 8000.0
-# Orbits per round for which an invariant curve is computed.
+# Largest number of orbits of a round for which an invariant curve is computed.
 _MAX_CURVES_PER_ROUND = 192
-# Time to find the first section point of an orbit, dimensionless.
+# Time to find the first section point of an orbit, in units of the well.
 _FIRST_POINT_TIME = 30.0
-# With at most this many points, sharing barriers among workers takes longer than applying them.
+# Largest number of points to which one worker applies barriers faster than several workers, which have to share them.
 _FEW_POINTS = 2000
 
 
 class BoundedOrbitSearch:
-    """Looks for evidence that undecided orbits of one map are bounded. They have one energy or, with an axis h, several.
+    """Looks for evidence that undecided orbits of one map are bounded.
 
     Parameters
     ----------
     potential
-        The `Potential`.
+        The `Potential` in units of its well.
     energy
-        The energy of all orbits; None if the energies differ, in which case the invariant curves of one orbit do not bound
-        another.
+        The energy of all orbits; None if the energies differ, as with an axis h. The invariant curves of an orbit do not bound
+        orbits of other energies.
     states
         (n, 4) current states x, y, px, py, finite.
     grid_indices
         (n, 2) row and column of each orbit's pixel.
     time_left
-        Time until the next test, or until t_max, dimensionless: the integration that evidence saves.
+        Time until the next test, or until t_max, dimensionless: the integration time that evidence saves.
     execution
         How the computation runs.
     tested_for
-        `time_left` of an earlier test of the same orbits, whose windows are not used again; 0 if there was no earlier test.
+        `time_left` of an earlier test of the same orbits, because its windows are not used again; 0 without an earlier test.
     digits
-        (n,) digits found by the earlier test; None if there was no earlier test.
+        (n,) digits from the earlier test; None without an earlier test.
 
     Attributes
     ----------
     evidence
         (n,) int8 `Evidence` codes found so far.
     digits
-        (n,) digits to which the averages over two windows agree, for the longest windows tested; infinite before the first test.
+        (n,) digits to which the averages over the two longest windows of the tests agree; infinite before the first test.
     """
 
     def __init__(
@@ -100,84 +100,86 @@ class BoundedOrbitSearch:
     def run(self, on_round: Callable[[], None]) -> bool:
         """Find evidence for as many orbits as possible; `on_round` is called after each round of tests.
 
-        Returns whether the test was completed; False if it was cancelled.
+        Returns whether the search was completed; False if it was cancelled.
         """
         for window, tested in self._rounds():
             if self._execution.is_cancelled:
                 return False
-            two, three = compare_averages(self.potential, self.states[tested], window, execution=self._execution).T
-            self.digits[tested] = two
-            self.evidence[tested[three >= TORUS_DIGITS]] = Evidence.QUASI_PERIODIC
+            digits_of_two, digits_of_three = compare_averages(
+                self.potential, self.states[tested], window, execution=self._execution
+            ).T
+            self.digits[tested] = digits_of_two
+            self.evidence[tested[digits_of_three >= TORUS_DIGITS]] = Evidence.QUASI_PERIODIC
             if self._use_curves:
                 # Two averages suffice here, because the invariant curve is itself evidence of a torus.
-                self._find_enclosed(tested[two >= TORUS_DIGITS])
+                self._find_enclosed(tested[digits_of_two >= TORUS_DIGITS])
             on_round()
         return not self._execution.is_cancelled
 
     def _rounds(self) -> Iterator[tuple[float, np.ndarray]]:
         """Yield (window, orbits) for each round; orbits for which a round finds evidence are left out of the next round."""
         for window in WINDOWS:
-            promising = self.digits >= _PROMISING_DIGITS
+            is_promising = self.digits >= _PROMISING_DIGITS
             duration = 2.0 * window
             if self._tested_for < duration <= self._time_left:
-                yield from ((window, tested) for tested in self._lattices(promising))
+                yield from ((window, tested) for tested in self._lattices(is_promising))
             elif duration > self._time_left and self._use_curves:
-                yield from ((window, tested) for tested in self._most_promising(promising, duration))
+                yield from ((window, tested) for tested in self._most_promising(is_promising, duration))
 
-    def _lattices(self, candidates: np.ndarray) -> Iterator[np.ndarray]:
+    def _lattices(self, is_candidate: np.ndarray) -> Iterator[np.ndarray]:
         """Yield groups of candidates, a coarse lattice first, because the curves of a few orbits can enclose many others."""
         for stride in _LATTICE_STRIDES:
             on_lattice = np.all(self.grid_indices % stride == stride // 2, axis=1)
-            tested = np.flatnonzero(self._without_evidence() & candidates & on_lattice)
-            if tested.size >= _SMALLEST_ROUND or (stride == _LATTICE_STRIDES[-1] and tested.size):
-                yield tested
+            group = np.flatnonzero(self._without_evidence() & is_candidate & on_lattice)
+            if group.size >= _SMALLEST_ROUND or (stride == _LATTICE_STRIDES[-1] and group.size):
+                yield group
 
-    def _most_promising(self, candidates: np.ndarray, duration: float) -> Iterator[np.ndarray]:
+    def _most_promising(self, is_candidate: np.ndarray, duration: float) -> Iterator[np.ndarray]:
         """Yield small groups of the candidates with the most digits, until a group costs more than it saves."""
-        candidates = candidates.copy()
+        is_candidate = is_candidate.copy()
         while True:
-            before = np.count_nonzero(self._without_evidence())
-            affordable = int(_MAX_WORK_SHARE * before * self._time_left / duration) // LANES * LANES
-            remaining = np.flatnonzero(self._without_evidence() & candidates)
-            best_first = remaining[np.argsort(-self.digits[remaining], kind="stable")]
-            tested = best_first[: min(affordable, _MAX_SEEDS)]
-            if not tested.size:
+            count_before = np.count_nonzero(self._without_evidence())
+            most_affordable = int(_MAX_WORK_SHARE * count_before * self._time_left / duration) // LANES * LANES
+            candidates = np.flatnonzero(self._without_evidence() & is_candidate)
+            best_first = candidates[np.argsort(-self.digits[candidates], kind="stable")]
+            group = best_first[: min(most_affordable, _MAX_SEEDS)]
+            if not group.size:
                 return
-            candidates[tested] = False
-            yield tested
-            saved = before - np.count_nonzero(self._without_evidence())
-            if saved * self._time_left < tested.size * duration:
+            is_candidate[group] = False
+            yield group
+            # The caller has tested the group.
+            saved_count = count_before - np.count_nonzero(self._without_evidence())
+            if saved_count * self._time_left < group.size * duration:
                 return
 
     def _without_evidence(self) -> np.ndarray:
-        """Return whether each orbit is without evidence, of shape (n,)."""
+        """Return whether there is no evidence yet for each orbit, of shape (n,)."""
         without_evidence: np.ndarray = self.evidence == Evidence.NONE
         return without_evidence
 
     def _find_enclosed(self, regular: np.ndarray) -> None:
-        """Mark orbits enclosed by the invariant curves of some of the given orbits."""
-        regular = regular[self._on_section[regular]]
-        step = max(1, math.ceil(regular.size / _MAX_CURVES_PER_ROUND))
-        regular = regular[::step]
+        """Mark all orbits that the invariant curves of some of the `regular` orbits enclose."""
+        on_section = regular[self._on_section[regular]]
+        seeds = on_section[:: max(1, math.ceil(on_section.size / _MAX_CURVES_PER_ROUND))]
         arguments = (self.potential.well.mirror_in_x, self._entry_points)
-        tiles = run_tiles(_find_barriers, self.potential, self.states[regular], *arguments, execution=self._execution)
-        found = [barrier for _, tile in tiles for barrier in tile]
+        tiles = run_tiles(_find_barriers, self.potential, self.states[seeds], *arguments, execution=self._execution)
+        all_barriers = [barrier for _, tile_barriers in tiles for barrier in tile_barriers]
         if self._execution.is_cancelled:
             return
-        barriers = _without_enclosed(found, self._points[regular], self._separated[regular])
-        left = np.flatnonzero(self._on_section & ~self._separated.all(axis=1))
-        if left.size <= _FEW_POINTS:
-            self._separated[left] = _separated_by_any(barriers, self._points[left], self._separated[left])
+        barriers = _without_enclosed(all_barriers, self._points[seeds], self._separated[seeds])
+        remaining = np.flatnonzero(self._on_section & ~self._separated.all(axis=1))
+        if remaining.size <= _FEW_POINTS:
+            self._separated[remaining] = _separated_by_any(barriers, self._points[remaining], self._separated[remaining])
         else:
-            self._separate_in_parallel(barriers, left)
+            self._separate_in_parallel(barriers, remaining)
         self.evidence[self._separated.all(axis=1) & self._without_evidence()] = Evidence.ENCLOSED
 
     def _separate_in_parallel(self, barriers: list[_Barrier], orbits: np.ndarray) -> None:
         # Prepared polygons must not be used by two threads at once: each task unpickles its own copies.
-        pickled = pickle.dumps(barriers)
+        pickled_barriers = pickle.dumps(barriers)
 
         def select(part: np.ndarray) -> tuple[Any, ...]:
-            return pickled, self._points[part], self._separated[part]
+            return pickled_barriers, self._points[part], self._separated[part]
 
         for part, separated in run_parts(_separated_by_pickled, orbits, select, self._execution):
             self._separated[part] = separated
@@ -192,8 +194,8 @@ class _Barrier:
     curve
         The curve.
     exit_sides
-        The side of the curve on which each exit lies, see `InvariantCurve.find_side`; 0 if the side is unknown. The key is 1.0
-        for the curve and −1.0 for its mirror image.
+        The side on which each exit lies, see `InvariantCurve.find_side`; 0 if the side is unknown. The key is 1.0 for the sides
+        of the curve and −1.0 for those of its mirror image.
     """
 
     curve: InvariantCurve
@@ -202,15 +204,16 @@ class _Barrier:
     def find_separated(self, points: np.ndarray) -> np.ndarray:
         """Return whether the curve or its mirror image separates each point (n, 2) from each exit, of shape (n, channels)."""
         # Rotating the points by 180° is equivalent to rotating the curve into its mirror image.
-        sides = [self.curve.find_side(sign * points)[:, None] * exit_side for sign, exit_side in self.exit_sides.items()]
-        separated: np.ndarray = np.any(np.equal(sides, -1), axis=0)
-        return separated
+        products = [self.curve.find_side(sign * points)[:, None] * exit_sides for sign, exit_sides in self.exit_sides.items()]
+        # The product is −1 for a point and an exit on opposite sides.
+        is_separated: np.ndarray = np.any(np.equal(products, -1), axis=0)
+        return is_separated
 
 
 def _find_barriers(
     potential: Potential, tile: np.ndarray, mirror: bool, entry_points: tuple[np.ndarray, ...]
 ) -> list[_Barrier | None]:
-    """Return the barrier of each orbit in a tile (4, lanes), or None for an orbit without a curve; runs in a worker."""
+    """Return the barrier of each orbit in a tile (4, lanes), or None for an orbit without a curve; called in a worker."""
     barriers: list[_Barrier | None] = []
     for points in trace_section_points(potential, tile, _CURVE_POINTS, _CURVE_TIME):
         curve = find_invariant_curve(points[np.isfinite(points).all(axis=1)])
@@ -219,6 +222,7 @@ def _find_barriers(
 
 
 def _exit_sides(curve: InvariantCurve, mirror: bool, entry_points: tuple[np.ndarray, ...]) -> dict[float, np.ndarray]:
+    """Return `_Barrier.exit_sides`: the side on which all entry points of an exit lie."""
     exit_sides = {}
     for sign in (1.0, -1.0) if mirror else (1.0,):
         entry_sides = [curve.find_side(sign * points) for points in entry_points]
@@ -227,31 +231,34 @@ def _exit_sides(curve: InvariantCurve, mirror: bool, entry_points: tuple[np.ndar
 
 
 def _without_enclosed(barriers: list[_Barrier | None], points: np.ndarray, separated: np.ndarray) -> list[_Barrier]:
-    """Return the barriers of the orbits (n, 2) that the preceding barriers do not separate from all exits."""
-    kept = []
-    for number in _alternating_by_size([0.0 if barrier is None else barrier.curve.area for barrier in barriers]):
-        barrier = barriers[number]
-        if barrier is not None and not separated[number].all():
-            kept.append(barrier)
+    """Return the barriers of those orbits, at `points` (n, 2), that other barriers in the result do not enclose.
+
+    An orbit is enclosed if it is separated from all exits; `separated`, (n, channels), is what earlier rounds found.
+    """
+    result = []
+    for index in _alternating_by_size([0.0 if barrier is None else barrier.curve.area for barrier in barriers]):
+        barrier = barriers[index]
+        if barrier is not None and not separated[index].all():
+            result.append(barrier)
             separated = separated | barrier.find_separated(points)
-    return kept
+    return result
 
 
 def _separated_by_pickled(barriers: bytes, points: np.ndarray, separated: np.ndarray) -> np.ndarray:
-    """Call `_separated_by_any` with pickled barriers, in a worker."""
+    """Call `_separated_by_any` with pickled barriers; called in a worker."""
     return _separated_by_any(pickle.loads(barriers), points, separated)
 
 
 def _separated_by_any(barriers: list[_Barrier], points: np.ndarray, separated: np.ndarray) -> np.ndarray:
-    """Mark in `separated`, (n, channels), from which exits any barrier separates each point (n, 2)."""
+    """Set `separated`, (n, channels), where a barrier separates a point (n, 2) from an exit, in place, and return it."""
     for barrier in barriers:
-        left = np.flatnonzero(~separated.all(axis=1))
-        separated[left] |= barrier.find_separated(points[left])
+        remaining = np.flatnonzero(~separated.all(axis=1))
+        separated[remaining] |= barrier.find_separated(points[remaining])
     return separated
 
 
 def _alternating_by_size(sizes: list[float]) -> Iterator[int]:
-    """Yield the indices of the largest, smallest, second largest size, …, so that the extremes of nested curves come first."""
+    """Yield the indices of the largest size, the smallest, the second largest, …: the extremes of nested curves come first."""
     order = np.argsort(sizes, kind="stable")[::-1]
     for k in range(order.size):
         yield int(order[k // 2] if k % 2 == 0 else order[-1 - k // 2])

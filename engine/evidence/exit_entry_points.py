@@ -14,11 +14,11 @@ from engine.propagation.section_points import find_section_points
 from engine.slices.planes import SECTION
 from engine.systems.potential import Potential
 
-# Every tenth sample of the path of a Lyapunov orbit except near its ends.
+# Samples of the path of a Lyapunov orbit at which orbits start: every tenth, except near its ends.
 _POSITIONS = slice(10, -10, 10)
-# Angles of the starts on an exit from the inward direction.
+# Angles of their velocities to the inward direction, in radians.
 _ANGLES = np.radians([-60.0, -30.0, 0.0, 30.0, 60.0])
-# Time in which an orbit must cross the section, in units of the well.
+# Longest time to the first crossing of the section, in units of the well.
 _MAX_ENTRY_TIME = 30.0
 
 
@@ -26,8 +26,8 @@ _MAX_ENTRY_TIME = 30.0
 def find_entry_points(potential: Potential, energy: float) -> tuple[np.ndarray, ...]:
     """Find where orbits that enter through each open exit first cross y = 0 upward.
 
-    The states on one exit are connected, and a torus of bounded orbits never crosses an exit. So all states on one exit lie on
-    the same side of any such torus, and a single entry point decides which side that is.
+    The states on one exit are connected, and a torus of bounded orbits never crosses an exit. Therefore all states on one exit
+    lie on the same side of such a torus, and a single entry point shows which side.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def _entry_points(potential: Potential, energy: float, orbit: LyapunovOrbit) -> 
 
 
 def _inward_states(potential: Potential, energy: float, orbit: LyapunovOrbit) -> np.ndarray:
-    """Return states on the path of a Lyapunov orbit with momenta that point inward, of shape (n, 4)."""
+    """Return states on the path of a Lyapunov orbit with inward momenta, of shape (n, 4)."""
     x, y = np.repeat(orbit.half_path[_POSITIONS], _ANGLES.size, axis=0).T
     speed = np.sqrt(2.0 * np.maximum(energy - potential.value(x, y), 0.0))
     inward = -orbit.outward
@@ -69,7 +69,7 @@ def _is_interior(potential: Potential, energy: float, points: np.ndarray) -> np.
     """Return whether each point (n, 2) is allowed and inside all exits; False for NaN and for orbits that left again."""
     x, px = points.T
     with np.errstate(invalid="ignore"):
-        allowed = SECTION.required_energy(potential, x, px) <= energy
-    outside = find_outside_in_well_units(potential, energy, np.where(allowed, x, 0.0), np.zeros_like(x))
-    interior: np.ndarray = allowed & (outside == 0)
-    return interior
+        is_allowed = SECTION.required_energy(potential, x, px) <= energy
+    outside = find_outside_in_well_units(potential, energy, np.where(is_allowed, x, 0.0), np.zeros_like(x))
+    is_interior: np.ndarray = is_allowed & (outside == 0)
+    return is_interior

@@ -19,15 +19,15 @@ if TYPE_CHECKING:
     import shapely
 
 MOST_ISLANDS = 24
-"""Largest number of islands in a chain that is searched for."""
+"""Largest number of islands of a chain that is searched for."""
 
 LEAST_POINTS = 40
 """Smallest number of points of a loop."""
 
-# Distance from the polygon within which the curve is assumed to lie, in units of the height g θ/8 of an arc that turns by θ over
-# a gap g between points. With even gaps the polygon turns by θ at each point. Near a resonance p/q the points form q bunches with
-# wide gaps between them, and at the edge of a bunch the polygon turns by θ/2, the angle between curve and gap. The curve thus
-# stays within a quarter of the margin.
+# Distance from the polygon within which the curve is assumed to lie, in units of the height g θ/8 of an arc. Such an arc turns by
+# θ over a gap g between points; with even gaps the polygon turns by θ at each point. Near a resonance p/q the points form q
+# bunches with wide gaps between the bunches, and at the edge of a bunch the polygon turns only by θ/2, the angle between curve
+# and gap. Even then, the curve stays within a quarter of the margin.
 _MARGIN_FACTOR = 8.0
 # Largest margin accepted, relative to the square root of the enclosed area.
 _MAX_RELATIVE_MARGIN = 0.1
@@ -57,7 +57,7 @@ class InvariantCurve:
         """Find on which side of the torus points of the section lie.
 
         The torus divides its energy surface into two parts. Crossing a loop changes the part, and the flow maps the interiors of
-        the loops onto each other. So the interiors form one side, and the section outside all loops forms the other.
+        the loops onto each other. Therefore the interiors form one side, and the section outside all loops forms the other.
 
         Parameters
         ----------
@@ -72,11 +72,12 @@ class InvariantCurve:
 
         side = np.ones(len(points), np.int8)
         for outer, inner in self._bounds:
-            # Pickling drops the preparation of polygons.
+            # This is repeated for each call, because pickling drops the preparation of polygons.
             shapely.prepare([outer, inner])
-            near = shapely.contains_xy(outer, *points.T)
-            side[near] = 0
-            side[near] -= shapely.contains_xy(inner, *points[near].T)
+            in_outer = shapely.contains_xy(outer, *points.T)
+            # 0 within the margin, −1 inside.
+            side[in_outer] = 0
+            side[in_outer] -= shapely.contains_xy(inner, *points[in_outer].T)
         return side
 
     @cached_property
@@ -127,10 +128,11 @@ def _find_loop(points: np.ndarray) -> tuple[shapely.Polygon, float] | None:
     import shapely
 
     loop = np.empty_like(points)
+    # The kernel writes the points into `loop` in their order; it returns −1 if they are not on a closed curve.
     height = arrange_loop(points, loop)
     if height < 0.0:
         return None
     margin = _MARGIN_FACTOR * height
     polygon = shapely.Polygon(loop)
-    accepted = margin <= _MAX_RELATIVE_MARGIN * np.sqrt(polygon.area) and polygon.is_valid
-    return (polygon, margin) if accepted else None
+    is_smooth = margin <= _MAX_RELATIVE_MARGIN * np.sqrt(polygon.area) and polygon.is_valid
+    return (polygon, margin) if is_smooth else None

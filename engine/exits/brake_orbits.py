@@ -20,7 +20,8 @@ from engine.integrator.source.series import ORDER
 from engine.systems.compiled import kernels_of
 from engine.systems.potential import Potential
 
-# Lengths along the channel, in units of the distance of the saddle from the origin.
+# Lengths of the search from the saddle along the channel, in units of the distance of the saddle from the origin.
+
 # A trial orbit farther from the saddle than this has left the saddle.
 _LARGEST_EXCURSION = 1.0
 # First step of the bracket search.
@@ -28,14 +29,17 @@ _FIRST_STRIDE = 0.01
 # End of the bracket search.
 _LARGEST_OFFSET = 2.0
 
-# Number of starts of the search from outside.
+# Lengths of the search from outside, see `find_from_outside`.
+
+# Number of starts.
 _STARTS = 241
 # Farthest start along the channel, in units of the size of the search.
 _FARTHEST_START = 1.5
 # A trial orbit that has moved farther than this along the channel has left, in the same unit.
 _LARGEST_MOVE = 0.6
 
-# Steps of the continuation, in units of the distance between the ends of the preceding orbit.
+# Lengths of the continuation, in units of the distance between the ends of the preceding orbit.
+
 # Distance from the first end at which the line to the zero-velocity curve begins.
 _LINE_START = 0.1
 # First step of the bracket search.
@@ -50,12 +54,12 @@ _FIRST_ENERGY_STEP = 2.0**-4
 _SMALLEST_ENERGY_STEP = 2.0**-14
 _MOST_ENERGY_STEPS = 256
 
-# Largest speed at the second end, in units of the well. A root with a larger speed is a discontinuity of the velocity, not an
-# orbit. Two shots that are joined differ by at most this distance.
+# Largest speed at the second end, in units of the well; a root with a larger speed is a discontinuity of the velocity. It is also
+# the largest distance between two shots that are joined.
 _REST = 1e-8
 # Largest speed at the second end of a shot that is joined with another.
 _NEARLY_AT_REST = 1e-3
-# Two shots are compared up to this share of the half period before and after the middle.
+# Two shots that are joined are compared up to this share of the half period before and after the middle.
 _OVERLAP = 0.05
 _SAMPLES_PER_HALF_PERIOD = 100
 # Largest number of integrator steps of a trial orbit.
@@ -97,7 +101,7 @@ class _Search(NamedTuple):
 
 
 class _Shot(NamedTuple):
-    """A trial orbit, at rest at its start and nearly at rest at its end, as Taylor coefficients (2, 20, n) of n steps."""
+    """A trial orbit, at rest at its start and nearly at rest at its end: Taylor coefficients (2, 20, n) and begins of n steps."""
 
     coefficients: np.ndarray
     begins: np.ndarray
@@ -143,18 +147,19 @@ def find_from_both_ends(potential: Potential, energy: float, channel: int) -> Br
     Errors grow over only a quarter of a period, and the zero-velocity curve may bend away at the first end.
     """
     axes = saddle_axes(potential, channel)
-    back = _find_from_saddle(potential, energy, channel, Axes(axes.origin, -axes.outward), _NEARLY_AT_REST)
-    if back is None:
+    # With reversed axes, the shot starts at the second end.
+    backward = _find_from_saddle(potential, energy, channel, Axes(axes.origin, -axes.outward), _NEARLY_AT_REST)
+    if backward is None:
         return None
-    path = back.path[:, ::-1]
-    there = _shoot(potential, energy, channel, chord_axes(path), _chord_search(path), _NEARLY_AT_REST)
-    return there and _join(there, back, chord_axes(path))
+    path = backward.path[:, ::-1]
+    forward = _shoot(potential, energy, channel, chord_axes(path), _chord_search(path), _NEARLY_AT_REST)
+    return None if forward is None else _join(forward, backward, chord_axes(path))
 
 
-def find_from_outside(potential: Potential, energy: float, axes: Axes, size: float) -> Iterator[BrakeOrbit]:
-    """Yield the orbits from a wall at q < 0 to a wall at q > 0, the outermost first; `size` is the scale of the search."""
-    trials = _Trials(potential, energy, axes, _LARGEST_MOVE * size)
-    offsets = _FARTHEST_START * size * np.linspace(1.0, -1.0, _STARTS)
+def find_from_outside(potential: Potential, energy: float, axes: Axes, search_size: float) -> Iterator[BrakeOrbit]:
+    """Yield the orbits from a wall at q < 0 to a wall at q > 0, the outermost first."""
+    trials = _Trials(potential, energy, axes, _LARGEST_MOVE * search_size)
+    offsets = _FARTHEST_START * search_size * np.linspace(1.0, -1.0, _STARTS)
     velocities = [trials.outward_velocity(u) for u in offsets.tolist()]
     for k in range(_STARTS - 1):
         if velocities[k] > 0.0 > velocities[k + 1]:
@@ -165,21 +170,22 @@ def find_from_outside(potential: Potential, energy: float, axes: Axes, size: flo
 
 def continue_in_energy(potential: Potential, energy: float, channel: int) -> BrakeOrbit | None:
     """Follow the orbit over a saddle from small oscillations up to an energy with an adaptive step; None if this fails."""
-    bottom = float(potential.well.saddle_energies[channel - 1])
-    height = energy - bottom
+    saddle_energy = float(potential.well.saddle_energies[channel - 1])
+    height = energy - saddle_energy
 
+    # The continuation begins without an orbit, at the energy of the saddle.
     def advance(orbit: BrakeOrbit | None, target: float) -> BrakeOrbit | None:
         return _next_orbit(potential, target, channel, orbit) if orbit else find_directly(potential, target, channel)
 
     steps = Steps(_FIRST_ENERGY_STEP * height, _SMALLEST_ENERGY_STEP * height, _MOST_ENERGY_STEPS)
-    return follow(advance, None, bottom, energy, steps)
+    return follow(advance, None, saddle_energy, energy, steps)
 
 
-def _find_from_saddle(potential: Potential, energy: float, channel: int, axes: Axes, rest: float) -> _Shot | None:
+def _find_from_saddle(potential: Potential, energy: float, channel: int, axes: Axes, largest_speed: float) -> _Shot | None:
     """Return the orbit from a point with q < 0 in axes at the saddle to a point with q > 0; None if it is not found."""
     distance = _distance(potential, channel)
     search = _Search(_FIRST_STRIDE * distance, _LARGEST_OFFSET * distance)
-    shot = _shoot(potential, energy, channel, axes, search, rest)
+    shot = _shoot(potential, energy, channel, axes, search, largest_speed)
     if shot is None:
         return None
     # A start on a wall of another channel leads to an orbit across that channel.
@@ -187,19 +193,21 @@ def _find_from_saddle(potential: Potential, energy: float, channel: int, axes: A
     return shot if q[0] < 0.0 < q[-1] else None
 
 
-def _join(there: _Shot, back: _Shot, axes: Axes) -> BrakeOrbit | None:
+def _join(forward: _Shot, backward: _Shot, axes: Axes) -> BrakeOrbit | None:
     """Join two shots from both ends to an orbit; None if they do not meet in the middle."""
-    path, other = there.path, back.path[:, ::-1]
-    if np.abs((path - other)[:, [0, -1]]).max() > _LARGEST_CHANGE * _chord_length(other):
+    path, reversed_path = forward.path, backward.path[:, ::-1]
+    if np.abs((path - reversed_path)[:, [0, -1]]).max() > _LARGEST_CHANGE * _chord_length(reversed_path):
         return None
-    middle = 0.5 * (axes.coordinates(path)[1][0] + axes.coordinates(other)[1][-1])
-    first, last = _time_at(middle, there, axes), _time_at(middle, back, axes)
-    half_period = first + last
-    overlap = first + _OVERLAP * half_period * np.linspace(-1.0, 1.0, 11)
-    if not np.abs(there.positions(overlap) - back.positions(half_period - overlap)).max() < _REST:
+    middle = 0.5 * (axes.coordinates(path)[1][0] + axes.coordinates(reversed_path)[1][-1])
+    forward_duration, backward_duration = _time_at(middle, forward, axes), _time_at(middle, backward, axes)
+    half_period = forward_duration + backward_duration
+    overlap = forward_duration + _OVERLAP * half_period * np.linspace(-1.0, 1.0, 11)
+    # `not … <` also rejects NaN.
+    if not np.abs(forward.positions(overlap) - backward.positions(half_period - overlap)).max() < _REST:
         return None
     times = np.linspace(0.0, half_period, _SAMPLES_PER_HALF_PERIOD + 1)
-    return BrakeOrbit(half_period, np.where(times < first, there.positions(times), back.positions(half_period - times)))
+    path = np.where(times < forward_duration, forward.positions(times), backward.positions(half_period - times))
+    return BrakeOrbit(half_period, path)
 
 
 def _time_at(q: float, shot: _Shot, axes: Axes) -> float:
@@ -211,15 +219,15 @@ def _time_at(q: float, shot: _Shot, axes: Axes) -> float:
     return find_root(distance, 0.0, shot.half_period, absolute=1e-15, relative=4 * float(np.finfo(float).eps))
 
 
-def _next_orbit(potential: Potential, energy: float, channel: int, before: BrakeOrbit) -> BrakeOrbit | None:
-    """Continue an orbit to a nearby energy; None if the orbit found there is not close to the given orbit."""
-    ends = before.path[:, [0, -1]]
-    shot = _shoot(potential, energy, channel, chord_axes(before.path), _chord_search(before.path), _REST)
+def _next_orbit(potential: Potential, energy: float, channel: int, previous: BrakeOrbit) -> BrakeOrbit | None:
+    """Continue the previous orbit to a nearby energy; None if the orbit found there is not close to the previous orbit."""
+    ends = previous.path[:, [0, -1]]
+    shot = _shoot(potential, energy, channel, chord_axes(previous.path), _chord_search(previous.path), _REST)
     if shot is None:
         return None
-    orbit, length = shot.orbit, _chord_length(before.path)
+    orbit, length = shot.orbit, _chord_length(previous.path)
     move = float(np.hypot(*(orbit.path[:, [0, -1]] - ends)).max()) / length
-    change = abs(orbit.half_period - before.half_period) / before.half_period
+    change = abs(orbit.half_period - previous.half_period) / previous.half_period
     return orbit if max(move, change) < _LARGEST_CHANGE else None
 
 
@@ -236,11 +244,11 @@ def _distance(potential: Potential, channel: int) -> float:
     return float(np.hypot(*potential.saddles[channel - 1]))
 
 
-def _shoot(potential: Potential, energy: float, channel: int, axes: Axes, search: _Search, rest: float) -> _Shot | None:
-    """Find the orbit whose start is nearest to the origin of the axes along the channel; None if it is not found."""
+def _shoot(potential: Potential, energy: float, channel: int, axes: Axes, search: _Search, largest_speed: float) -> _Shot | None:
+    """Return the orbit whose start is nearest to the origin of the axes along the channel; None if it is not found."""
     trials = _Trials(potential, energy, axes, _LARGEST_EXCURSION * _distance(potential, channel))
     bracket = _find_bracket(trials.outward_velocity, search)
-    return None if bracket is None else trials.solve(bracket, rest)
+    return None if bracket is None else trials.solve(bracket, largest_speed)
 
 
 class _Trials:
@@ -254,11 +262,11 @@ class _Trials:
         """Return the velocity along the channel at the turning point, after a start at rest at offset u."""
         return float(self._kernels.shoot(u, *self._arguments)[0])
 
-    def solve(self, bracket: tuple[float, float], rest: float) -> _Shot | None:
-        """Return the orbit that starts between two offsets and comes to rest; None if no orbit does."""
+    def solve(self, bracket: tuple[float, float], largest_speed: float) -> _Shot | None:
+        """Return the orbit that starts between two offsets and comes to rest, up to a largest speed; None if no orbit does."""
         u = find_root(self.outward_velocity, *bracket, absolute=1e-17, relative=4 * float(np.finfo(float).eps))
         velocity, half_period, count = self._kernels.shoot(u, *self._arguments)
-        if not (np.isfinite(half_period) and abs(velocity) < rest):
+        if not (np.isfinite(half_period) and abs(velocity) < largest_speed):
             return None
         coefficients = np.empty((2, ORDER + 1, count))
         self._kernels.jets(count, *(np.ascontiguousarray(column) for column in self._steps[:count, :4].T), *coefficients)
@@ -267,17 +275,17 @@ class _Trials:
 
 def _find_bracket(outward_velocity: Callable[[float], float], search: _Search) -> tuple[float, float] | None:
     """Search, with growing steps, for an inner start that moves inward and an outer start that moves outward."""
-    here, stride = 0.0, search.stride
-    first = outward_velocity(here)
-    if np.isnan(first):
+    offset, stride = 0.0, search.stride
+    first_velocity = outward_velocity(offset)
+    if np.isnan(first_velocity):
         return None
-    inward = first < 0
-    while abs(here) < search.farthest:
-        there = here + stride if inward else here - stride
-        velocity = outward_velocity(there)
+    moves_inward = first_velocity < 0
+    while abs(offset) < search.farthest:
+        next_offset = offset + stride if moves_inward else offset - stride
+        velocity = outward_velocity(next_offset)
         if np.isnan(velocity):
             return None
-        if (velocity < 0) != inward:
-            return (here, there) if inward else (there, here)
-        here, stride = there, 1.5 * stride
+        if (velocity < 0) != moves_inward:
+            return (offset, next_offset) if moves_inward else (next_offset, offset)
+        offset, stride = next_offset, 1.5 * stride
     return None

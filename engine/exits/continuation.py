@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 
 class Steps(NamedTuple):
-    """The first and the smallest step of a parameter, and the largest number of steps."""
+    """Limits of a continuation: the first and the smallest step of the parameter, and the largest number of steps."""
 
     first: float
     smallest: float
@@ -38,9 +38,9 @@ def follow[Solution](
     reached, step = begin, steps.first
     for _ in range(steps.most):
         target = min(reached + step, end)
-        following = advance(solution, target)
-        if following is not None:
-            solution, reached, step = following, target, 2.0 * step
+        next_solution = advance(solution, target)
+        if next_solution is not None:
+            solution, reached, step = next_solution, target, 2.0 * step
             if reached == end:
                 return solution
         elif step > steps.smallest:

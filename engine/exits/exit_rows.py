@@ -22,12 +22,12 @@ _GATE_MARGIN = 1e-3
 
 
 def closed_exits(potential: Potential) -> np.ndarray:
-    """Return the exits below all saddles, (outcomes, columns): short lines across the saddles, and all other ends.
+    """Return the exits at an energy below all saddles, (outcomes, columns): short lines across the saddles, and all other ends.
 
     Raises
     ------
     ValueError
-        If there are no exits although the well is not closed, so that it is undefined which orbits escape, or if V is not defined
+        If it is undefined which orbits escape, because there are no exits although the well is not closed, or if V is not defined
         somewhere within the escape radius.
     """
     if potential.escape_radius is not None:
@@ -42,7 +42,7 @@ def closed_exits(potential: Potential) -> np.ndarray:
 
 
 def exit_curves(potential: Potential, energy: float) -> np.ndarray:
-    """Return the exits of a potential in units of its well at one energy, (outcomes, columns), for the kernels."""
+    """Return the exits of a potential in units of its well at one energy, of shape (outcomes, columns)."""
     curves = closed_exits(potential)
     for orbit in find_orbits_in_well_units(potential, energy):
         curves[orbit.channel - 1] = orbit.curve
@@ -90,13 +90,14 @@ def exit_gates(curves: np.ndarray) -> np.ndarray:
 
 def _lines_inside(rows: np.ndarray) -> np.ndarray:
     """Return lines across channels, slightly inside their exits (energies, channels, columns), of shape (channels, 3)."""
+    # Axes of u, q, x and y: energies, channels, points.
     s = np.linspace(-1.0, 1.0, 201)
     u = chebyshev.chebval(s, np.moveaxis(rows[..., geometry.COEFFICIENTS :], -1, 0))
     q = rows[..., geometry.MIDDLE, None] + rows[..., geometry.HALF_WIDTH, None] * s
     origin_x, origin_y, outward_x, outward_y = np.moveaxis(rows[..., geometry.ORIGIN_X : geometry.OUTWARD_Y + 1, None], 2, 0)
     x, y = origin_x + u * outward_x - q * outward_y, origin_y + u * outward_y + q * outward_x
-    gates = rows[0, :, geometry.OUTWARD_X : geometry.OUTWARD_Y + 1]
-    lowest = (gates[:, :1] * x + gates[:, 1:] * y).min(axis=(0, -1))
-    origins = rows[0, :, geometry.ORIGIN_X : geometry.ORIGIN_Y + 1]
-    length = np.array([nearest_power_of_two(distance) for distance in np.hypot(*origins.T).tolist()])
-    return np.column_stack([gates, lowest - _GATE_MARGIN * length])
+    normals = rows[0, :, geometry.OUTWARD_X : geometry.OUTWARD_Y + 1]
+    innermost = (normals[:, :1] * x + normals[:, 1:] * y).min(axis=(0, -1))
+    saddles = rows[0, :, geometry.ORIGIN_X : geometry.ORIGIN_Y + 1]
+    lengths = np.array([nearest_power_of_two(distance) for distance in np.hypot(*saddles.T).tolist()])
+    return np.column_stack([normals, innermost - _GATE_MARGIN * lengths])

@@ -12,16 +12,15 @@ from engine.systems.potential import Potential
 
 # Largest distance of a curve from the path that it follows, in units of the well.
 _LARGEST_FIT_ERROR = 1e-9
-# Beyond the ends of an exit, straight lines are sampled. Smallest |s| − 1 of the samples.
+# Smallest |s| − 1 of the samples along the straight lines beyond the ends of an exit, see `find_reach`.
 _FIRST_BEYOND = 1e-3
 # Length of these lines, in units of the distance of the saddle from the origin or, if larger, of the half width of the exit.
 _FARTHEST_BEYOND = 2.0
-# Number of samples along a line.
+# Number of samples along one of these lines.
 _SAMPLES_BEYOND = 400
 # Half the length of the line across a closed saddle, in units of the saddle's distance from the origin.
 _CLOSED_HALF_WIDTH = 1e-3
-# Distance of the line beyond the saddle, in the same unit. An orbit at rest on the saddle then starts inside in spite of
-# rounding.
+# Distance of the line beyond the saddle, in the same unit; in spite of rounding, an orbit at rest on the saddle starts inside.
 _CLOSED_OFFSET = 1e-9
 # Number of steps in which walls are followed from the saddle to the line.
 _WALL_STEPS = 32
@@ -31,12 +30,11 @@ _FARTHEST_WALL = 5.0
 _WALL_POINTS = 400
 # Number of bisections between two of these points.
 _BISECTIONS = 60
-# Points along a line for drawings.
+# Number of points along an exit for drawings.
 _LINE_POINTS = 41
 # Step of the difference across the ridge, in units of the distance of the saddle from the origin.
 _RIDGE_STEP = 1e-3
-# Largest change of the position of a wall in a step, in units of the width of the neck; a larger change can be a jump to another
-# wall.
+# Largest change of a wall's position in a step, in units of the neck's width; a larger change can be a jump to another wall.
 _LARGEST_WALL_STEP = 0.25
 # Two orbits have the same ends if these are closer than this, in units of the well.
 _SAME_END = 1e-6
@@ -69,34 +67,31 @@ def ridge_bend(potential: Potential, channel: int) -> float:
     step = _RIDGE_STEP * float(np.hypot(*axes.origin)) * np.array([-axes.outward[1], axes.outward[0]])
     sides = np.array([axes.origin - step, axes.origin + step])
     slopes = axes.outward @ np.array(np.broadcast_arrays(*potential.gradient(*sides.T)))
-    along = axes.outward @ potential.hessian_matrix(*axes.origin) @ axes.outward
-    return float(-0.5 * slopes.sum() / (step @ step) / along)
+    curvature = axes.outward @ potential.hessian_matrix(*axes.origin) @ axes.outward
+    return float(-0.5 * slopes.sum() / (step @ step) / curvature)
 
 
 def line_across(potential: Potential, energy: float, channel: int, edge: float) -> np.ndarray | None:
     """Return the row of the exit u = edge + a q² between the walls of a neck, in the axes of the saddle; a: `ridge_bend`.
 
-    The walls are followed from the saddle to the line. The result is None if they do not lead there.
+    The walls are followed from the saddle to the exit. The result is None if they do not lead there.
     """
     axes, bend = saddle_axes(potential, channel), ridge_bend(potential, channel)
     walls = _find_walls(potential, energy, axes, np.linspace(0.0, edge, _WALL_STEPS + 1), bend)
     widths = walls[:, 1] - walls[:, 0]
-    # NaN marks points without a wall.
+    # NaN marks a missing wall, and `not … <` rejects it.
     if not np.all(np.abs(np.diff(walls, axis=0)) < _LARGEST_WALL_STEP * widths[1:, None]):
         return None
     low, high = walls[-1]
     curve = closed_channel(axes, potential.saddles[channel - 1])
     curve[geometry.SHAPE] = geometry.LINE
-    middle, half = 0.5 * (low + high), 0.5 * (high - low)
-    curve[geometry.MIDDLE : geometry.HALF_WIDTH + 1] = middle, half
-    curve[geometry.SLOPE_LOW : geometry.SLOPE_HIGH + 1] = 2.0 * bend * half * np.array([low, high])
-    # u as a sum of Chebyshev polynomials of s = (q − middle)/half.
-    constant = edge + bend * (middle * middle + 0.5 * half * half)
-    curve[geometry.COEFFICIENTS : geometry.COEFFICIENTS + 3] = (
-        constant,
-        2.0 * bend * middle * half,
-        0.5 * bend * half * half,
-    )
+    middle, half_width = 0.5 * (low + high), 0.5 * (high - low)
+    curve[geometry.MIDDLE : geometry.HALF_WIDTH + 1] = middle, half_width
+    curve[geometry.SLOPE_LOW : geometry.SLOPE_HIGH + 1] = 2.0 * bend * half_width * np.array([low, high])
+    # u as a sum of Chebyshev polynomials of s = (q − middle)/half_width.
+    constant = edge + bend * (middle * middle + 0.5 * half_width * half_width)
+    linear, quadratic = 2.0 * bend * middle * half_width, 0.5 * bend * half_width * half_width
+    curve[geometry.COEFFICIENTS : geometry.COEFFICIENTS + 3] = constant, linear, quadratic
     curve[geometry.REACH] = find_reach(potential, energy, curve)
     return curve
 
@@ -121,16 +116,21 @@ def curve_along(axes: Axes, saddle: np.ndarray, path: np.ndarray) -> np.ndarray 
 
 
 def mirrored_curve(curve: np.ndarray) -> np.ndarray:
-    """Return an exit curve in the axes of the mirrored saddle, where u is unchanged and q has the opposite sign."""
-    image = curve.copy()
-    image[[geometry.ORIGIN_X, geometry.OUTWARD_X, geometry.BEARING_X, geometry.MIDDLE]] *= -1.0
-    image[[geometry.SLOPE_LOW, geometry.SLOPE_HIGH]] = -curve[[geometry.SLOPE_HIGH, geometry.SLOPE_LOW]]
-    image[geometry.COEFFICIENTS + 1 :: 2] *= -1.0
-    return image
+    """Return the row of the mirror image of an exit under x → −x: in the axes of the mirrored saddle, q changes its sign."""
+    mirrored = curve.copy()
+    mirrored[[geometry.ORIGIN_X, geometry.OUTWARD_X, geometry.BEARING_X, geometry.MIDDLE]] *= -1.0
+    mirrored[[geometry.SLOPE_LOW, geometry.SLOPE_HIGH]] = -curve[[geometry.SLOPE_HIGH, geometry.SLOPE_LOW]]
+    # The odd Chebyshev polynomials change their signs with q.
+    mirrored[geometry.COEFFICIENTS + 1 :: 2] *= -1.0
+    return mirrored
 
 
 def find_reach(potential: Potential, energy: float, curve: np.ndarray) -> float:
-    """Return the largest |s| at which a crossing counts: half-way from an end, along a straight line, to where V ≤ h."""
+    """Return the largest |s| at which a crossing counts.
+
+    Beyond each end, the straight line that continues the exit leads through the wall to a first point with V ≤ h. Crossings count
+    up to half the way to the nearer of these two points.
+    """
     reach = np.inf
     saddle, outward = (
         curve[[geometry.ORIGIN_X, geometry.ORIGIN_Y]],
@@ -147,11 +147,8 @@ def find_reach(potential: Potential, energy: float, curve: np.ndarray) -> float:
 
 
 def line_points(curve: np.ndarray) -> np.ndarray:
-    """Return x and y along an exit that is a line, from wall to wall, of shape (41, 2)."""
-    origin, outward = (
-        curve[geometry.ORIGIN_X : geometry.ORIGIN_Y + 1],
-        curve[geometry.OUTWARD_X : geometry.OUTWARD_Y + 1],
-    )
+    """Return x and y along an exit from `line_across`, from wall to wall, of shape (41, 2)."""
+    origin, outward = curve[geometry.ORIGIN_X : geometry.ORIGIN_Y + 1], curve[geometry.OUTWARD_X : geometry.OUTWARD_Y + 1]
     s = np.linspace(-1.0, 1.0, _LINE_POINTS)
     u, q = (
         chebyshev.chebval(s, curve[geometry.COEFFICIENTS :]),
@@ -162,13 +159,13 @@ def line_points(curve: np.ndarray) -> np.ndarray:
 
 
 def _find_walls(potential: Potential, energy: float, axes: Axes, offset: np.ndarray, bend: float) -> np.ndarray:
-    """Find the q of the walls on both sides of q = 0 on n lines u = offset + bend q², of shape (n, 2); NaN without a wall."""
-    across = np.array([-axes.outward[1], axes.outward[0]])
+    """Find the q of the walls on both sides of q = 0 on n parabolas u = offset + bend q², of shape (n, 2); NaN without a wall."""
+    q_direction = np.array([-axes.outward[1], axes.outward[0]])
 
     def is_beyond(q: np.ndarray) -> np.ndarray:
         """Return whether V > energy at q (n, 2, m)."""
         u = offset[:, None, None] + bend * q * q
-        points = axes.origin + u[..., None] * axes.outward + q[..., None] * across
+        points = axes.origin + u[..., None] * axes.outward + q[..., None] * q_direction
         beyond: np.ndarray = potential.value(points[..., 0], points[..., 1]) > energy
         return beyond
 
@@ -176,6 +173,7 @@ def _find_walls(potential: Potential, energy: float, axes: Axes, offset: np.ndar
     grid = np.linspace(0.0, 1.0, _WALL_POINTS) ** 2 * _FARTHEST_WALL * float(np.hypot(*axes.origin))
     q = np.broadcast_to(np.array([-1.0, 1.0])[:, None] * grid, (offset.size, 2, grid.size))
     with np.errstate(all="ignore"):
+        # Index of the first point beyond a wall; 0 without a wall, as q = 0 is between the walls.
         first = np.argmax(is_beyond(q), axis=-1)[..., None]
         low, high = np.take_along_axis(q, np.maximum(first - 1, 0), -1), np.take_along_axis(q, first, -1)
         low, high = bisect(is_beyond, low, high, _BISECTIONS)
@@ -184,7 +182,7 @@ def _find_walls(potential: Potential, energy: float, axes: Axes, offset: np.ndar
 
 
 def paths_meet(one: np.ndarray, other: np.ndarray) -> bool:
-    """Return whether two paths, (n, 2) and (m, 2), intersect, or have the same ends and so are equal to rounding."""
+    """Return whether two paths, (n, 2) and (m, 2), intersect, or have the same ends and thus are the same path."""
     return _paths_cross(one, other) or bool(np.abs(one[[0, -1]] - other[[0, -1]]).max() < _SAME_END)
 
 
@@ -195,9 +193,10 @@ def _paths_cross(one: np.ndarray, other: np.ndarray) -> bool:
 
     def sides(line: np.ndarray, points: np.ndarray) -> np.ndarray:
         """Return whether each point lies to the left of each segment of a line, of shape (segments, points)."""
-        along, apart = np.diff(line, axis=0)[:, None], points - line[:-1, None]
-        left: np.ndarray = along[..., 0] * apart[..., 1] > along[..., 1] * apart[..., 0]
-        return left
+        segment, offset = np.diff(line, axis=0)[:, None], points - line[:-1, None]
+        is_left: np.ndarray = segment[..., 0] * offset[..., 1] > segment[..., 1] * offset[..., 0]
+        return is_left
 
-    first, second = sides(one, other), sides(other, one).T
-    return bool(np.any((first[:, 1:] != first[:, :-1]) & (second[1:] != second[:-1])))
+    # Two segments intersect if the ends of each lie on different sides of the other.
+    of_other, of_one = sides(one, other), sides(other, one).T
+    return bool(np.any((of_other[:, 1:] != of_other[:, :-1]) & (of_one[1:] != of_one[:-1])))

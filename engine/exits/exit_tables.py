@@ -1,4 +1,4 @@
-"""Exits tabulated over a range of energies, so that they can be interpolated where Lyapunov orbits cannot be computed.
+"""Exits tabulated over a range of energies, for programs that interpolate exits because they cannot compute Lyapunov orbits.
 
 The Lyapunov orbit over a saddle of energy E depends smoothly on σ = √(h − E). The width of the orbit is proportional to σ, its
 height to σ². The table has the columns of the exit curve, in the axes of the orbit's chord, at Chebyshev nodes in σ, for
@@ -31,13 +31,13 @@ _NODES = (10, 20, 40)
 _SHARES = (1.0, 0.9, 0.75, 0.5)
 # The error between the nodes must be below this share of the largest error.
 _SAFETY = 0.1
-# Coefficients below this are dropped from the end of the series, in units of the well.
+# Coefficients below this limit are dropped from the end of the series, in units of the well.
 _NEGLIGIBLE = 1e-9
 # This value represents an infinite reach, which cannot be interpolated.
 _FARTHEST_REACH = 1e6
 # Values of s at which exits are compared.
 _POSITIONS = np.linspace(-1.0, 1.0, 21)
-# Columns of a row after gate and reach, see `engine.integrator.kernels.exit_geometry`.
+# Columns of an exit curve that follow gate and reach in a row of a table, see `engine.integrator.kernels.exit_geometry`.
 _CURVE_COLUMNS = np.r_[geometry.ORIGIN_X : geometry.OUTWARD_Y + 1, geometry.MIDDLE : geometry.CURVE_COLUMNS]
 
 _Curves = Callable[[float], dict[int, np.ndarray]]
@@ -52,7 +52,7 @@ class ExitTable:
     saddle
         Energy at which the channel opens.
     highest
-        Energy up to which the table is valid; at least `saddle`, where the exit opens.
+        Energy up to which the table is valid, at least `saddle`.
     nodes
         (n,) σ, rising: Chebyshev nodes of the first kind; empty if there is no energy between `saddle` and `highest`.
     rows
@@ -114,10 +114,9 @@ def _curves(potential: Potential, energy: float) -> dict[int, np.ndarray]:
 
 
 def _exit_over_chord(orbit: LyapunovOrbit) -> np.ndarray | None:
-    """Return the row of the exit of an orbit in units of the well, in the axes of its chord, which depend smoothly on the energy.
+    """Return the row of the exit of an orbit, in the axes of its chord; None if the path is not a smooth graph over the chord.
 
-    The result is None if the path is not a smooth graph over the chord. In a rotating frame, the exit is a line and keeps the
-    axes of the saddle.
+    The axes of the chord depend smoothly on the energy. In a rotating frame, the exit is a parabola in the axes of the saddle.
     """
     potential = orbit.potential
     if potential.rotation:
@@ -134,33 +133,35 @@ def _exit_over_chord(orbit: LyapunovOrbit) -> np.ndarray | None:
 
 def _tabulate(curves_at: _Curves, channel: int, saddle: float, highest: float) -> ExitTable:
     """Return the table of one channel."""
-    none = np.zeros(0), np.zeros((0, MIDDLE_COLUMN))
+    no_nodes, no_rows = np.zeros(0), np.zeros((0, MIDDLE_COLUMN))
     if highest <= saddle:
-        return ExitTable(saddle, highest, *none)
+        return ExitTable(saddle, highest, no_nodes, no_rows)
     for share, count in itertools.product(_SHARES, _NODES):
         largest = np.sqrt(share * (highest - saddle))
-        nodes, between = _nodes(count, largest), _between(count, largest)
+        nodes, test_sigmas = _nodes(count, largest), _test_sigmas(count, largest)
         try:
-            # The end of the range is tried first, because errors occur there if anywhere.
+            # The end of the range is tried first: if an exit is undefined anywhere, it is undefined there.
             curves_at(saddle + largest**2)
-            inside, expected = (
-                [curves_at(saddle + sigma**2)[channel] for sigma in places.tolist()] for places in (nodes, between)
+            node_curves, test_curves = (
+                [curves_at(saddle + sigma**2)[channel] for sigma in sigmas.tolist()] for sigmas in (nodes, test_sigmas)
             )
         except ValueError:
+            # An exit is undefined in this range: try the next one.
             continue
-        rows = np.array([_row(curve) for curve in inside])
-        found = [_points(_interpolate(nodes, rows, sigma**2), _POSITIONS) for sigma in between.tolist()]
-        if np.abs(np.array(found) - [_points(curve, _POSITIONS) for curve in expected]).max() < _SAFETY * LARGEST_ERROR:
-            used = np.flatnonzero(np.abs(rows).max(axis=0) > _NEGLIGIBLE).max() + 1
-            return ExitTable(saddle, saddle + share * (highest - saddle), nodes, rows[:, :used].copy())
-    return ExitTable(saddle, saddle, *none)
+        rows = np.array([_row(curve) for curve in node_curves])
+        interpolated = [_points(_interpolate(nodes, rows, sigma**2), _POSITIONS) for sigma in test_sigmas.tolist()]
+        if np.abs(np.array(interpolated) - [_points(curve, _POSITIONS) for curve in test_curves]).max() < _SAFETY * LARGEST_ERROR:
+            column_count = np.flatnonzero(np.abs(rows).max(axis=0) > _NEGLIGIBLE).max() + 1
+            return ExitTable(saddle, saddle + share * (highest - saddle), nodes, rows[:, :column_count].copy())
+    return ExitTable(saddle, saddle, no_nodes, no_rows)
 
 
 def _nodes(count: int, largest: float) -> np.ndarray:
+    """Return the Chebyshev nodes of the first kind between σ = 0 and the largest σ."""
     return 0.5 * largest * (1.0 - np.cos(np.pi * (2 * np.arange(count) + 1) / (2 * count)))
 
 
-def _between(count: int, largest: float) -> np.ndarray:
+def _test_sigmas(count: int, largest: float) -> np.ndarray:
     """Return values of σ between the nodes, and the end of the range."""
     return 0.5 * largest * (1.0 - np.cos(np.pi * (np.arange(count) + 1) / count))
 
@@ -171,16 +172,18 @@ def _row(curve: np.ndarray) -> np.ndarray:
     return np.concatenate([[gate, reach], curve[_CURVE_COLUMNS]])
 
 
-def _interpolate(nodes: np.ndarray, rows: np.ndarray, above: float) -> np.ndarray:
-    """Return the row of the exit at an energy that is `above` the energy of its saddle."""
+def _interpolate(nodes: np.ndarray, rows: np.ndarray, height: float) -> np.ndarray:
+    """Return the row of the exit at an energy with a given height above the saddle."""
     curves, gates = np.zeros((1, 1, geometry.CURVE_COLUMNS)), np.zeros((1, 3))
-    interpolate_exit(nodes, rows, 0.0, geometry.CURVE, np.array([above]), 0, curves, gates)
-    found: np.ndarray = curves[0, 0]
-    return found
+    # The kernel writes into `curves` and `gates`.
+    interpolate_exit(nodes, rows, 0.0, geometry.CURVE, np.array([height]), 0, curves, gates)
+    curve: np.ndarray = curves[0, 0]
+    return curve
 
 
 def _points(curve: np.ndarray, positions: np.ndarray) -> np.ndarray:
     """Return the points of an exit at m values of s, of shape (2, m)."""
     points = np.empty((2, positions.size))
+    # The kernel writes into `points`.
     exit_points(curve, positions, points)
     return points

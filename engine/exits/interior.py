@@ -1,4 +1,4 @@
-"""The interior of a potential at one energy: all points connected to the origin below the energy without crossing an exit.
+"""The interior of a potential at an energy h: all points with V ≤ h that a path with V ≤ h joins to the origin across no exit.
 
 With an escape radius, the interior consists of all points within that radius, except points beyond another end.
 """
@@ -32,8 +32,9 @@ def find_outside_channels(potential: Potential, energy: float, x: np.ndarray, y:
 
 def find_outside_in_well_units(potential: Potential, energy: float, x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Apply `find_outside_channels` to a potential in units of its well."""
-    energies, curves, row = np.full(x.size, energy), exit_curves(potential, energy)[None], np.zeros(x.size, np.int64)
-    return find_outside_starts(potential, x.ravel(), y.ravel(), energies, curves, row).reshape(x.shape)
+    energies, curve_row = np.full(x.size, energy), np.zeros(x.size, np.int64)
+    curves = exit_curves(potential, energy)[None]
+    return find_outside_starts(potential, x.ravel(), y.ravel(), energies, curves, curve_row).reshape(x.shape)
 
 
 def find_outside_starts(
@@ -52,11 +53,14 @@ def find_outside_starts(
     curve_row
         (n,) the row of `curves` for each point.
     """
-    found = np.zeros(x.size, np.int8)
-    _finder(potential.form, potential)(x, y, energy, curves, curve_row, found)
-    nearest = np.where(found > potential.channels, 0, found).astype(np.int64)
-    merged = np.take_along_axis(potential.well.exit_numbers(energy), nearest[:, None], axis=1)[:, 0]
-    outside: np.ndarray = np.where(found > potential.channels, found, merged)
+    outcomes = np.zeros(x.size, np.int8)
+    # The kernel writes the outcomes, which are channels or other ends.
+    _finder(potential.form, potential)(x, y, energy, curves, curve_row, outcomes)
+    is_other_end = outcomes > potential.channels
+    channels = np.where(is_other_end, 0, outcomes).astype(np.int64)
+    # Channels that form one exit share its number.
+    exit_numbers = np.take_along_axis(potential.well.exit_numbers(energy), channels[:, None], axis=1)[:, 0]
+    outside: np.ndarray = np.where(is_other_end, outcomes, exit_numbers)
     return outside
 
 

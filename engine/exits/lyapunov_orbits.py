@@ -1,7 +1,7 @@
 """Lyapunov orbits: the unstable periodic orbits over the open saddles, from which the exits are made.
 
-In a frame that does not rotate the path of such an orbit across its channel is the exit. In a rotating frame an orbit is a closed
-curve, and the exit is the straight line across the channel that touches it on the outer side.
+In a frame that does not rotate, the path of such an orbit across its channel is the exit. In a rotating frame, an orbit is a
+closed curve, and the exit is a parabola across the channel just outside the orbit (`exit_shapes.line_across`).
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from engine.systems.potential import Potential
 from engine.systems.provenance import describe_run
 from engine.systems.well_units import ENERGY, LENGTH, MOMENTUM, TIME, WellUnits
 
-# Reasons why an exit of several channels is not defined. The search meets them in this order.
+# Reasons why an exit of several channels is not defined; the search reports the largest.
 _NO_ORBIT, _SHARP_BEND, _RETURNS = range(3)
 _REASONS = {
     _NO_ORBIT: "no orbit at rest on both of its outer walls was found with all its saddles between; choose another energy",
@@ -137,16 +137,16 @@ class LyapunovOrbit(Result):
 
     @property
     def half_path(self) -> np.ndarray:
-        """(101, 2) half a period of the path, from one side of the channel to the other, for plots; the other half retraces it.
+        """(101, 2) half a period of the path, from one side of the channel to the other; the other half retraces it.
 
-        In a rotating frame it is the whole closed path, (201, 2).
+        In a rotating frame, this is the whole closed path, (201, 2).
         """
         path = np.column_stack([self.x, self.y])
         return path if self._is_closed_curve else path[: self.x.size // 2 + 1]
 
     @property
     def exit_path(self) -> np.ndarray:
-        """(n, 2) the exit across the channel: half the path, or in a rotating frame points of the tangent line."""
+        """(n, 2) the exit across the channel: half the path, or in a rotating frame points of the parabola outside the orbit."""
         return line_points(self.curve) if self._is_closed_curve else self.half_path
 
     @property
@@ -232,29 +232,31 @@ def _find_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ..
 
 def _find_separate_orbits(potential: Potential, energy: float, follow: bool) -> tuple[LyapunovOrbit, ...]:
     """Find orbits that do not meet, directly or by continuation in energy. Orbits of mirror channels are exact mirror images."""
-    found: dict[int, LyapunovOrbit] = {}
+    orbits: dict[int, LyapunovOrbit] = {}
     merged = {exit.channels[0]: exit for exit in potential.well.merged_exits(energy)}
     numbers = potential.well.exit_numbers(energy)
-    images = potential.well.mirror_numbers(energy) if potential.well.mirror_in_x else numbers
+    mirror_numbers = potential.well.mirror_numbers(energy) if potential.well.mirror_in_x else numbers
     for channel in potential.well.open_channels(energy):
         if numbers[channel] < channel:
+            # The channel belongs to an exit with the number of a lower channel.
             continue
-        image = int(images[channel])
+        mirror_channel = int(mirror_numbers[channel])
         others = merged[channel].channels[1:] if channel in merged else ()
-        if image in found:
-            found[channel] = replace(_mirrored(found[image], channel), others=others)
+        if mirror_channel in orbits:
+            orbits[channel] = replace(_mirrored(orbits[mirror_channel], channel), others=others)
         elif channel in merged:
-            found[channel] = _find_merged(potential, energy, merged[channel])
+            orbits[channel] = _find_merged(potential, energy, merged[channel])
         else:
-            found[channel] = _find_orbit(potential, energy, channel, follow)
-        if image == channel and potential.well.mirror_in_x:
-            found[channel] = _symmetrized(found[channel])
-    orbits = tuple(found.values())
-    _check_exits_apart(orbits)
-    return orbits
+            orbits[channel] = _find_orbit(potential, energy, channel, follow)
+        if mirror_channel == channel and potential.well.mirror_in_x:
+            orbits[channel] = _symmetrized(orbits[channel])
+    in_channel_order = tuple(orbits.values())
+    _check_exits_apart(in_channel_order)
+    return in_channel_order
 
 
 def _check_separate(potential: Potential, energy: float) -> None:
+    """Raise an error if several channels form one exit."""
     for merged in potential.well.merged_exits(energy):
         raise _SearchError(
             f"{_describe(potential, merged)}, which has no Lyapunov orbit in a rotating frame; choose a lower energy"
@@ -262,10 +264,12 @@ def _check_separate(potential: Potential, energy: float) -> None:
 
 
 def _describe(potential: Potential, merged: MergedExit) -> str:
-    lowest = next(each for each in potential.well.channel_mergers if set(each.channels) <= set(merged.channels))
+    """Return which channels form an exit, and above which maximum of V, for messages."""
+    # The mergers are sorted by energy.
+    lowest = next(merger for merger in potential.well.channel_mergers if set(merger.channels) <= set(merged.channels))
     units = potential.well.stated_units
-    place = f"({lowest.x * units.length:.6g}, {lowest.y * units.length:.6g})"
-    return f"channels {merged.name} are one exit above V = {lowest.energy * units.energy:.6g}, the maximum at {place}"
+    position = f"({lowest.x * units.length:.6g}, {lowest.y * units.length:.6g})"
+    return f"channels {merged.name} are one exit above V = {lowest.energy * units.energy:.6g}, the maximum at {position}"
 
 
 def _find_merged(potential: Potential, energy: float, merged: MergedExit) -> LyapunovOrbit:
@@ -273,33 +277,35 @@ def _find_merged(potential: Potential, energy: float, merged: MergedExit) -> Lya
     if merged.closes_ring:
         raise _SearchError(f"{_describe(potential, merged)}, and it leads all around the well; choose a lower energy")
     axes, saddle = axes_between(potential, merged.channels), potential.saddles[merged.channels[0] - 1]
-    missing = _NO_ORBIT
+    reason = _NO_ORBIT
     for orbit in find_merged_orbits(potential, energy, merged.channels):
         curve = curve_along(axes, saddle, orbit.path)
         if curve is None:
-            missing = max(missing, _SHARP_BEND)
+            reason = max(reason, _SHARP_BEND)
             continue
-        found = _exit_over(potential, energy, merged.channels[0], orbit, curve)
-        if not has_returns(potential, energy, orbit, found.curve):
-            return replace(found, others=merged.channels[1:])
-        missing = _RETURNS
-    raise _SearchError(f"{_describe(potential, merged)}, and {_REASONS[missing]}")
+        lyapunov_orbit = _exit_over(potential, energy, merged.channels[0], orbit, curve)
+        if not has_returns(potential, energy, orbit, lyapunov_orbit.curve):
+            return replace(lyapunov_orbit, others=merged.channels[1:])
+        reason = _RETURNS
+    raise _SearchError(f"{_describe(potential, merged)}, and {_REASONS[reason]}")
 
 
 def _restored(orbit: LyapunovOrbit, units: WellUnits) -> LyapunovOrbit:
-    """Convert an orbit from units of the well to those of its potential; the directions in its exit curve have no unit."""
+    """Convert an orbit from units of the well to those of its potential."""
     if units == WellUnits():
         return orbit
     curve = orbit.curve * units.length
-    directions = slice(geometry.OUTWARD_X, geometry.SHAPE + 1)
-    curve[directions] = orbit.curve[directions]
+    # These columns have no unit.
+    unitless = slice(geometry.OUTWARD_X, geometry.SHAPE + 1)
+    curve[unitless] = orbit.curve[unitless]
     return replace(units.restore(orbit), curve=curve)
 
 
 def _check_exits_apart(orbits: tuple[LyapunovOrbit, ...]) -> None:
-    for one, other in itertools.combinations(orbits, 2):
-        if paths_meet(one.exit_path, other.exit_path):
-            raise _SearchError(f"the exits of channels {one.channel} and {other.channel} meet; choose a lower energy")
+    """Raise an error if two exits meet."""
+    for first, second in itertools.combinations(orbits, 2):
+        if paths_meet(first.exit_path, second.exit_path):
+            raise _SearchError(f"the exits of channels {first.channel} and {second.channel} meet; choose a lower energy")
 
 
 def _mirrored(orbit: LyapunovOrbit, channel: int) -> LyapunovOrbit:
@@ -313,7 +319,7 @@ def _symmetrized(orbit: LyapunovOrbit) -> LyapunovOrbit:
 
 
 def _find_closed_orbit(potential: Potential, energy: float, channel: int) -> LyapunovOrbit:
-    """Return the orbit over a saddle in a rotating frame, and the line that touches it on the outer side."""
+    """Return the orbit over a saddle in a rotating frame, with the exit just outside the orbit."""
     orbit = find_orbit_in_rotating_frame(potential, energy, channel)
     if orbit is None:
         raise _SearchError(f"no Lyapunov orbit was found across channel {channel}; choose another energy")
@@ -328,8 +334,9 @@ def _find_closed_orbit(potential: Potential, energy: float, channel: int) -> Lya
 
 
 def _find_orbit(potential: Potential, energy: float, channel: int, follow: bool) -> LyapunovOrbit:
-    place = potential, energy, channel
-    orbit = (continue_in_energy(*place) or find_from_both_ends(*place)) if follow else find_directly(*place)
+    """Return the orbit over a saddle in a frame at rest, found directly or, with `follow`, by continuation in energy."""
+    arguments = potential, energy, channel
+    orbit = (continue_in_energy(*arguments) or find_from_both_ends(*arguments)) if follow else find_directly(*arguments)
     if orbit is None:
         raise _SearchError(f"no Lyapunov orbit was found across channel {channel}; choose another energy")
     axes = chord_axes(orbit.path) if follow else saddle_axes(potential, channel)
@@ -340,7 +347,7 @@ def _find_orbit(potential: Potential, energy: float, channel: int, follow: bool)
 
 
 def _exit_over(potential: Potential, energy: float, channel: int, orbit: BrakeOrbit, curve: np.ndarray) -> LyapunovOrbit:
-    """Return an orbit between two points at rest, with its exit `curve`, and set the reach of the exit."""
+    """Return an orbit between two points at rest, with its exit `curve`, in which the reach is set in place."""
     curve[geometry.REACH] = find_reach(potential, energy, curve)
     x, y = orbit.path
     there_and_back = np.concatenate([np.arange(x.size), np.arange(x.size - 1)[::-1]])

@@ -16,11 +16,11 @@ from engine.integrator.kernels.dense_output import trace_pieces
 from engine.systems.compiled import kernels_of
 from engine.systems.potential import Potential
 
-# Places where the lines of starts cross the line between the outermost saddles, as shares of the distance of these saddles.
+# Positions at which lines of starts cross the line between the outermost saddles, as shares of its length.
 _LINES = (0.5, 0.25, 0.75, 0.0, 1.0)
-# Points of an exit's path from which orbits leave.
+# Indices of the points of an exit's path from which test orbits leave.
 _POINTS = np.arange(5, 100, 10)
-# Angles of these orbits to the normal of the path.
+# Angles of these orbits to the normal of the path, in radians.
 _ANGLES = np.radians([-75.0, -40.0, 0.0, 40.0, 75.0])
 # Time for which these orbits are followed, in units of the well.
 _FOLLOWED_TIME = 30.0
@@ -29,27 +29,28 @@ _NO_GATES = np.array([[0.0, 0.0, -1.0]])
 
 
 def axes_between(potential: Potential, channels: tuple[int, ...], share: float = 0.5) -> Axes:
-    """Return axes across and along the line between the outermost saddles of an exit, with the origin at a share of this line."""
+    """Return axes with q along the line between the outermost saddles of an exit, and the origin at a share of this line."""
     saddles = potential.saddles[np.array(channels) - 1]
     angles = np.arctan2(saddles[:, 1], saddles[:, 0])
     order = np.argsort(angles)
     gaps = np.diff(angles[order], append=angles[order[0]] + 2.0 * np.pi)
+    # The outermost saddles are on both sides of the widest gap.
     widest = int(np.argmax(gaps))
     first, last = saddles[order[(widest + 1) % len(order)]], saddles[order[widest]]
-    along = last - first
-    return Axes((1.0 - share) * first + share * last, np.array([along[1], -along[0]]) / np.hypot(*along))
+    chord = last - first
+    return Axes((1.0 - share) * first + share * last, np.array([chord[1], -chord[0]]) / np.hypot(*chord))
 
 
 def find_merged_orbits(potential: Potential, energy: float, channels: tuple[int, ...]) -> Iterator[BrakeOrbit]:
-    """Yield the orbits that can be the exit of several channels: all their saddles lie between its ends."""
+    """Yield the orbits that can be the exit of several channels: orbits with all saddles of the channels between their ends."""
     saddles = potential.saddles[np.array(channels) - 1].T
-    size = float(np.hypot(*saddles).max())
+    search_size = float(np.hypot(*saddles).max())
     for share in _LINES:
         axes = axes_between(potential, channels, share)
         _, q = axes.coordinates(saddles)
-        for orbit in find_from_outside(potential, energy, axes, size):
-            ends = axes.coordinates(orbit.path[:, [0, -1]])[1]
-            if ends[0] < q.min() and q.max() < ends[1]:
+        for orbit in find_from_outside(potential, energy, axes, search_size):
+            _, end_q = axes.coordinates(orbit.path[:, [0, -1]])
+            if end_q[0] < q.min() and q.max() < end_q[1]:
                 yield orbit
 
 
@@ -57,6 +58,7 @@ def has_returns(potential: Potential, energy: float, orbit: BrakeOrbit, curve: n
     """Return whether any of 50 orbits that leave across an exit, a row `curve`, returns through it."""
     kernels = kernels_of(potential)
     for start in _leaving_states(potential, energy, orbit.path):
+        # The first piece holds thousands of steps, far more than the time requires.
         steps, _ = next(trace_pieces(kernels, start, _FOLLOWED_TIME, len(potential.outcomes)))
         # In backward time an orbit that returns is an orbit that leaves. The first step begins on the exit.
         for (x0, y0), (x1, y1) in zip(steps[1:-1, :2], steps[2:, :2], strict=True):
@@ -67,8 +69,8 @@ def has_returns(potential: Potential, energy: float, orbit: BrakeOrbit, curve: n
 
 def _leaving_states(potential: Potential, energy: float, path: np.ndarray) -> np.ndarray:
     """Return 50 states that leave across a path (2, 101) with the well on its left, of shape (50, 4)."""
-    along = np.arctan2(*(path[:, _POINTS + 1] - path[:, _POINTS - 1])[::-1])
-    angle = (along - 0.5 * np.pi)[:, None] + _ANGLES
+    path_angle = np.arctan2(*(path[:, _POINTS + 1] - path[:, _POINTS - 1])[::-1])
+    angle = (path_angle - 0.5 * np.pi)[:, None] + _ANGLES
     speed = np.sqrt(2.0 * (energy - potential.value(*path[:, _POINTS])))[:, None]
     columns = [np.broadcast_to(path[k, _POINTS, None], angle.shape) for k in range(2)]
     return np.stack([*columns, speed * np.cos(angle), speed * np.sin(angle)], axis=-1).reshape(-1, 4)

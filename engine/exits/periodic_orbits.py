@@ -1,11 +1,11 @@
 """Periodic orbits over a saddle in a rotating frame, found by Newton's method and continuation.
 
-The motion linearised at a saddle of Φ has a pair of eigenvalues ±iν: small oscillations of period 2π/ν around the saddle, its
-centre direction. By Lyapunov's centre theorem, a family of periodic orbits begins with these oscillations. With σ = √(h − E), E
-the energy of the saddle, orbits are proportional to σ at first, and (position − saddle)/σ and the period depend smoothly on σ.
-Each orbit is predicted from orbits at smaller σ. Newton's method corrects several states of one period at once, so errors grow
-over a part of the period only (multiple shooting; Stoer & Bulirsch 2002, Introduction to Numerical Analysis, section 7.3.5). All
-quantities are in units of the well.
+The motion linearised at a saddle of the effective potential Φ has a pair of eigenvalues ±iν: small oscillations of period 2π/ν,
+which span its centre subspace. By Lyapunov's centre theorem, a family of periodic orbits begins with these oscillations. Let E be
+the energy of the saddle and σ = √(h − E). Small orbits are proportional to σ, and
+(position − saddle)/σ and the period depend smoothly on σ. Each orbit is predicted from orbits at smaller σ. Newton's method
+corrects several states of one period at once, so errors grow over a part of the period only (multiple shooting; Stoer & Bulirsch
+2002, Introduction to Numerical Analysis, section 7.3.5). All quantities are in units of the well.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ from engine.integrator.kernels.dense_output import advance_states, sample_path, 
 from engine.systems.compiled import kernels_of
 from engine.systems.potential import Potential
 
-# Number of states of one period that are corrected together, the nodes.
+# Number of nodes: states of one period that are corrected together.
 _NODES = 8
 # Number of points of the path between two nodes.
 _POINTS_PER_NODE = 25
 _MOST_CORRECTIONS = 12
-# Once corrections of this relative size no longer decrease, further corrections are rounding errors.
+# Relative size below which corrections that no longer decrease are rounding errors.
 _NEARLY_EXACT = 1e-6
-# Near the saddle, this limit is at least this number of roundings of the energy, relative to σ².
+# Smallest value of this limit near the saddle, in roundings of the energy, relative to σ².
 _ROUNDINGS = 64
 # Largest relative change of a prediction by its corrections; a larger change can be a jump to another orbit.
 _LARGEST_CHANGE = 0.1
@@ -39,7 +39,7 @@ _PREDICTED_FROM = 4
 _SMALLEST_STEP = 2.0**-10
 # Largest number of steps of σ.
 _MOST_STEPS = 400
-# Largest number of integrator steps in a part of an orbit; an orbit with more steps passes close to a centre.
+# Largest number of integrator steps in a part of an orbit; an orbit with more steps passes close to a centre of attraction.
 _MOST_STEPS_PER_PART = 400
 # Sharpness of the smooth maximum that defines the edge of an orbit, see `_edge`.
 _SHARPNESS = 50.0
@@ -60,7 +60,8 @@ class PeriodicOrbit(NamedTuple):
     path
         (4, 201) x, y, ẋ, ẏ, evenly spaced in time; the last point is the first one.
     edge
-        The value of u − a q², with a of `ridge_bend`, on a line just outside the orbit, in the axes of the saddle, dimensionless.
+        Value of u − a q² on the parabola just outside the orbit, dimensionless; u and q are in the axes of the saddle, and a is
+        its `ridge_bend`.
     """
 
     period: float
@@ -69,17 +70,21 @@ class PeriodicOrbit(NamedTuple):
 
 
 class _Family(NamedTuple):
-    """The orbits over one saddle of a potential: the saddle at rest as a state (4,), its energy, its axes and `ridge_bend`."""
+    """The orbits over one saddle: the potential, the saddle as a state at rest (4,), its energy, its axes and `ridge_bend`."""
 
     potential: Potential
-    state: np.ndarray
-    energy: float
+    saddle_state: np.ndarray
+    saddle_energy: float
     axes: Axes
     bend: float
 
 
 class _Parts(NamedTuple):
-    """The parts of a trial orbit between its nodes: steps (m, 5) each, states (nodes, 4) at the ends, transition matrices."""
+    """The parts of a trial orbit between its nodes.
+
+    For each part, `steps` are its integrator steps, (m, 5), `ends` is the state at its end, (nodes, 4), and `matrices` is its
+    transition matrix, (nodes, 4, 4).
+    """
 
     steps: list[np.ndarray]
     ends: np.ndarray
@@ -89,9 +94,9 @@ class _Parts(NamedTuple):
 def find_orbit_in_rotating_frame(potential: Potential, energy: float, channel: int) -> PeriodicOrbit | None:
     """Return the orbit over a saddle at an energy above it, followed from the small oscillations; None if it is not found.
 
-    In a frame at rest, the result is the orbit that `brake_orbits` finds, up to rounding errors. There the exits are made from
-    the orbits of `brake_orbits`, whose ends are exactly at rest. Orbits over several saddles are not found, because they do not
-    begin as small oscillations.
+    In a frame at rest, the result is the orbit that `brake_orbits` finds, up to rounding errors. Exits in such a frame are made
+    from the orbits of `brake_orbits`, whose ends are exactly at rest. Orbits over several saddles are not found, because they do
+    not begin as small oscillations.
 
     Parameters
     ----------
@@ -103,13 +108,14 @@ def find_orbit_in_rotating_frame(potential: Potential, energy: float, channel: i
         Number of the saddle, from 1.
     """
     saddle = potential.saddles[channel - 1]
-    height = float(potential.well.saddle_energies[channel - 1])
+    saddle_energy = float(potential.well.saddle_energies[channel - 1])
     family = _Family(
-        potential, np.array([*saddle, 0.0, 0.0]), height, saddle_axes(potential, channel), ridge_bend(potential, channel)
+        potential, np.array([*saddle, 0.0, 0.0]), saddle_energy, saddle_axes(potential, channel), ridge_bend(potential, channel)
     )
+    # Trial orbits that diverge are rejected later.
     with np.errstate(all="ignore"):
-        orbit = _follow(family, float(np.sqrt(energy - height)))
-        return None if orbit is None else _finish(family, energy, orbit)
+        unknowns = _follow(family, float(np.sqrt(energy - saddle_energy)))
+        return None if unknowns is None else _finish(family, energy, unknowns)
 
 
 def multipliers_of(matrix: np.ndarray) -> np.ndarray:
@@ -124,10 +130,11 @@ def monodromy_matrix(potential: Potential, start: np.ndarray, period: float) -> 
     kernels = kernels_of(potential)
     steps = trace_steps(kernels, start, period, len(potential.outcomes))
     durations = np.diff(steps[:, 4], append=period)
-    columns = np.eye(4)
+    matrix = np.eye(4)
     for state, duration in zip(steps[:, :4], durations, strict=True):
-        kernels.tangent(4, np.full(4, duration), *np.repeat(state, 4).reshape(4, 4), *columns)
-    return columns
+        # `tangent` changes the rows of the matrix in place: its columns are four deviation vectors along the same orbit.
+        kernels.tangent(4, np.full(4, duration), *np.repeat(state, 4).reshape(4, 4), *matrix)
+    return matrix
 
 
 def _follow(family: _Family, sigma: float) -> np.ndarray | None:
@@ -146,48 +153,50 @@ def _small_oscillation(family: _Family) -> np.ndarray:
     rotation, axes = family.potential.rotation, family.axes
     flow = np.zeros((4, 4))
     flow[:2, 2:] = np.eye(2)
-    flow[2:, :2] = -family.potential.hessian_matrix(*family.state[:2])
+    flow[2:, :2] = -family.potential.hessian_matrix(*family.saddle_state[:2])
     flow[2:, 2:] = 2.0 * rotation * np.array([[0.0, 1.0], [-1.0, 0.0]])
     values, vectors = np.linalg.eig(flow)
-    centre = int(np.argmax(values.imag))
-    frequency, vector = float(values[centre].imag), vectors[:, centre]
+    centre_index = int(np.argmax(values.imag))
+    frequency = float(values[centre_index].imag)
+    eigenvector = vectors[:, centre_index]
     # The phase is chosen so that q has its minimum at t = 0.
-    across = axes.outward[0] * vector[1] - axes.outward[1] * vector[0]
-    turned = -vector * np.conj(across) / np.abs(across)
-    start = turned.real
-    size = 0.5 * (start[2:] @ start[2:] - start[:2] @ flow[2:, :2] @ start[:2])
+    q_amplitude = axes.outward[0] * eigenvector[1] - axes.outward[1] * eigenvector[0]
+    oscillation = -eigenvector * np.conj(q_amplitude) / np.abs(q_amplitude)
+    start = oscillation.real
+    quadratic_energy = 0.5 * (start[2:] @ start[2:] - start[:2] @ flow[2:, :2] @ start[:2])
     angles = 2.0 * np.pi * np.arange(_NODES) / _NODES
-    nodes = (turned[None] * np.exp(1j * angles)[:, None]).real / np.sqrt(size)
+    nodes = (oscillation[None] * np.exp(1j * angles)[:, None]).real / np.sqrt(quadratic_energy)
     return np.append(nodes, 2.0 * np.pi / frequency)
 
 
 def _extrapolate(known: _Known, target: float) -> np.ndarray:
     """Evaluate, at the target, the polynomial that interpolates the unknowns at known values of σ."""
-    points = np.array([place for place, _ in known])
-    weights = [np.prod((target - np.delete(points, k)) / (place - np.delete(points, k))) for k, place in enumerate(points)]
+    sigmas = np.array([sigma for sigma, _ in known])
+    weights = [np.prod((target - np.delete(sigmas, k)) / (sigma - np.delete(sigmas, k))) for k, sigma in enumerate(sigmas)]
     predicted: np.ndarray = np.array(weights) @ np.array([unknowns for _, unknowns in known])
     return predicted
 
 
 def _correct(family: _Family, sigma: float, predicted: np.ndarray) -> np.ndarray | None:
-    """Correct a predicted orbit at σ by Newton's method; None if this does not converge to a nearby orbit.
+    """Correct a predicted orbit at σ by Newton's method; None if the method does not converge to a nearby orbit.
 
     The unknowns, (4 nodes + 1,), are (state − saddle)/σ at the nodes, evenly spaced over the period, and the period.
     """
     unknowns: np.ndarray = predicted.copy()
-    before = np.inf
-    nearly_exact = max(_NEARLY_EXACT, _ROUNDINGS * float(np.spacing(abs(family.energy))) / sigma**2)
+    previous_size = np.inf
+    nearly_exact = max(_NEARLY_EXACT, _ROUNDINGS * float(np.spacing(abs(family.saddle_energy))) / sigma**2)
     for _ in range(_MOST_CORRECTIONS):
         correction = _newton_step(family, sigma, unknowns)
         if correction is None:
             return None
         unknowns = unknowns + correction
         size = _relative_size(correction, unknowns)
+        # `not … <` also rejects NaN.
         if not _relative_size(unknowns - predicted, unknowns) < _LARGEST_CHANGE:
             return None
-        if size < nearly_exact and size > 0.1 * before:
+        if size < nearly_exact and size > 0.1 * previous_size:
             return unknowns
-        before = size
+        previous_size = size
     return None
 
 
@@ -200,9 +209,9 @@ def _relative_size(change: np.ndarray, unknowns: np.ndarray) -> float:
 def _newton_step(family: _Family, sigma: float, unknowns: np.ndarray) -> np.ndarray | None:
     """Return the least-squares solution of the linearised equations; None where the trial orbit cannot be integrated.
 
-    The equations: each part ends where the next one begins, the energy is that of the saddle plus σ², and q̇ = 0 at the start.
+    The equations: each part ends where the next part begins, the energy is σ² above the saddle, and q̇ = 0 at the start.
     """
-    states = family.state + sigma * unknowns[:-1].reshape(_NODES, 4)
+    states = family.saddle_state + sigma * unknowns[:-1].reshape(_NODES, 4)
     parts = _trace(family.potential, states, unknowns[-1])
     if parts is None:
         return None
@@ -210,11 +219,11 @@ def _newton_step(family: _Family, sigma: float, unknowns: np.ndarray) -> np.ndar
     residual[:-2] = ((parts.ends - np.roll(states, -1, axis=0)) / sigma).ravel()
     jacobian[:-2, -1] = (_velocities(family.potential, parts.ends) / (_NODES * sigma)).ravel()
     for k in range(_NODES):
-        here, following = slice(4 * k, 4 * k + 4), slice(4 * ((k + 1) % _NODES), 4 * ((k + 1) % _NODES) + 4)
-        jacobian[here, here] += parts.matrices[k]
-        jacobian[here, following] -= np.eye(4)
+        node, next_node = slice(4 * k, 4 * k + 4), slice(4 * ((k + 1) % _NODES), 4 * ((k + 1) % _NODES) + 4)
+        jacobian[node, node] += parts.matrices[k]
+        jacobian[node, next_node] -= np.eye(4)
     start, outward = states[0], family.axes.outward
-    residual[-2] = (family.potential.energy(start) - family.energy) / sigma**2 - 1.0
+    residual[-2] = (family.potential.energy(start) - family.saddle_energy) / sigma**2 - 1.0
     jacobian[-2, :4] = np.array([*family.potential.gradient(start[0], start[1]), start[2], start[3]]) / sigma
     jacobian[-1, 2:4] = -outward[1], outward[0]
     residual[-1] = jacobian[-1, :4] @ unknowns[:4]
@@ -228,40 +237,42 @@ def _velocities(potential: Potential, states: np.ndarray) -> np.ndarray:
     """Return the time derivatives of n states, of shape (n, 4)."""
     x, y, vx, vy = states.T
     slope_x, slope_y = potential.gradient(x, y)
-    twice = 2.0 * potential.rotation
-    return np.column_stack([vx, vy, twice * vy - slope_x, -twice * vx - slope_y])
+    coriolis = 2.0 * potential.rotation
+    return np.column_stack([vx, vy, coriolis * vy - slope_x, -coriolis * vx - slope_y])
 
 
 def _trace(potential: Potential, states: np.ndarray, period: float) -> _Parts | None:
-    """Return the parts of an orbit that start at its nodes (nodes, 4); each part lasts as long as the time between two nodes."""
+    """Return the parts of an orbit of some period that start at its nodes (nodes, 4); None if they cannot be integrated."""
     if not (np.isfinite(states).all() and 0.0 < period < np.inf):
         return None
     kernels, duration = kernels_of(potential), period / _NODES
+    # The first piece of a part is the whole part, or has more than `_MOST_STEPS_PER_PART` steps.
     steps = [next(trace_pieces(kernels, state, duration, len(potential.outcomes)))[0] for state in states]
     if max(map(len, steps)) > _MOST_STEPS_PER_PART:
         return None
-    counts = np.cumsum([len(each) for each in steps])
-    durations = np.concatenate([np.diff(each[:, 4], append=duration) for each in steps])
-    every_step = np.concatenate(steps)[:, :4]
-    if not np.isfinite(every_step).all():
+    stops = np.cumsum([len(part_steps) for part_steps in steps])
+    durations = np.concatenate([np.diff(part_steps[:, 4], append=duration) for part_steps in steps])
+    step_states = np.concatenate(steps)[:, :4]
+    if not np.isfinite(step_states).all():
         return None
-    matrices = np.moveaxis(transition_matrices(kernels, every_step.T, durations), -1, 0)
-    products = [_product(part) for part in np.split(matrices, counts[:-1])]
-    ends = advance_states(kernels, every_step[counts - 1], durations[counts - 1])
+    matrices = np.moveaxis(transition_matrices(kernels, step_states.T, durations), -1, 0)
+    products = [_product(part_matrices) for part_matrices in np.split(matrices, stops[:-1])]
+    ends = advance_states(kernels, step_states[stops - 1], durations[stops - 1])
     return _Parts(steps, ends, np.array(products))
 
 
 def _product(matrices: np.ndarray) -> np.ndarray:
     """Return the product of n transition matrices, of shape (4, 4), with the first matrix applied first."""
-    product: np.ndarray = functools.reduce(lambda before, matrix: matrix @ before, matrices)
+    product: np.ndarray = functools.reduce(lambda earlier, matrix: matrix @ earlier, matrices)
     return product
 
 
 def _finish(family: _Family, energy: float, unknowns: np.ndarray) -> PeriodicOrbit | None:
-    """Return the path and the edge of an orbit; None if its parts do not fit."""
-    sigma, period = float(np.sqrt(energy - family.energy)), float(unknowns[-1])
-    states = family.state + sigma * unknowns[:-1].reshape(_NODES, 4)
+    """Return the orbit with its path and edge; None if its parts do not join within `_LARGEST_GAP`."""
+    sigma, period = float(np.sqrt(energy - family.saddle_energy)), float(unknowns[-1])
+    states = family.saddle_state + sigma * unknowns[:-1].reshape(_NODES, 4)
     parts = _trace(family.potential, states, period)
+    # `not … <` also rejects NaN.
     if parts is None or not np.abs(parts.ends - np.roll(states, -1, axis=0)).max() < _LARGEST_GAP:
         return None
     kernels, duration = kernels_of(family.potential), period / _NODES
@@ -274,7 +285,7 @@ def _finish(family: _Family, energy: float, unknowns: np.ndarray) -> PeriodicOrb
 def _edge(family: _Family, path: np.ndarray) -> float:
     """Return a little more than the largest u − a q² on the path (4, points) of an orbit, with a of `ridge_bend`.
 
-    The largest value itself is not a smooth function of the energy where its position jumps.
+    The largest value itself is not a smooth function of the energy where the point with this value jumps.
     """
     u, q = family.axes.coordinates(path[:2, :-1])
     offset = u - family.bend * q * q

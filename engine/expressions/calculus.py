@@ -23,7 +23,7 @@ from engine.expressions.nodes import (
     power,
 )
 
-# Coefficients count as equal if their relative difference is at most this.
+# Largest relative difference of coefficients that count as equal.
 _ROUNDING = 1e-14
 # Number of cached derivatives, of about 1 kB each.
 _DERIVATIVES = 4096
@@ -60,11 +60,12 @@ def curvatures(expression: Expression) -> tuple[Expression, Expression, Expressi
 def _differentiate_factor(factors: tuple[tuple[Expression, float], ...], k: int, axis: int) -> Expression:
     """Return a product with factor k, b^n, replaced by b^(n − 1) b'."""
     base, n = factors[k]
-    others = (power(other, m) for place, (other, m) in enumerate(factors) if place != k)
-    return multiply(power(base, n - 1.0), derivative(base, axis), *others)
+    other_factors = (power(other, m) for index, (other, m) in enumerate(factors) if index != k)
+    return multiply(power(base, n - 1.0), derivative(base, axis), *other_factors)
 
 
 def _outer_derivative(name: str, argument: Expression) -> Expression:
+    """Return f'(argument) of the function f with a name."""
     match name:
         case "exp":
             return apply_function("exp", argument)
@@ -78,19 +79,24 @@ def _outer_derivative(name: str, argument: Expression) -> Expression:
 def _of_inverse_hyperbolic_sine(argument: Expression, axis: int) -> Expression | None:
     """Return (p'/c) b^(−½), the derivative of log(p + c b^½) if c² b' = 2 p' p with a number p' ≠ 0; None for other arguments.
 
-    Where p < 0, terms of u = p + c b^½ cancel, so that the usual u'/u would lose digits.
+    Where p < 0, the terms of u = p + c b^½ cancel, and the usual derivative u'/u would lose digits.
     """
     terms = argument.terms if isinstance(argument, Sum) else ()
     roots = [(part, c) for part, c in terms if isinstance(part, Product) and [n for _, n in part.factors] == [0.5]]
     if len(roots) != 1:
         return None
-    (root, c), base = roots[0], roots[0][0].factors[0][0]
-    rest = linear_combination([(1.0, argument), (-c, root)])
-    slope = as_number(derivative(rest, axis))
-    found, expected = as_terms(derivative(base, axis)), as_terms(rest)
-    if not slope or found is None or expected is None:
+    root, c = roots[0]
+    base, _ = root.factors[0]
+    p = linear_combination([(1.0, argument), (-c, root)])
+    slope = as_number(derivative(p, axis))
+    base_slope_terms, p_terms = as_terms(derivative(base, axis)), as_terms(p)
+    if not slope or base_slope_terms is None or p_terms is None:
         return None
-    pairs = ((c * c * found.get(powers, 0.0), 2.0 * slope * expected.get(powers, 0.0)) for powers in found | expected)
+    # The coefficients of c² b' and of 2 p' p.
+    pairs = (
+        (c * c * base_slope_terms.get(powers, 0.0), 2.0 * slope * p_terms.get(powers, 0.0))
+        for powers in base_slope_terms | p_terms
+    )
     if not all(math.isclose(one, other, rel_tol=_ROUNDING) for one, other in pairs):
         return None
     return linear_combination([(slope / c, power(base, -0.5))])

@@ -23,7 +23,7 @@ class Operations[Value]:
     linear
         A constant plus the sum of the products of coefficients and values.
     product
-        Product of two values; the square if both are the same object.
+        Product of two values. If both are the same object, it may be computed as a square.
     power
         Power of a value with a constant exponent.
     functions
@@ -40,7 +40,12 @@ def node_values[Value](graph: Graph, numbers: Sequence[float], x: Value, y: Valu
     """Return the values of all nodes of a graph."""
     values: list[Value] = []
     for node in graph.nodes:
-        values.append({"x": x, "y": y}[node.kind] if node.kind in ("x", "y") else _value(node, values, numbers, operations))
+        if node.kind == "x":
+            values.append(x)
+        elif node.kind == "y":
+            values.append(y)
+        else:
+            values.append(_value(node, values, numbers, operations))
     return values
 
 
@@ -50,7 +55,8 @@ def _value[Value](node: Node, values: list[Value], numbers: Sequence[float], ope
             left, right = node.operands
             return operations.product(values[left], values[right])
         case "sum":
-            coefficients = [numbers[place] for place in node.numbers]
+            coefficients = [numbers[position] for position in node.numbers]
+            # The constant, if any, follows the coefficients.
             constant = coefficients.pop() if len(coefficients) > len(node.operands) else 0.0
             return operations.linear(constant, coefficients, [values[operand] for operand in node.operands])
         case "shift":
@@ -72,7 +78,7 @@ _ARRAYS = Operations[np.ndarray](_linear, operator.mul, np.power, {"exp": np.exp
 
 
 def evaluate(graph: Graph, numbers: Sequence[float], x: Any, y: Any) -> list[np.ndarray]:
-    """Evaluate the expressions at (x, y), which broadcast; NaN or infinite where an expression is not defined."""
+    """Evaluate the expressions at x and y, which broadcast. The result is NaN or infinite where an expression is not defined."""
     x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
     with np.errstate(all="ignore"):
         values = node_values(graph, numbers, x, y, _ARRAYS)
@@ -80,15 +86,15 @@ def evaluate(graph: Graph, numbers: Sequence[float], x: Any, y: Any) -> list[np.
 
 
 def _fill(value: Any, shape: tuple[int, ...]) -> np.ndarray:
-    """Return a value as an array of a given shape; the value of a constant expression is a single number."""
+    """Return a value as an array of a shape. The value of a constant expression is a single number."""
     return np.asarray(value) if np.shape(value) == shape else np.full(shape, value)
 
 
 def evaluate_at(graph: Graph, numbers: Sequence[float], x: float, y: float) -> list[float]:
-    """Return the values at one point, equal to those of `evaluate` up to rounding, in a tenth of the time."""
+    """Return the values of `evaluate` at one point, up to rounding, in a tenth of the time."""
     try:
         values = node_values(graph, numbers, x, y, _FLOATS)
     except (ArithmeticError, ValueError):
-        # For infinite or undefined values, functions of `math` raise errors; those of NumPy do not.
+        # For infinite or undefined values, functions of `math` raise errors, but functions of NumPy do not.
         return [float(value) for value in evaluate(graph, numbers, x, y)]
     return [values[index] for index in graph.results]

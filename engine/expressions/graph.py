@@ -1,8 +1,8 @@
-"""Expressions as a list of operations without repeated parts; this form is evaluated, compiled and sent to the browser.
+"""Expressions as a list of operations without repeated parts. This form is evaluated, compiled and sent to the browser.
 
-The graph of an expression refers to its numbers by position, so that expressions that differ only in their numbers have the same
-graph and share compiled code. The graph has few products and powers, because the series of a product or power needs a sum over
-all lower orders.
+The graph of an expression refers to numbers by position. Expressions that differ only in their numbers have the same graph, and
+share compiled code. The graph has few products and powers, because the series of a product or power needs a sum over all lower
+orders.
 """
 
 from __future__ import annotations
@@ -26,11 +26,12 @@ class Node(NamedTuple):
         ``x``, ``y``, ``sum``, ``shift`` (adds a number), ``product`` (of two values), ``power``, ``exp``, ``log``, ``sin`` or
         ``cos``.
     operands
-        Indices of nodes. A sine has as its second operand the cosine of the same argument, and a cosine the sine, because each is
-        the derivative of the other, up to a sign. A power u^a has as its second operand u^(a + 1), if that is also a node.
+        Indices of nodes. The second operand of a sine is the cosine of the same argument, and that of a cosine is the sine,
+        because each is the derivative of the other, up to a sign. The second operand of a power u^a is u^(a + 1), if this is also
+        a node.
     numbers
-        For a sum, positions of the coefficients, one for each operand, and of the constant unless that is 0; for a shift, the
-        position of its number.
+        Positions of numbers: for a sum, of the coefficient of each operand, then of the constant unless it is 0; for a shift, of
+        the added number.
     exponent
         The exponent of a power.
     """
@@ -66,18 +67,21 @@ def _is_polynomial(base: Expression, exponent: float) -> bool:
 
 
 class _Builder:
+    """Collects the nodes and the numbers of a graph."""
+
     def __init__(self) -> None:
         self.nodes: list[Node] = []
         self.numbers: list[float] = []
-        self._places: dict[Any, int] = {}
+        # Indices of the nodes of expressions, and of products and inverses by `Node`.
+        self._indices: dict[Any, int] = {}
         # Indices of powers by (index of the base, exponent).
         self._powers: dict[tuple[int, float], int] = {}
 
     def add(self, expression: Expression) -> int:
         """Return the index of the node of an expression."""
-        if expression not in self._places:
-            self._places[expression] = self._add_new(expression)
-        return self._places[expression]
+        if expression not in self._indices:
+            self._indices[expression] = self._add_new(expression)
+        return self._indices[expression]
 
     def _add_new(self, expression: Expression) -> int:
         match expression:
@@ -96,10 +100,10 @@ class _Builder:
             case Product(factors):
                 # Polynomials come last, so that the forces of a centre along x and y share the product of the other factors.
                 ordered = sorted(factors, key=lambda factor: _is_polynomial(*factor))
-                first_place, *others = (self._power(self.add(base), n) for base, n in ordered)
-                for other in others:
-                    first_place = self._node(Node("product", (first_place, other)))
-                return first_place
+                index, *other_indices = (self._power(self.add(base), n) for base, n in ordered)
+                for other in other_indices:
+                    index = self._node(Node("product", (index, other)))
+                return index
             case Function("sin" | "cos" as name, argument):
                 return self._sine_and_cosine(name, argument)
             case Function(name, argument):
@@ -121,7 +125,7 @@ class _Builder:
     def _real_power(self, base: int, exponent: float) -> int:
         """Return the index of a non-integer power.
 
-        The next higher power is used if it is a node, and is added for an inverse root.
+        The next higher power is an operand if it is a node. For an inverse root, the root is added as a node.
         """
         if exponent == -0.5:
             self._real_power(base, 0.5)
@@ -139,16 +143,17 @@ class _Builder:
 
     def _sine_and_cosine(self, name: str, argument: Expression) -> int:
         angle = self.add(argument)
+        # The next node is the cosine.
         sine = self._append(Node("sin", (angle, len(self.nodes) + 1)))
         cosine = self._append(Node("cos", (angle, sine)))
-        self._places |= {Function("sin", argument): sine, Function("cos", argument): cosine}
+        self._indices |= {Function("sin", argument): sine, Function("cos", argument): cosine}
         return sine if name == "sin" else cosine
 
     def _node(self, node: Node) -> int:
         """Add a node if it is new, and return its index."""
-        if node not in self._places:
-            self._places[node] = self._append(node)
-        return self._places[node]
+        if node not in self._indices:
+            self._indices[node] = self._append(node)
+        return self._indices[node]
 
     def _append(self, node: Node) -> int:
         self.nodes.append(node)

@@ -17,17 +17,17 @@ import numpy as np
 from engine.expressions.evaluation import Operations, node_values
 from engine.expressions.graph import Graph, Node
 
-# Widening of an interval that covers the rounding error of an operation, relative to an end.
+# Relative widening of an end, which covers the rounding error of an operation.
 _RELATIVE = 4.0 * 2.0**-52
-# Absolute widening, which covers underflow.
+# Absolute widening of an end, which covers underflow.
 _ABSOLUTE = 1e-300
-# Largest angle of a sine, in radians. For larger angles the position within a period is not accurate enough.
+# Largest angle of a sine, in radians. For larger angles, the position within a period is not accurate enough.
 _LARGEST_ANGLE = 1e8
 
 
 @dataclass(frozen=True)
 class Interval:
-    """Lower and upper ends (n,) for n boxes."""
+    """Lower and upper ends for n boxes, each of shape (n,)."""
 
     low: np.ndarray
     high: np.ndarray
@@ -52,9 +52,9 @@ class Enclosure:
     values
         An interval for each expression.
     defined
-        (n,) whether all expressions are defined and bounded on the whole box.
+        Whether all expressions are defined and bounded on the whole box, of shape (n,).
     nowhere
-        (n,) whether at least one expression is undefined on the whole box.
+        Whether at least one expression is undefined on the whole box, of shape (n,).
     """
 
     values: list[Interval]
@@ -64,22 +64,29 @@ class Enclosure:
 
 def enclose(graph: Graph, numbers: Sequence[float], x: Interval, y: Interval) -> Enclosure:
     """Return intervals of the expressions of a graph on boxes x × y."""
-    nowhere, defined = np.zeros(x.low.shape, bool), np.ones(x.low.shape, bool)
+    nowhere = np.zeros(x.low.shape, bool)
+    defined = np.ones(x.low.shape, bool)
     with np.errstate(all="ignore"):
-        found = node_values(graph, numbers, x, y, _OPERATIONS)
+        intervals = node_values(graph, numbers, x, y, _OPERATIONS)
     for node in graph.nodes:
         if node.kind in ("power", "log"):
-            base = found[node.operands[0]]
-            nowhere |= base.high < 0.0 if _needs_positive(node) else (base.low == 0.0) & (base.high == 0.0)
-            defined &= (base.low > 0.0) | (base.high < 0.0) & (not _needs_positive(node))
+            base = intervals[node.operands[0]]
+            if _needs_positive(node):
+                nowhere |= base.high < 0.0
+                defined &= base.low > 0.0
+            else:
+                nowhere |= (base.low == 0.0) & (base.high == 0.0)
+                defined &= base.excludes_zero()
     # A constant has one interval for all boxes.
-    values = [Interval(*np.broadcast_arrays(found[place].low, found[place].high, x.low)[:2]) for place in graph.results]
+    results = [intervals[index] for index in graph.results]
+    values = [Interval(*np.broadcast_arrays(result.low, result.high, x.low)[:2]) for result in results]
     for value in values:
         defined &= np.isfinite(value.low) & np.isfinite(value.high)
     return Enclosure(values, defined & ~nowhere, nowhere)
 
 
 def _needs_positive(node: Node) -> bool:
+    """Return whether a power or a logarithm is defined only for a positive base."""
     return node.kind == "log" or node.exponent != int(node.exponent)
 
 
@@ -88,7 +95,7 @@ Ends = tuple[np.ndarray, np.ndarray]
 
 
 def _interval(ends: Ends) -> Interval:
-    """Make an interval of its ends; an end of NaN becomes infinite."""
+    """Make an interval from its ends. An end that is NaN becomes infinite."""
     low, high = ends
     return Interval(np.where(np.isnan(low), -np.inf, low), np.where(np.isnan(high), np.inf, high))
 
@@ -98,8 +105,8 @@ def _widen(operation: Callable[..., Ends]) -> Callable[..., Interval]:
 
     @functools.wraps(operation)
     def widened(*operands: Any) -> Interval:
-        exact = _interval(operation(*operands))
-        low, high = exact.low, exact.high
+        interval = _interval(operation(*operands))
+        low, high = interval.low, interval.high
         return Interval(low - _RELATIVE * np.abs(low) - _ABSOLUTE, high + _RELATIVE * np.abs(high) + _ABSOLUTE)
 
     return widened
@@ -107,11 +114,11 @@ def _widen(operation: Callable[..., Ends]) -> Callable[..., Interval]:
 
 def _linear(constant: float, coefficients: Sequence[float], operands: Sequence[Interval]) -> Interval:
     low = high = np.asarray(constant)
-    size = np.abs(low)
+    magnitude = np.abs(low)
     for c, operand in zip(coefficients, operands, strict=True):
         first, last = (operand.low, operand.high) if c >= 0.0 else (operand.high, operand.low)
-        low, high, size = low + c * first, high + c * last, size + abs(c) * operand.size
-    error = _RELATIVE * len(operands) * size + _ABSOLUTE
+        low, high, magnitude = low + c * first, high + c * last, magnitude + abs(c) * operand.size
+    error = _RELATIVE * len(operands) * magnitude + _ABSOLUTE
     return _interval((low - error, high + error))
 
 
@@ -133,12 +140,13 @@ def _square(base: Interval) -> Ends:
 def _power(base: Interval, exponent: float) -> Ends:
     """Return the power −1, or a non-integer power of the nonnegative part of the base."""
     if exponent == -1.0:
-        across = (base.low < 0.0) & (base.high > 0.0)
-        # An end that is 0 is approached from inside the interval.
-        low, high = 1.0 / np.where(base.high == 0.0, -0.0, base.high), 1.0 / np.where(base.low == 0.0, 0.0, base.low)
-        return np.where(across, -np.inf, low), np.where(across, np.inf, high)
-    ends = np.maximum(base.low, 0.0) ** exponent, np.maximum(base.high, 0.0) ** exponent
-    return (ends[0], ends[1]) if exponent > 0.0 else (ends[1], ends[0])
+        contains_zero = (base.low < 0.0) & (base.high > 0.0)
+        # An end at 0 is approached from inside the interval, so its sign is the sign of the rest of the interval.
+        low = 1.0 / np.where(base.high == 0.0, -0.0, base.high)
+        high = 1.0 / np.where(base.low == 0.0, 0.0, base.low)
+        return np.where(contains_zero, -np.inf, low), np.where(contains_zero, np.inf, high)
+    power_of_low, power_of_high = np.maximum(base.low, 0.0) ** exponent, np.maximum(base.high, 0.0) ** exponent
+    return (power_of_low, power_of_high) if exponent > 0.0 else (power_of_high, power_of_low)
 
 
 @_widen
@@ -156,15 +164,15 @@ def _sine(angle: Interval, shift: float = 0.0) -> Ends:
     """Return sin(angle + shift)."""
     first, last = angle.low + shift, angle.high + shift
     margin = _RELATIVE * (np.abs(first) + np.abs(last) + 1.0)
-    ends = np.sin(first) - margin, np.sin(first) + margin, np.sin(last) - margin, np.sin(last) + margin
-    unknown = ~(np.maximum(np.abs(first), np.abs(last)) < _LARGEST_ANGLE)
+    # The comparison is also False for NaN.
+    is_known = np.maximum(np.abs(first), np.abs(last)) < _LARGEST_ANGLE
     # Whether the interval contains a maximum of the sine, 2πk + π/2, or a minimum, 2πk − π/2.
-    crest, trough = (
+    has_maximum, has_minimum = (
         np.floor((last + margin - at) / (2.0 * np.pi)) > np.floor((first - margin - at) / (2.0 * np.pi))
         for at in (0.5 * np.pi, -0.5 * np.pi)
     )
-    low = np.where(unknown | trough, -1.0, np.minimum(ends[0], ends[2]))
-    high = np.where(unknown | crest, 1.0, np.maximum(ends[1], ends[3]))
+    low = np.where(~is_known | has_minimum, -1.0, np.minimum(np.sin(first) - margin, np.sin(last) - margin))
+    high = np.where(~is_known | has_maximum, 1.0, np.maximum(np.sin(first) + margin, np.sin(last) + margin))
     return low, high
 
 

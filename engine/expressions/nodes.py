@@ -1,7 +1,7 @@
 """Expressions in x and y: immutable trees in canonical form, so that equal formulas are equal objects.
 
 An expression is a coordinate, a sum Σ c m + constant, a product Π b^a with real exponents, or a function exp, log, sin or cos of
-an expression. Numbers are the coefficients of sums; a single number is a sum without terms. Parameters already have their values.
+an expression. Numbers are coefficients of sums, and a single number is a sum without terms. Parameters already have their values.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from engine.expressions.polynomials import Powers, Terms
 
 
 class Expression:
-    """A node of an expression together with everything below it.
+    """A node of a tree with everything below it.
 
     Attributes
     ----------
@@ -27,7 +27,7 @@ class Expression:
 
     @cached_property
     def key(self) -> tuple[Any, ...]:
-        """The key; each kind of node defines it."""
+        """The key, which each kind of node defines."""
         raise NotImplementedError
 
     @cached_property
@@ -41,7 +41,7 @@ class Expression:
         return self._hash
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return the state without the cached key and hash; hashes differ between processes."""
+        """Return the state without the cached key and hash, because hashes differ between processes."""
         return {name: value for name, value in self.__dict__.items() if name not in ("key", "_hash")}
 
 
@@ -115,38 +115,40 @@ def as_number(expression: Expression) -> float | None:
 
 def linear_combination(parts: Iterable[tuple[float, Expression]]) -> Expression:
     """Return Σ c e over the pairs (c, e)."""
-    constant, collected = 0.0, dict[Expression, float]()
+    constant = 0.0
+    coefficients: dict[Expression, float] = {}
     for c, part in parts:
         inner = part if isinstance(part, Sum) else Sum(0.0, ((part, 1.0),))
         constant += c * inner.constant
         for each, d in inner.terms:
-            collected[each] = collected.get(each, 0.0) + c * d
-    terms = tuple(sorted(((part, c) for part, c in collected.items() if c), key=lambda term: _order(term[0])))
+            coefficients[each] = coefficients.get(each, 0.0) + c * d
+    terms = tuple(sorted(((part, c) for part, c in coefficients.items() if c), key=lambda term: _order(term[0])))
     if not constant and len(terms) == 1 and terms[0][1] == 1.0:
         return terms[0][0]
     return Sum(constant, terms)
 
 
 def multiply(*factors: Expression) -> Expression:
-    """Return the product of expressions; sums are not expanded."""
-    coefficient, collected = 1.0, dict[Expression, float]()
+    """Return the product of expressions. Sums are not expanded."""
+    coefficient = 1.0
+    exponents: dict[Expression, float] = {}
     for factor in factors:
         scale, rest = _split_coefficient(factor)
         coefficient *= scale
         for base, exponent in rest.factors if isinstance(rest, Product) else ((rest, 1.0),):
             if as_number(base) is None:
-                collected[base] = collected.get(base, 0.0) + exponent
+                exponents[base] = exponents.get(base, 0.0) + exponent
     if not coefficient:
         return number(0.0)
-    scaled = [base for base, n in collected.items() if n and n == int(n) and _split_coefficient(base)[1] is not base]
-    if scaled:
-        # For example, √(−x) √(−x) is −x.
-        powers = [power(base, collected.pop(base)) for base in scaled]
-        return multiply(number(coefficient), *(Product(((base, n),)) for base, n in collected.items() if n), *powers)
-    kept = tuple(sorted(((base, n) for base, n in collected.items() if n), key=lambda factor: factor[0].key))
-    if not kept:
+    # The sum of exponents can be an integer, so that the coefficient of the base leaves the power: √(−x) √(−x) is −x.
+    scaled_bases = [base for base, n in exponents.items() if n and n == int(n) and _split_coefficient(base)[1] is not base]
+    if scaled_bases:
+        powers = [power(base, exponents.pop(base)) for base in scaled_bases]
+        return multiply(number(coefficient), *(Product(((base, n),)) for base, n in exponents.items() if n), *powers)
+    remaining = tuple(sorted(((base, n) for base, n in exponents.items() if n), key=lambda factor: factor[0].key))
+    if not remaining:
         return number(coefficient)
-    product = kept[0][0] if len(kept) == 1 and kept[0][1] == 1.0 else Product(kept)
+    product = remaining[0][0] if len(remaining) == 1 and remaining[0][1] == 1.0 else Product(remaining)
     return linear_combination([(coefficient, product)])
 
 
@@ -161,22 +163,22 @@ def expand(factor: Expression, total: Expression) -> Expression:
 def power(base: Expression, exponent: float) -> Expression:
     """Return a real power; ArithmeticError or ValueError if a power of a number is not a finite real number."""
     coefficient, rest = _split_coefficient(base)
-    integer = exponent == int(exponent)
+    is_integer = exponent == int(exponent)
     if exponent == 0.0:
         return number(1.0)
-    if coefficient < 0.0 and not integer:
+    if coefficient < 0.0 and not is_integer:
         coefficient, rest = 1.0, base
     if as_number(rest) is not None:
         return number(_finite(math.pow(coefficient * rest.constant, exponent)))  # type: ignore[attr-defined]
-    if isinstance(rest, Product) and (integer or (len(rest.factors) == 1 and _keeps_domain(rest.factors[0][1]))):
-        raised: Expression = multiply(*(Product(((b, n * exponent),)) for b, n in rest.factors))
+    if isinstance(rest, Product) and (is_integer or (len(rest.factors) == 1 and _keeps_domain(rest.factors[0][1]))):
+        power_of_rest: Expression = multiply(*(Product(((b, n * exponent),)) for b, n in rest.factors))
     else:
-        raised = rest if exponent == 1.0 else Product(((rest, float(exponent)),))
-    return linear_combination([(_finite(math.pow(coefficient, exponent)), raised)])
+        power_of_rest = rest if exponent == 1.0 else Product(((rest, float(exponent)),))
+    return linear_combination([(_finite(math.pow(coefficient, exponent)), power_of_rest)])
 
 
 def _keeps_domain(inner: float) -> bool:
-    """Return whether (b^inner)^a can be written as b^(inner a); not for even `inner`: √(b²) is |b|."""
+    """Return whether (b^inner)^a can be written as b^(inner a). For even `inner` it cannot: √(b²) is |b|."""
     return inner != int(inner) or (int(inner) % 2 != 0 and abs(inner) == 1.0)
 
 
@@ -193,9 +195,9 @@ def from_terms(terms: Terms) -> Expression:
 
 def as_terms(expression: Expression) -> dict[Powers, float] | None:
     """Return {(i, j): c} of an expanded polynomial; None for other expressions."""
-    whole = expression if isinstance(expression, Sum) else Sum(0.0, ((expression, 1.0),))
-    terms = {(0, 0): whole.constant} if whole.constant else {}
-    for part, c in whole.terms:
+    total = expression if isinstance(expression, Sum) else Sum(0.0, ((expression, 1.0),))
+    terms = {(0, 0): total.constant} if total.constant else {}
+    for part, c in total.terms:
         powers = powers_of(part)
         if powers is None:
             return None

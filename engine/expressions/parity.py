@@ -1,4 +1,4 @@
-"""Mirror symmetries of expressions, found node by node, so that mirror images of orbits are exact in floating point."""
+"""Mirror symmetries of expressions. They are found node by node, so mirror images of orbits are exact in floating point."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _PARITIES = 1024
 
 @lru_cache(maxsize=_PARITIES)
 def parity(expression: Expression, axis: int) -> int:
-    """Return `EVEN`, `ODD` or `NEITHER`, the parity under a change of sign of a coordinate.
+    """Return the parity under a change of sign of a coordinate: `EVEN`, `ODD` or `NEITHER`.
 
     A sum whose terms are exchanged by the reflection, such as the terms of two equal centres, is `NEITHER`: in floating point its
     values at mirror images can differ in the last bit.

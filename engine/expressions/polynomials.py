@@ -11,7 +11,7 @@ Powers = tuple[int, int]
 Terms = Mapping[Powers, float]
 
 HIGHEST_DEGREE = 12
-"""Highest degree of a potential. Searches for critical points are tested up to 12, and higher degrees slow Taylor steps."""
+"""Highest degree of a potential. Searches for critical points are tested up to it, and higher degrees make Taylor steps slow."""
 
 
 def degree(terms: Mapping[Powers, object]) -> int:
@@ -29,16 +29,17 @@ def largest_coefficients(*polynomials: Terms) -> dict[int, float]:
 
 
 def evaluate(terms: Terms, x: Any, y: Any) -> Any:
-    """Return the polynomial at (x, y); arrays broadcast."""
+    """Return the polynomial at (x, y). Arrays broadcast."""
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     total = np.zeros(np.broadcast_shapes(x.shape, y.shape))
     for (i, j), c in terms.items():
         total = total + c * _power(x, i) * _power(y, j)
+    # An array without dimensions becomes a number.
     return total[()]
 
 
 def _power(x: np.ndarray, i: int) -> np.ndarray:
-    """Return x^i, of exactly equal magnitude for x and −x, which powers of NumPy above 3 do not ensure."""
+    """Return x^i with exactly equal magnitudes for x and −x. Powers of NumPy above 3 do not ensure this."""
     if i < 4:
         return x**i
     return np.abs(x) ** i if i % 2 == 0 else x * np.abs(x) ** (i - 1)
@@ -52,7 +53,7 @@ def derivative(terms: Terms, axis: int) -> dict[Powers, float]:
 
 
 def multiply[C: (float, complex)](a: Mapping[Powers, C], b: Mapping[Powers, C]) -> dict[Powers, C]:
-    """Return a · b; terms that cancel remain as zeros."""
+    """Return a · b. Terms that cancel remain as zeros."""
     total: dict[Powers, C] = {}
     for (i, j), c in a.items():
         for (k, m), d in b.items():
@@ -62,7 +63,7 @@ def multiply[C: (float, complex)](a: Mapping[Powers, C], b: Mapping[Powers, C]) 
 
 
 def substitute[C: (float, complex)](terms: Terms, x: Mapping[Powers, C], y: Mapping[Powers, C]) -> dict[Powers, C]:
-    """Replace x and y in a polynomial by two polynomials; terms that cancel remain as zeros or rounding errors."""
+    """Replace x and y in a polynomial by two polynomials. Terms that cancel remain as zeros or rounding errors."""
     total: dict[Powers, C] = {}
     for (i, j), c in terms.items():
         monomial: dict[Powers, C] = {(0, 0): 1.0}

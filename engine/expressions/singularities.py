@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from engine.expressions.nodes import Coordinate, Expression, Function, Product, Sum, as_terms
-from engine.expressions.polynomials import Powers, degree
+from engine.expressions.polynomials import degree
 
 
 def singular_bases(expression: Expression) -> tuple[Expression, ...]:
@@ -25,21 +25,21 @@ def _bases(expression: Expression) -> list[Expression]:
 
 def has_central_part(expression: Expression) -> bool:
     """Return whether a singular base is a multiple of x² + y²."""
-    return any(
-        terms is not None and terms == {(2, 0): c, (0, 2): c} for terms, c in map(_with_square, singular_bases(expression))
-    )
+    return any(_is_central(base) for base in singular_bases(expression))
 
 
-def _with_square(base: Expression) -> tuple[dict[Powers, float] | None, float]:
-    """Return the terms of a polynomial, and the coefficient of x²."""
+def _is_central(base: Expression) -> bool:
     terms = as_terms(base)
-    return terms, (terms or {}).get((2, 0), 0.0)
+    if terms is None:
+        return False
+    c = terms.get((2, 0), 0.0)
+    return terms == {(2, 0): c, (0, 2): c}
 
 
 def oblique_gradients(expression: Expression) -> tuple[tuple[float, float], ...]:
-    """Return (a, b) of each linear base or argument of a function, a x + b y + c with a, b ≠ 0, without repetitions."""
-    found = (as_terms(part) for part in dict.fromkeys(_inner_parts(expression)))
-    gradients = ((terms.get((1, 0), 0.0), terms.get((0, 1), 0.0)) for terms in found if terms and degree(terms) == 1)
+    """Return (a, b) of each base or argument of a function of the form a x + b y + c with a, b ≠ 0, without repetitions."""
+    polynomials = (as_terms(part) for part in dict.fromkeys(_inner_parts(expression)))
+    gradients = ((terms.get((1, 0), 0.0), terms.get((0, 1), 0.0)) for terms in polynomials if terms and degree(terms) == 1)
     return tuple(dict.fromkeys((a, b) for a, b in gradients if a and b))
 
 

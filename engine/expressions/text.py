@@ -9,12 +9,12 @@ from engine.expressions.nodes import Coordinate, Expression, Function, Product, 
 _TO_SUPERSCRIPT = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 # Largest denominator of a number that is written as a fraction.
 _LARGEST_DENOMINATOR = 1000
-# Largest denominator of a fraction with a finite decimal expansion: ½, ¼, ⅛, but 0.55125 instead of 441/800.
+# Largest denominator of a fraction that has a finite decimal expansion: ½, ¼, ⅛, but 0.55125 in place of 441/800.
 _LARGEST_OF_DECIMALS = 8
 
 
 def short_fraction(value: float, tolerance: float) -> Fraction | None:
-    """Return the fraction shown in place of a number of at least 0; None if a decimal number is clearer.
+    """Return the fraction to be written in place of a number of at least 0; None if a decimal number is clearer.
 
     Fractions have denominators up to 1000, or up to 8 if their decimal expansion is finite. `tolerance` is the largest error.
     """
@@ -28,17 +28,17 @@ def short_fraction(value: float, tolerance: float) -> Fraction | None:
 def write_expression(expression: Expression, digits: int | None = None) -> str:
     """Return an expression as text, such as "x²/2 + y²/2 − x²y exp(−y²)".
 
-    digits: significant digits of numbers; None for as many as the parser needs to read the numbers exactly.
+    digits: number of significant digits; None for as many as the parser needs to read the numbers exactly.
     """
-    whole = expression if isinstance(expression, Sum) else Sum(0.0, ((expression, 1.0),))
-    parts: list[tuple[float, str]] = [(c, _term(part, abs(c), digits)) for part, c in whole.terms]
-    if whole.constant or not parts:
-        parts.append((whole.constant, monomial_term(0, 0, abs(whole.constant), digits)))
+    total = expression if isinstance(expression, Sum) else Sum(0.0, ((expression, 1.0),))
+    parts: list[tuple[float, str]] = [(c, _term(part, abs(c), digits)) for part, c in total.terms]
+    if total.constant or not parts:
+        parts.append((total.constant, monomial_term(0, 0, abs(total.constant), digits)))
     return join_signed(parts)
 
 
 def join_signed(parts: list[tuple[float, str]]) -> str:
-    """Join texts to a sum; the number of each pair gives the sign of its text."""
+    """Join texts to a sum. The number of each pair gives the sign of the text."""
     text = ""
     for c, part in parts:
         sign = ("−" if c < 0 else "") if not text else (" − " if c < 0 else " + ")
@@ -46,18 +46,19 @@ def join_signed(parts: list[tuple[float, str]]) -> str:
     return text
 
 
-def _term(part: Expression, size: float, digits: int | None) -> str:
+def _term(part: Expression, magnitude: float, digits: int | None) -> str:
     """Return a positive multiple of a term. The number precedes functions, so that the parser reads the number exactly."""
     powers = powers_of(part)
     if powers is not None:
-        return monomial_term(*powers, size, digits)
-    ratio = "/".join(each for k, each in enumerate(write_ratio(size, digits)) if not k or each != "1")
+        return monomial_term(*powers, magnitude, digits)
+    numerator, denominator = write_ratio(magnitude, digits)
+    ratio = numerator if denominator == "1" else f"{numerator}/{denominator}"
     return _product(part, digits) if ratio == "1" else f"{ratio} {_product(part, digits)}"
 
 
-def monomial_term(i: int, j: int, size: float, digits: int | None) -> str:
+def monomial_term(i: int, j: int, magnitude: float, digits: int | None) -> str:
     """Return a positive multiple of x^i y^j, such as "2x²/3"."""
-    numerator, denominator = write_ratio(size, digits)
+    numerator, denominator = write_ratio(magnitude, digits)
     powers = monomial(i, j)
     factor = "" if numerator == "1" and powers else numerator
     return f"{factor}{powers}{f'/{denominator}' if denominator != '1' else ''}"
@@ -65,18 +66,18 @@ def monomial_term(i: int, j: int, size: float, digits: int | None) -> str:
 
 def monomial(i: int, j: int) -> str:
     """Return x^i y^j as text, such as "x²y"; empty for a constant."""
-    return "".join(raised(name, exponent) for name, exponent in (("x", i), ("y", j)) if exponent)
+    return "".join(write_power(name, exponent) for name, exponent in (("x", i), ("y", j)) if exponent)
 
 
-def write_ratio(size: float, digits: int | None) -> tuple[str, str]:
+def write_ratio(magnitude: float, digits: int | None) -> tuple[str, str]:
     """Return the numerator and the denominator of a number, as a `short_fraction` or as decimals over 1."""
-    fraction = short_fraction(size, 0.0 if digits is None else 5.0 * 10.0**-digits * size)
+    fraction = short_fraction(magnitude, 0.0 if digits is None else 5.0 * 10.0**-digits * magnitude)
     if fraction is not None:
         return str(fraction.numerator), str(fraction.denominator)
-    return (repr(float(size)) if digits is None else f"{size:.{digits}g}"), "1"
+    return (repr(float(magnitude)) if digits is None else f"{magnitude:.{digits}g}"), "1"
 
 
-def raised(name: str, exponent: float) -> str:
+def write_power(name: str, exponent: float) -> str:
     """Return a base to a power, with superscripts if the exponent is an integer."""
     if exponent == 1.0:
         return name
@@ -90,9 +91,8 @@ def _product(expression: Expression, digits: int | None) -> str:
     factors = expression.factors if isinstance(expression, Product) else ((expression, 1.0),)
     text = ""
     for base, exponent in sorted(factors, key=lambda factor: _place(factor[0])):
-        part = _factor(base, exponent, digits)
         space = " " if text and isinstance(base, Function) else ""
-        text += f"{space}{part}"
+        text += f"{space}{_factor(base, exponent, digits)}"
     return text
 
 
@@ -103,11 +103,11 @@ def _place(base: Expression) -> int:
 def _factor(base: Expression, exponent: float, digits: int | None) -> str:
     match base:
         case Coordinate(axis):
-            return raised("xy"[axis], exponent)
+            return write_power("xy"[axis], exponent)
         case Function(name, argument):
             function = f"{name}({write_expression(argument, digits)})"
-            return function if exponent == 1.0 else raised(f"({function})", exponent)
-    return raised(f"({write_expression(base, digits)})", exponent)
+            return function if exponent == 1.0 else write_power(f"({function})", exponent)
+    return write_power(f"({write_expression(base, digits)})", exponent)
 
 
 def _write_exponent(exponent: float) -> str:

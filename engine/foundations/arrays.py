@@ -1,4 +1,4 @@
-"""Read-only arrays, for results that are cached and shared."""
+"""Read-only arrays, because results are cached and shared."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def read_only(array: np.ndarray) -> np.ndarray:
 
 
 class ReadOnlyArrays:
-    """Base of dataclasses whose arrays stay read-only after unpickling, although NumPy does not pickle the flag."""
+    """Base of dataclasses whose arrays are read-only also after unpickling; NumPy does not pickle the flag."""
 
     def __setstate__(self, state: Mapping[str, Any]) -> None:
         vars(self).update({name: read_only(value) if isinstance(value, np.ndarray) else value for name, value in state.items()})

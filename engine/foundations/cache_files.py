@@ -1,8 +1,8 @@
-"""The cache on disk: files in a private folder of limited size, verified on reading and written atomically.
+"""The cache on disk: files in a private folder of limited size, verified when they are read and written atomically.
 
-It contains compiled kernels, as pickles with machine code, and points of potentials. The hash at the start of each file detects
-accidents, such as an incomplete copy. It does not detect attacks, because anyone who can write a file can also write its hash. A
-file is therefore read only if no other user can have written it.
+The cache contains compiled kernels, as pickles with machine code, and points of potentials. The hash at the start of each file
+detects accidents, such as an incomplete copy. The hash does not detect attacks, because anyone who can write a file can also
+write its hash. A file is therefore read only if no other user can have written it.
 """
 
 from __future__ import annotations
@@ -27,13 +27,16 @@ SUFFIX = ".kernel"
 """Suffix of the names of complete files."""
 
 LARGEST_SIZE = 256 * 2**20
-"""Size limit of all files together, in bytes. The kernels of one potential take about 0.2 MB."""
+"""Largest total size of the files, in bytes; the kernels of one potential take about 0.2 MB."""
 
 MOST_FILES = 4096
-"""Limit on the number of files. Each write lists all files, which takes 0.01 s."""
+"""Largest number of files; each write lists all files, which takes 0.01 s."""
 
+# Suffix of the names of incomplete files.
 _PART = ".part"
+# Number of bytes of the hash at the start of a file.
 _HASH_BYTES = hashlib.sha256().digest_size
+# User number of the superuser, who may own the files.
 _SUPERUSER = 0
 
 log = logging.getLogger(__name__)
@@ -49,8 +52,8 @@ def read_cached(path: Path) -> bytes | None:
 
     Returns
     -------
-    The content without the hash. None if the file is missing, or if another user owns or can write the file or its folder; the
-    latter logs a warning.
+    The content without the hash. None if the file is missing; None, with a warning in the log, if another user owns or can write
+    the file or its folder.
 
     Raises
     ------
@@ -120,7 +123,7 @@ def delete_cached(name: str) -> None:
 
 
 def _is_private_folder(folder: Path) -> bool:
-    """Return whether only this user can write to a folder, or the folder is missing; otherwise log a warning."""
+    """Return whether only this user can write to a folder, or the folder is missing; if not, log a warning."""
     try:
         problem = _find_other_user(folder.stat())
     except OSError:
@@ -131,7 +134,7 @@ def _is_private_folder(folder: Path) -> bool:
 
 
 def _find_other_user(status: os.stat_result) -> str:
-    """Describe who else may have written a file or folder, and the remedy; return an empty text for nobody."""
+    """Describe who else may have written a file or folder, and the remedy; empty if only this user or the superuser may have."""
     if os.name != "posix":
         return ""
     if status.st_uid not in (os.geteuid(), _SUPERUSER):
@@ -142,7 +145,7 @@ def _find_other_user(status: os.stat_result) -> str:
 
 
 def _mark_used(path: Path) -> None:
-    """Set the access time, which many file systems do not update on reading."""
+    """Set the access time, which many file systems do not update when a file is read."""
     with contextlib.suppress(OSError):
         os.utime(path, ns=(time.time_ns(), path.stat().st_mtime_ns))
 
@@ -157,15 +160,16 @@ def _delete_least_recently_used(folder: Path, largest_size: int, most_files: int
                 if entry.name.endswith((SUFFIX, _PART)):
                     status = entry.stat()
                     files.append((status.st_atime_ns, status.st_size, entry.path))
-    count, size = len(files), sum(size for _, size, _ in files)
-    for _, file_size, path in sorted(files):
-        if count <= most_files and size <= largest_size:
+    file_count, total_size = len(files), sum(size for _, size, _ in files)
+    for _, size, path in sorted(files):
+        if file_count <= most_files and total_size <= largest_size:
             break
         Path(path).unlink(missing_ok=True)
-        count, size = count - 1, size - file_size
+        file_count, total_size = file_count - 1, total_size - size
 
 
 def _write_atomically(path: Path, content: bytes) -> None:
+    """Write a temporary file in the same folder, and rename it."""
     handle, part = tempfile.mkstemp(dir=path.parent, suffix=_PART)
     try:
         with os.fdopen(handle, "wb") as file:
@@ -178,4 +182,5 @@ def _write_atomically(path: Path, content: bytes) -> None:
 
 @functools.cache
 def _warn_once(message: str) -> None:
+    """Log a warning, unless the same warning has been logged."""
     log.warning(message)

@@ -18,28 +18,29 @@ from typing import Any
 
 import numpy as np
 
-# About the least number of indices in a task.
+# Smallest number of indices in a task, approximately.
 _LEAST_PART = 1000
-# Nice value of compute threads: under contention they get about a tenth of the CPU time of a normal thread. At idle priority,
-# another program could stop a thread that holds the interpreter lock, and all other threads would wait for this lock.
+# Nice value of compute threads, which get about a tenth of the processor time of a normal thread under contention. At idle
+# priority, another program could stop a thread that holds the interpreter lock, and all other threads would wait for this lock.
 _NICE_VALUE = 10
-# Calls shorter than this, in seconds, show no progress bar.
+# Time after which a progress bar appears, in seconds.
 _DELAY = 1.0
+# Format of a progress bar, for tqdm.
 _FORMAT = "{desc}: {percentage:3.0f}% |{bar}| {elapsed}<{remaining}"
-# Set while a progress bar is shown, so that nested calls show none.
+# Set while a progress bar is shown, so that nested calls show no bar.
 _bar_is_shown = threading.Event()
 
 
 def count_cores() -> int:
     """Return the number of cores that this process may use."""
     # os.process_cpu_count is new in Python 3.13.
-    count = getattr(os, "process_cpu_count", os.cpu_count)
-    return count() or 1
+    count_cpus = getattr(os, "process_cpu_count", os.cpu_count)
+    return count_cpus() or 1
 
 
 @functools.cache
 def default_executor() -> ThreadPoolExecutor:
-    """Return the thread pool shared by this process, one thread per core; kernels release the GIL."""
+    """Return the thread pool of this process, with one thread per core; kernels release the GIL."""
     return create_thread_pool(count_cores())
 
 
@@ -49,12 +50,12 @@ if hasattr(os, "register_at_fork"):
 
 
 def create_thread_pool(threads: int) -> ThreadPoolExecutor:
-    """Return a thread pool for kernels, of lower priority than the threads of this process that serve requests."""
+    """Return a thread pool for kernels, whose priority is lower than that of the other threads of this process."""
     return ThreadPoolExecutor(threads, thread_name_prefix="orbits", initializer=_lower_priority)
 
 
 def _lower_priority() -> None:
-    """Raise the nice value of the calling thread, on Linux only: on other systems it applies to the whole process."""
+    """Raise the nice value of the calling thread, on Linux only; on other systems, a nice value applies to the whole process."""
     if sys.platform == "linux":
         os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), _NICE_VALUE)
 
@@ -62,9 +63,9 @@ def _lower_priority() -> None:
 def count_workers(executor: Executor) -> int:
     """Return the number of calls that an executor runs in parallel; 2 if the number is unknown."""
     # The number of Dask's workers may change, so each call asks the client.
-    threads = getattr(getattr(executor, "_client", None), "nthreads", None)
-    if threads is not None:
-        return sum(threads().values()) or 2
+    thread_counts = getattr(getattr(executor, "_client", None), "nthreads", None)
+    if thread_counts is not None:
+        return sum(thread_counts().values()) or 2
     return int(getattr(executor, "_max_workers", 2))
 
 
@@ -87,7 +88,7 @@ class Execution:
 
     No option changes a complete result, not even its last bit. A cancelled computation raises
     `concurrent.futures.CancelledError`, except where the result marks what is missing: `compute_map` and the analyses of maps
-    return a map whose ``complete`` is False, and `classify_orbits` gives orbits that were not computed a code of their own.
+    return a map whose ``complete`` is False, and `classify_orbits` returns a code of its own for orbits that were not computed.
 
     Parameters
     ----------
@@ -115,11 +116,12 @@ class Execution:
 
     @property
     def _pool(self) -> Executor:
+        """The executor, by default the thread pool of this process."""
         return self.executor or default_executor()
 
     @property
     def workers(self) -> int:
-        """How many calls run in parallel."""
+        """Number of calls that run in parallel."""
         return count_workers(self._pool)
 
     @property
@@ -133,7 +135,7 @@ class Execution:
             raise CancelledError
 
     def in_this_thread(self) -> Execution:
-        """Return the same options without other threads, for single orbits or inside a worker of another pool."""
+        """Return the same options for the calling thread alone, for single orbits or inside a worker of another pool."""
         return replace(self, executor=SerialExecutor())
 
     def report(self, share: Callable[[], float]) -> None:
@@ -147,7 +149,7 @@ class Execution:
         return self if report is None else replace(self, on_progress=lambda share: report((number + share) / count))
 
     def submit[T](self, function: Callable[..., T], *arguments: Any) -> Future[T]:
-        """Queue a call."""
+        """Queue a call in the executor, and return its future."""
         return self._pool.submit(function, *arguments)
 
     def collect[T](self, future: Future[T]) -> T | None:
@@ -181,8 +183,8 @@ def run_parts(
 ) -> Iterator[tuple[np.ndarray, Any]]:
     """Run ``work(*select(part))`` in parallel for parts of an index array, and yield each part of `indices` with its result.
 
-    Parts that never ran because of a cancellation are left out. `work` must be a module-level function, so that it can be pickled
-    for other processes, and should release the GIL.
+    Parts that never ran because of a cancellation are left out. `work` must be a function of a module, so that it can be pickled
+    for other processes, and it should release the GIL.
     """
     count = min(2 * execution.workers, math.ceil(indices.size / _LEAST_PART))
     parts = np.array_split(indices, count) if count else []
@@ -205,18 +207,19 @@ def shows_progress[**P, T](label: str) -> Callable[[Callable[P, T]], Callable[P,
 
         @functools.wraps(function)
         def call(*args: P.args, **kwargs: P.kwargs) -> T:
-            given = _bind(signature, args, kwargs)
-            execution = given.get("execution", DEFAULT_EXECUTION)
+            given_arguments = _bind(signature, args, kwargs)
+            execution = given_arguments.get("execution", DEFAULT_EXECUTION)
             if not isinstance(execution, Execution):
                 # The function itself raises the error.
                 return function(*args, **kwargs)
-            follows = any(one is not None for one in (execution.on_progress, given.get("on_progress"), given.get("on_frame")))
-            if follows or _bar_is_shown.is_set() or not _is_interactive():
+            receivers = execution.on_progress, given_arguments.get("on_progress"), given_arguments.get("on_frame")
+            has_receiver = any(receiver is not None for receiver in receivers)
+            if has_receiver or _bar_is_shown.is_set() or not _is_interactive():
                 return function(*args, **kwargs)
-            with _bar(label) as report:
-                arguments = signature.bind(*args, **kwargs)
-                arguments.arguments["execution"] = replace(execution, on_progress=report)
-                return function(*arguments.args, **arguments.kwargs)
+            with _show_bar(label) as report:
+                bound = signature.bind(*args, **kwargs)
+                bound.arguments["execution"] = replace(execution, on_progress=report)
+                return function(*bound.args, **bound.kwargs)
 
         return call
 
@@ -224,7 +227,7 @@ def shows_progress[**P, T](label: str) -> Callable[[Callable[P, T]], Callable[P,
 
 
 def _bind(signature: inspect.Signature, args: Any, kwargs: Any) -> Mapping[str, Any]:
-    """Return the arguments of a call by name; only an execution of None if the call does not fit the signature."""
+    """Return the arguments of a call by name; if the call does not fit the signature, an execution of None alone."""
     try:
         return signature.bind(*args, **kwargs).arguments
     except TypeError:
@@ -239,7 +242,8 @@ def _is_interactive() -> bool:
 
 
 @contextmanager
-def _bar(label: str) -> Iterator[Callable[[float], None]]:
+def _show_bar(label: str) -> Iterator[Callable[[float], None]]:
+    """Show a progress bar while the context is active, and yield a function that receives the share done."""
     with warnings.catch_warnings():
         # Without Jupyter's widgets, tqdm shows a bar of text and a warning.
         warnings.simplefilter("ignore")

@@ -1,4 +1,4 @@
-"""Optional parts of an installation: packages of the extras, and the package that draws results."""
+"""Optional parts of an installation: the packages of extras, and the package that draws results."""
 
 from __future__ import annotations
 
@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Any, Protocol
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-
 GROUP = "escape_explorer.pictures"
-"""Group of the entry point that names the module with the functions of `Pictures`."""
+"""Group of the entry point of the module with the functions of `Pictures`."""
 
 
 def require_package(package: str, extra: str) -> None:
@@ -49,7 +48,7 @@ class Pictures(Protocol):
 
 @functools.cache
 def load_pictures(group: str = GROUP) -> Pictures:
-    """Load the entry point of a group at the first call, because drawing libraries are slow to import.
+    """Return the entry point of a group, loaded at the first call, because drawing libraries are slow to import.
 
     Raises
     ------

@@ -38,13 +38,14 @@ FORMER_NAMES: Mapping[str, tuple[str, str]] = MappingProxyType(
         ),
     }
 )
-"""Former public names, each with its replacement and the "module:object" to return, relative to this package."""
+"""Former public names, each with its replacement in words and the "module:object" to return, relative to this package."""
 
 
 def find_former_name(name: str, stacklevel: int = 2) -> Any:
-    """Return the object of a former public name, and warn; raise an AttributeError for any other name.
+    """Return the object of a former public name of `escape_explorer`, and warn; raise an AttributeError for any other name.
 
-    stacklevel: the frame to which the warning refers, as in `warnings.warn`; by default the caller.
+    Former names are the keys of `FORMER_NAMES`, and names that have moved to `escape_explorer.results`. `stacklevel` has the
+    meaning of `warnings.warn`; by default the warning refers to the caller.
     """
     results = import_module("..results", __package__)
     if name in results.__all__:
@@ -52,14 +53,14 @@ def find_former_name(name: str, stacklevel: int = 2) -> Any:
         return getattr(results, name)
     if name not in FORMER_NAMES:
         raise AttributeError(f"module 'escape_explorer' has no attribute {name!r}")
-    new, place = FORMER_NAMES[name]
-    _warn(name, new, stacklevel + 1)
-    module, _, attribute = place.partition(":")
-    return getattr(import_module(module, __package__), attribute)
+    replacement, location = FORMER_NAMES[name]
+    _warn(name, replacement, stacklevel + 1)
+    module_name, _, attribute = location.partition(":")
+    return getattr(import_module(module_name, __package__), attribute)
 
 
 def with_former_fields[T](cls: type[T]) -> type[T]:
-    """Add former names of attributes and parameters to a dataclass; each use of a former name gives a warning."""
+    """Add the `FORMER_FIELDS` to a dataclass, as attributes and as parameters; each use of a former name gives a warning."""
     names = {each.name for each in fields(cls)}  # type: ignore[arg-type]
     for old, new in FORMER_FIELDS.items():
         if hasattr(cls, new) or new in names:
@@ -71,6 +72,8 @@ def with_former_fields[T](cls: type[T]) -> type[T]:
 
 
 def _former_attribute(old: str, new: str) -> property:
+    """Return a property that warns and returns the attribute with the new name."""
+
     def get(self: Any) -> Any:
         _warn(old, new)
         return getattr(self, new)
@@ -78,15 +81,18 @@ def _former_attribute(old: str, new: str) -> property:
     return property(get)
 
 
-def with_former_parameters[**P, T](**former: str) -> Callable[[Callable[P, T]], Callable[P, T]]:
-    """Decorate a function to accept former names of parameters; each use of a former name gives a warning."""
+def with_former_parameters[**P, T](**new_names: str) -> Callable[[Callable[P, T]], Callable[P, T]]:
+    """Decorate a function to accept former names of parameters, given as ``former="new"``; each use gives a warning.
+
+    If both names are given, the value of the former name is used.
+    """
 
     def decorate(function: Callable[P, T]) -> Callable[P, T]:
         @functools.wraps(function)
         def call(*args: P.args, **kwargs: P.kwargs) -> T:
-            for old in former.keys() & kwargs.keys():
-                _warn(old, former[old])
-                kwargs[former[old]] = kwargs.pop(old)
+            for old in new_names.keys() & kwargs.keys():
+                _warn(old, new_names[old])
+                kwargs[new_names[old]] = kwargs.pop(old)
             return function(*args, **kwargs)
 
         return call
@@ -95,5 +101,5 @@ def with_former_parameters[**P, T](**former: str) -> Callable[[Callable[P, T]], 
 
 
 def _warn(old: str, new: str, stacklevel: int = 3) -> None:
-    """Give a warning that refers, by default, to the code that calls the calling function."""
+    """Warn that a name is deprecated; by default the warning refers to the caller of the calling function."""
     warnings.warn(f"{old} is deprecated: use {new}", DeprecationWarning, stacklevel=stacklevel)

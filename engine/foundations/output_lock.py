@@ -1,4 +1,4 @@
-"""A lock for output that takes long to write: one process holds the lock, and other processes are told which."""
+"""A lock for output that takes long to write. One process holds the lock; errors in other processes name this process."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from filelock import FileLock
 
-# Number of attempts. An attempt fails if the previous holder deletes the file after it is opened and before it is locked.
+# Largest number of attempts; one fails if the previous holder deletes the file after it is opened here and before it is locked.
 _MOST_ATTEMPTS = 100
-# Errors of file systems without locks.
+# Numbers of errors of file systems without locks.
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP, errno.EOPNOTSUPP)
 
 
@@ -26,8 +26,8 @@ def hold_lock(path: Path) -> Iterator[None]:
     """Reserve a path for this process by a file `.NAME.lock` beside the path; the file is deleted at the end.
 
     The operating system releases the lock when the process ends, even if it is killed. The file of a killed process stays until
-    the next process with this output deletes it. The file is beside the output, because only there does it protect outputs on
-    file systems that machines share. On Windows, and on file systems without locks, nothing is reserved.
+    the next process with this output deletes it. The file is beside the output, so that it also protects outputs on file systems
+    that several machines share. On Windows, and on file systems without locks, nothing is reserved.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ def hold_lock(path: Path) -> Iterator[None]:
     Raises
     ------
     BlockingIOError
-        When another process holds the lock; the message names its number, its machine and the time when it began.
+        When another process holds the lock; the message contains its number, its machine and the time at which it began.
     OSError
         When the lock file cannot be written.
     """
@@ -61,6 +61,7 @@ def hold_lock(path: Path) -> Iterator[None]:
 
 
 def _acquire(lock: FileLock, file: Path, path: Path) -> None:
+    """Acquire the lock of an output, or raise BlockingIOError if another process holds it."""
     from filelock import Timeout
 
     for _ in range(_MOST_ATTEMPTS):
@@ -68,6 +69,7 @@ def _acquire(lock: FileLock, file: Path, path: Path) -> None:
             lock.acquire()
             return
         except Timeout:
+            # If the file is missing, its holder has just deleted it.
             if file.exists():
                 break
         except OSError as error:
@@ -79,6 +81,7 @@ def _acquire(lock: FileLock, file: Path, path: Path) -> None:
 
 
 def _read_holder(file: Path) -> str:
+    """Return the text that the holder has written; empty if there is none."""
     try:
         return file.read_text(errors="replace")
     except FileNotFoundError:

@@ -1,6 +1,6 @@
 """Base classes of results: pictures on Matplotlib axes and in notebooks, tables for pandas, datasets for xarray, and files.
 
-Another package draws the pictures. It is imported when the first picture is drawn; see `engine.foundations.extras`.
+Another package, which is imported for the first picture, draws the pictures; see `engine.foundations.extras`.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class _NamesForUsers(type):
-    """Metaclass that hides internal names of results from `dir` of a class, and thus from completion."""
+    """Metaclass that hides the `inner_names` of results from `dir` of a class, and thus from completion."""
 
     def __dir__(cls) -> list[str]:
         return [name for name in super().__dir__() if name not in cls.inner_names]  # type: ignore[attr-defined]
@@ -41,8 +41,8 @@ class Chart:
     ----------
     x, y
         Names of the columns.
-    across, up
-        Labels of the horizontal and the vertical axis.
+    x_label, y_label
+        Labels of the axes.
     logarithmic
         Letters of the axes with a logarithmic scale, such as "xy".
     title
@@ -53,8 +53,8 @@ class Chart:
 
     x: str
     y: str
-    across: str
-    up: str
+    x_label: str
+    y_label: str
     logarithmic: str = ""
     title: str = ""
     by_channel: bool = False
@@ -79,10 +79,10 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
     """Names of the attributes that contain codes, each with the enumeration of its codes."""
 
     row_dimension: ClassVar[str] = ""
-    """Name of the dimension of the columns in files. Empty if the first column has distinct values and is the coordinate."""
+    """Name of the dimension of the columns in files; empty if the first column has distinct values and is the coordinate."""
 
     held_as: ClassVar[dict[str, str]] = {}
-    """{field: name} of fields that files store under another name or as several parts. The name is that in files or of a part."""
+    """Names in files of fields that files store under another name, or as several parts: then the name of a part."""
 
     @property
     def fate_labels(self) -> Sequence[str]:
@@ -127,7 +127,11 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
     @classmethod
     def kinds(cls) -> dict[str, type[Any]]:
         """Return all subclasses, by the name that files contain."""
-        return {name: kind for each in cls.__subclasses__() for name, kind in {each.__name__: each, **each.kinds()}.items()}
+        return {
+            name: kind
+            for subclass in cls.__subclasses__()
+            for name, kind in {subclass.__name__: subclass, **subclass.kinds()}.items()
+        }
 
     @classmethod
     def read_parts(cls, dataset: xr.Dataset) -> dict[str, Any]:
@@ -149,11 +153,13 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
 
     def columns(self) -> Mapping[str, np.ndarray]:
         """Return the first one-dimensional array and all others of its length, by name; empty without such arrays."""
-        arrays = {name: a for name, a in self._attributes().items() if isinstance(a, np.ndarray) and a.ndim == 1}
+        attributes = self._attributes().items()
+        arrays = {name: value for name, value in attributes if isinstance(value, np.ndarray) and value.ndim == 1}
         length = next(iter(arrays.values())).size if arrays else 0
         return {name: array for name, array in arrays.items() if array.size == length}
 
     def _attributes(self) -> dict[str, Any]:
+        """Return the fields by name."""
         return {field.name: getattr(self, field.name) for field in fields(self)}  # type: ignore[arg-type]
 
     def to_pandas(self) -> pd.DataFrame:
@@ -169,11 +175,11 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
     def nbytes(self) -> int:
         """Bytes held by the arrays."""
         # Only the fields count: a cached value can be the object itself, as `in_well_units` of a potential whose units are 1.
-        values = (getattr(self, each.name) for each in fields(cast("Any", self)))
+        values = (getattr(self, field.name) for field in fields(cast("Any", self)))
         return sum(int(getattr(value, "nbytes", 0)) for value in values)
 
     def provenance(self) -> dict[str, Any]:
-        """Return how the result was made, as plain values: the version and, where known, the potential and the request."""
+        """Return how the result was made, as plain values: here, the version of the package."""
         return {"version": metadata.version("escape-explorer")}
 
     def to_xarray(self) -> xr.Dataset:
@@ -185,29 +191,30 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
 
         columns = self.columns()
         scalars = {name: write_field(value) for name, value in self.numbers().items()}
-        arrays, others = self._remaining_fields({*scalars, *columns, *self.held_as})
-        attributes = {"result": type(self).__name__, **self.provenance(), **others}
+        arrays, other_attributes = self._remaining_fields({*scalars, *columns, *self.held_as})
+        attributes = {"result": type(self).__name__, **self.provenance(), **other_attributes}
         if not columns:
             variables = {name: ((), value, self._meaning(name, value)) for name, value in scalars.items()}
             return xr.Dataset(variables, attrs=attributes)
         dimension = self.row_dimension or next(iter(columns))
-        rows = {name: (dimension, values, self._meaning(name, values)) for name, values in columns.items()}
-        entries = {
+        column_variables = {name: (dimension, values, self._meaning(name, values)) for name, values in columns.items()}
+        # Arrays of other shapes have their own dimensions.
+        array_variables = {
             name: ([f"{name}_entry_{axis}" for axis in range(values.ndim)], values, self._meaning(name, values))
             for name, values in arrays.items()
         }
-        return xr.Dataset(rows | entries, attrs=attributes | scalars)
+        return xr.Dataset(column_variables | array_variables, attrs=attributes | scalars)
 
     def _remaining_fields(self, stored: set[str]) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
-        """Return the fields that are not in `stored`, as arrays and as attributes, without nested results and mappings."""
-        fields_left = {name: value for name, value in self._attributes().items() if name not in stored}
-        arrays = {name: value for name, value in fields_left.items() if isinstance(value, np.ndarray)}
-        others = {
+        """Return the fields whose names are not in `stored`: arrays, and attributes, but no nested results and mappings."""
+        remaining = {name: value for name, value in self._attributes().items() if name not in stored}
+        arrays = {name: value for name, value in remaining.items() if isinstance(value, np.ndarray)}
+        attributes = {
             name: write_field(value)
-            for name, value in fields_left.items()
+            for name, value in remaining.items()
             if not (value is None or name in arrays or isinstance(value, Result | Mapping))
         }
-        return arrays, others
+        return arrays, attributes
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the result as a NetCDF file, which `open_result` reads; for a table use ``to_pandas().to_csv(path)``.
@@ -224,14 +231,14 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
         OSError
             If the file cannot be written.
         """
-        wanted = Path(path)
-        if wanted.suffix != ".nc":
+        file = Path(path)
+        if file.suffix != ".nc":
             raise ValueError(f"path={path}: must end in .nc")
         # If the call is interrupted, the file to be replaced remains unchanged.
-        part = wanted.with_name(f".{wanted.name}.{os.getpid()}.part")
+        part = file.with_name(f".{file.name}.{os.getpid()}.part")
         try:
             self.to_xarray().to_netcdf(part)
-            part.replace(wanted)
+            part.replace(file)
         finally:
             part.unlink(missing_ok=True)
 

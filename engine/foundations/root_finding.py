@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+# Largest number of steps; more than a continuous function needs.
 _MOST_STEPS = 100
 
 
@@ -20,13 +21,13 @@ def find_root(function: Callable[[float], float], low: float, high: float, *, ab
     function
         Continuous function.
     low, high
-        The ends of the bracket; the function has different signs there.
+        The ends of the bracket, at which the function has different signs.
     absolute, relative
-        The root is within ``absolute + relative * abs(root)`` of a change of sign.
+        The result is within ``absolute + relative * abs(root)`` of a change of sign.
 
     Returns
     -------
-    The root. After 100 steps, more than a continuous function needs, the last point.
+    The root. After 100 steps, which a continuous function never needs, the last point.
 
     Raises
     ------
@@ -34,56 +35,57 @@ def find_root(function: Callable[[float], float], low: float, high: float, *, ab
         If the function has the same sign at both ends, or is NaN at a point where it is evaluated.
     """
 
-    def checked(x: float) -> float:
-        found = function(x)
-        if math.isnan(found):
+    def evaluate(x: float) -> float:
+        value = function(x)
+        if math.isnan(value):
             raise ValueError(f"bracket=({low}, {high}): the function is NaN at {x}")
-        return found
+        return value
 
-    before, here = low, high
-    value_before, value = checked(before), checked(here)
-    if value_before * value > 0.0:
+    previous_x, x = low, high
+    previous_value, value = evaluate(previous_x), evaluate(x)
+    if previous_value * value > 0.0:
         raise ValueError(f"bracket=({low}, {high}): the function must have different signs at its ends")
-    # The root lies between `here` and `across`.
-    across, value_across = before, value_before
-    last_step = step = here - before
+    # The root lies between `x` and `opposite_x`.
+    opposite_x, opposite_value = previous_x, previous_value
+    last_step = step = x - previous_x
     for _ in range(_MOST_STEPS):
-        if value_before and value and (value_before < 0.0) != (value < 0.0):
-            across, value_across = before, value_before
-            last_step = step = here - before
-        if abs(value_across) < abs(value):
-            before, here, across = here, across, here
-            value_before, value, value_across = value, value_across, value
-        tolerance = (absolute + relative * abs(here)) / 2.0
-        half = (across - here) / 2.0
-        if value == 0.0 or abs(half) < tolerance:
-            return here
-        trial = math.inf
-        if abs(last_step) > tolerance and abs(value) < abs(value_before):
-            trial = _interpolate((before, value_before), (here, value), (across, value_across))
+        if previous_value and value and (previous_value < 0.0) != (value < 0.0):
+            opposite_x, opposite_value = previous_x, previous_value
+            last_step = step = x - previous_x
+        # `x` is the end of the bracket with the smaller value.
+        if abs(opposite_value) < abs(value):
+            previous_x, x, opposite_x = x, opposite_x, x
+            previous_value, value, opposite_value = value, opposite_value, value
+        tolerance = (absolute + relative * abs(x)) / 2.0
+        half_width = (opposite_x - x) / 2.0
+        if value == 0.0 or abs(half_width) < tolerance:
+            return x
+        trial_step = math.inf
+        if abs(last_step) > tolerance and abs(value) < abs(previous_value):
+            trial_step = _interpolate((previous_x, previous_value), (x, value), (opposite_x, opposite_value))
         # Interpolate only if the steps shrink fast enough; otherwise bisect.
-        if 2.0 * abs(trial) < min(abs(last_step), 3.0 * abs(half) - tolerance):
-            last_step, step = step, trial
+        if 2.0 * abs(trial_step) < min(abs(last_step), 3.0 * abs(half_width) - tolerance):
+            last_step, step = step, trial_step
         else:
-            last_step = step = half
-        before, value_before = here, value
-        here += step if abs(step) > tolerance else math.copysign(tolerance, half)
-        value = checked(here)
-    return here
+            last_step = step = half_width
+        previous_x, previous_value = x, value
+        x += step if abs(step) > tolerance else math.copysign(tolerance, half_width)
+        value = evaluate(x)
+    return x
 
 
-def _interpolate(before: tuple[float, float], here: tuple[float, float], across: tuple[float, float]) -> float:
-    """Return the step from `here` by linear interpolation, or by inverse quadratic interpolation if all three points differ.
+def _interpolate(previous: tuple[float, float], present: tuple[float, float], opposite: tuple[float, float]) -> float:
+    """Return the step from the present point (x, value) by inverse quadratic interpolation through three points.
 
-    An undefined step is infinite.
+    If the previous and the opposite point are the same, the interpolation is linear. An undefined step is infinite.
     """
-    (x0, f0), (x, f), (x1, f1) = before, here, across
+    (x0, f0), (x, f), (x1, f1) = previous, present, opposite
     if x0 == x1:
         return -f * (x - x0) / (f - f0)
-    slope_before, slope_across = (f0 - f) / (x0 - x), (f1 - f) / (x1 - x)
-    divisor = slope_across * slope_before * (f1 - f0)
+    slope0, slope1 = (f0 - f) / (x0 - x), (f1 - f) / (x1 - x)
+    divisor = slope1 * slope0 * (f1 - f0)
     # The product of small values can underflow.
-    return -f * (f1 * slope_across - f0 * slope_before) / divisor if divisor else math.inf
+    return -f * (f1 * slope1 - f0 * slope0) / divisor if divisor else math.inf
 
 
 def bisect(
@@ -106,6 +108,6 @@ def bisect(
     """
     for _ in range(halvings):
         middle = 0.5 * (within + beyond)
-        past = is_beyond(middle)
-        within, beyond = np.where(past, within, middle), np.where(past, middle, beyond)
+        mask = is_beyond(middle)
+        within, beyond = np.where(mask, within, middle), np.where(mask, middle, beyond)
     return within, beyond

@@ -1,4 +1,4 @@
-"""Fields of results in files, and their former names. Numbers and texts are unchanged, tuples and dataclasses become JSON."""
+"""Fields of results in files, and former names. Files contain numbers and texts unchanged, tuples and dataclasses as JSON."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def with_present_names(dataset: xr.Dataset) -> xr.Dataset:
 
 
 def write_field(value: Any) -> Any:
-    """Convert a value to an attribute, from which `read_field` restores it."""
+    """Convert a value to an attribute of a file, from which `read_field` restores the value."""
     if isinstance(value, Enum):
         return value.value
     if isinstance(value, bool):
@@ -39,18 +39,18 @@ def write_field(value: Any) -> Any:
 def _plain(value: Any) -> Any:
     """Convert a dataclass or an enumeration value to a value that JSON supports."""
     if is_dataclass(value):
-        return {each.name: getattr(value, each.name) for each in fields(value)}
+        return {field.name: getattr(value, field.name) for field in fields(value)}
     if isinstance(value, Enum):
         return value.value
     raise TypeError(f"{type(value).__name__} cannot be written to a file")
 
 
-def read_field(hint: Any, found: Any) -> Any:
+def read_field(hint: Any, content: Any) -> Any:
     """Restore a value of type `hint` from the content of a file: an array, a number, a text, or JSON."""
     if hint is np.ndarray:
-        return read_only(np.array(found))
+        return read_only(np.array(content))
     hint = _without_none(hint)
-    plain = np.asarray(found).item() if not isinstance(found, str) else found
+    plain = content if isinstance(content, str) else np.asarray(content).item()
     return _build(hint, json.loads(plain) if get_origin(hint) is tuple or is_dataclass(hint) else plain)
 
 
@@ -67,12 +67,12 @@ def _build(hint: Any, plain: Any) -> Any:
         return None
     hint = _without_none(hint)
     if get_origin(hint) is tuple:
-        kinds = get_args(hint)
-        each_kind = kinds[:1] * len(plain) if kinds[-1] is Ellipsis else kinds
-        return tuple(_build(kind, each) for kind, each in zip(each_kind, plain, strict=True))
+        arguments = get_args(hint)
+        item_hints = arguments[:1] * len(plain) if arguments[-1] is Ellipsis else arguments
+        return tuple(_build(item_hint, item) for item_hint, item in zip(item_hints, plain, strict=True))
     if is_dataclass(hint):
-        kinds_by_name = get_type_hints(hint)
-        return hint(**{name: _build(kinds_by_name[name], each) for name, each in plain.items()})  # type: ignore[operator]
+        hints = get_type_hints(hint)
+        return hint(**{name: _build(hints[name], value) for name, value in plain.items()})  # type: ignore[operator]
     return hint(plain)
 
 
@@ -82,6 +82,7 @@ def plain_attributes(attributes: Mapping[Any, Any]) -> dict[str, Any]:
 
 
 def _plain_attribute(value: Any) -> Any:
+    """Convert one attribute, see `plain_attributes`."""
     if isinstance(value, np.ndarray | np.generic):
         value = value.tolist()
     return tuple(value) if isinstance(value, list) else value

@@ -1,6 +1,6 @@
 """Checks of arguments: each function returns the value as a plain type, or raises a ValueError that names the parameter.
 
-A value of a wrong type also raises a ValueError.
+The error is a ValueError even for a value of a wrong type.
 """
 
 from __future__ import annotations
@@ -18,16 +18,16 @@ from typing import Any
 import numpy as np
 
 LARGEST_NUMBER = 1e9
-"""Largest magnitude of an energy, a coordinate or a momentum. It is far beyond all exits, and its powers do not overflow."""
+"""Largest magnitude of an energy, a coordinate or a momentum: far beyond all exits, with powers that do not overflow."""
 
 LARGEST_COEFFICIENT = 1e90
-"""Largest magnitude of a coefficient. With a unit of length of 1e-6, terms of degree 12 have a factor of 1e72."""
+"""Largest magnitude of a coefficient; with a unit of length of 1e-6, terms of degree 12 have a factor of 1e72."""
 
 LONGEST_TIME = 1e8
-"""Largest t_max, in the time unit of the well if that exceeds 1. At this time the rounding error of t itself reaches 1e-8."""
-
+"""Largest t_max, in the time unit of the well if that exceeds 1; at this time, the rounding error of t itself reaches 1e-8."""
 
 _LINE_BREAK = re.compile(r"\s*\n\s*")
+# Descriptions of types in messages, by the name of the type.
 _TYPE_NAMES = {
     "str": "text",
     "NoneType": "None",
@@ -44,16 +44,16 @@ def short_repr(value: Any) -> str:
 
 
 def checks_types[**P, T](**kinds: Any) -> Callable[[Callable[P, T]], Callable[P, T]]:
-    """Decorate a function to raise a ValueError for arguments of wrong types. `kinds` gives the legal types of parameters."""
+    """Decorate a function to raise a ValueError for arguments of wrong types; `kinds` are the legal types of parameters."""
 
     def decorate(function: Callable[P, T]) -> Callable[P, T]:
-        places = [(place, name) for place, name in enumerate(inspect.signature(function).parameters) if name in kinds]
+        positions = [(index, name) for index, name in enumerate(inspect.signature(function).parameters) if name in kinds]
 
         @functools.wraps(function)
         def call(*args: P.args, **kwargs: P.kwargs) -> T:
-            for place, name in places:
-                if place < len(args):
-                    check_type(name, args[place], kinds[name])
+            for index, name in positions:
+                if index < len(args):
+                    check_type(name, args[index], kinds[name])
                 elif name in kwargs:
                     check_type(name, kwargs[name], kinds[name])
             return function(*args, **kwargs)
@@ -85,15 +85,15 @@ def _describe_type(kind: type) -> str:
 
 
 def replace_unchecked[T](instance: T, **values: Any) -> T:
-    """Apply `dataclasses.replace` to a frozen dataclass without its checks, which apply to values in the units of the user."""
-    replaced = object.__new__(type(instance))
-    for each in dataclasses.fields(instance):  # type: ignore[arg-type]
-        object.__setattr__(replaced, each.name, values.get(each.name, getattr(instance, each.name)))
-    return replaced
+    """Apply `dataclasses.replace` without the checks of a frozen dataclass, which are for values in the units of the user."""
+    copy = object.__new__(type(instance))
+    for field in dataclasses.fields(instance):  # type: ignore[arg-type]
+        object.__setattr__(copy, field.name, values.get(field.name, getattr(instance, field.name)))
+    return copy
 
 
 def checked_flag(name: str, value: Any) -> bool:
-    """Return a parameter that must be True or False; ValueError otherwise."""
+    """Return True or False; ValueError for other values."""
     if not isinstance(value, bool | np.bool_):
         raise ValueError(f"{name}={short_repr(value)}: must be True or False")
     return bool(value)
@@ -111,6 +111,7 @@ def checked_number(name: str, value: Any, requirement: str = "", largest: float 
 
 def checked_count(name: str, value: Any, least: int, most: int) -> int:
     """Return an integer from `least` to `most`; ValueError otherwise."""
+    # Values that are no integers become an integer out of range.
     try:
         count = operator.index(value) if not isinstance(value, bool) else least - 1
     except TypeError:
@@ -121,7 +122,7 @@ def checked_count(name: str, value: Any, least: int, most: int) -> int:
 
 
 def checked_array(name: str, value: Any, *, keep_type: bool = False) -> np.ndarray:
-    """Return an array of floats, or with `keep_type` of the type of the value. Shape and range are not checked."""
+    """Return an array of floats or, with `keep_type`, of the type of the value; shape and range are not checked."""
     try:
         array: np.ndarray = np.asarray(value, dtype=None if keep_type else float)
     except (TypeError, ValueError, OverflowError):
@@ -140,7 +141,7 @@ def checked_finite(name: str, value: Any) -> Any:
 
 
 def checked_integers(name: str, value: Any) -> np.ndarray:
-    """Return an array of int64; an empty one may be of any type."""
+    """Return an array of int64; an empty array may be given with any type."""
     array = checked_array(name, value, keep_type=True)
     if array.size and array.dtype.kind not in "iu":
         raise ValueError(f"{name}={short_repr(value)}: must be integers")
@@ -151,12 +152,14 @@ def checked_t_max(
     t_max: float, longest: float = LONGEST_TIME, unit: Callable[[], float] = lambda: 1.0, *, name: str = "t_max"
 ) -> float:
     """Return `t_max`, above 0 and at most `longest`, as a float; a `unit()` above 1 multiplies the limit."""
-    given: Any = t_max
-    is_number = isinstance(given, int | float | np.number) and not isinstance(given, bool)
-    if is_number and given > longest:
+    # For type checkers, the type of `t_max` is known, and the check of it could not fail.
+    given_t_max: Any = t_max
+    is_number = isinstance(given_t_max, int | float | np.number) and not isinstance(given_t_max, bool)
+    # The unit takes time to compute, so it is asked only for large values.
+    if is_number and given_t_max > longest:
         longest *= max(unit(), 1.0)
     # The comparison precedes the conversion, because an integer may be too large for a float.
-    if not (is_number and 0 < given <= longest):
+    if not (is_number and 0 < given_t_max <= longest):
         raise ValueError(f"{name}={short_repr(t_max)}: must be above 0 and at most {longest:g}")
     return float(t_max)
 

@@ -13,8 +13,7 @@ import numpy as np
 _WIDTH = 100
 # Largest number of lines for each part of the text of a result.
 _MOST_LINES = 3
-# No-break space.
-_UNBROKEN = "\u00a0"
+_NO_BREAK_SPACE = "\u00a0"
 
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -30,7 +29,7 @@ def format_whole(value: float) -> str:
 
 
 def format_time(t: float, digits: int = 6) -> str:
-    """Return a time to `digits` significant digits, or all digits of its whole part, with spaces between groups of three."""
+    """Return a time to `digits` significant digits, at least all digits of its whole part, in groups of three."""
     if t == round(t) or abs(t) >= 10.0**digits:
         return format_whole(t)
     return f"{t:,.{digits}g}".replace(",", " ")
@@ -68,12 +67,13 @@ def _typeset(text: str) -> str:
 def describe_codes(codes: type[IntEnum], labels: Sequence[str] = ()) -> dict[str, str]:
     """Return the dataset attribute that explains integer codes: ``{"codes": "value: name; …"}``.
 
-    `labels` name codes 1, 2 and so on that are not members of the enumeration, such as the outcomes of a `Fate`. The attribute
-    omits default labels, "exit 1" and so on.
+    `labels` name codes 1, 2 and so on that are not members of the enumeration, such as the outcomes of a `Fate`. If all are the
+    default labels, "exit 1" and so on, the attribute omits them.
     """
-    known = [f"{code.value}: {code.name.lower()}" for code in codes]
-    are_default = all(label == _exit(code) for code, label in enumerate(labels, 1))
-    return {"codes": "; ".join([*known, *([] if are_default else (f"{k}: {label}" for k, label in enumerate(labels, 1)))])}
+    meanings = [f"{code.value}: {code.name.lower()}" for code in codes]
+    if any(label != _exit(code) for code, label in enumerate(labels, 1)):
+        meanings += [f"{code}: {label}" for code, label in enumerate(labels, 1)]
+    return {"codes": "; ".join(meanings)}
 
 
 def name_code(codes: type[IntEnum], code: int, labels: Sequence[str] = ()) -> str:
@@ -100,24 +100,24 @@ def _show(value: Any, codes: type[IntEnum] | None, labels: Sequence[str]) -> str
     return str(value.value if isinstance(value, Enum) else value)
 
 
-def summarize(title: str, sentence: str, shown: Mapping[str, str], arrays: Mapping[str, np.ndarray]) -> str:
-    """Return a text of a title with a sentence, the scalars, and the arrays, each part in at most three lines."""
+def summarize(title: str, sentence: str, scalars: Mapping[str, str], arrays: Mapping[str, np.ndarray]) -> str:
+    """Return a text in three parts of at most three lines: a title with a sentence, the scalars, and the arrays."""
     lines = _wrap(f"{title}: {sentence}" if sentence else title, indent="")
-    lines += _wrap_items(f"{name} {value}" for name, value in shown.items())
+    lines += _wrap_items(f"{name} {value}" for name, value in scalars.items())
     return "\n".join(lines + _wrap_items(_name_arrays(arrays)))
 
 
 def _name_arrays(arrays: Mapping[str, np.ndarray]) -> Iterator[str]:
-    """Yield the names of arrays with their shape; arrays of equal shape are grouped."""
+    """Yield the names of arrays with their shapes; arrays of equal shape are grouped."""
     for shape in dict.fromkeys(array.shape for array in arrays.values()):
         names = " ".join(name for name, array in arrays.items() if array.shape == shape)
         yield f"{names} {' × '.join(map(str, shape))}"
 
 
 def _wrap_items(items: Iterable[str]) -> list[str]:
-    """Wrap a list of items into lines that end between two items."""
-    lines = _wrap(", ".join(item.replace(" ", _UNBROKEN) for item in items))
-    return [line.replace(_UNBROKEN, " ") for line in lines]
+    """Join items by commas, and wrap the text into lines that end between two items."""
+    lines = _wrap(", ".join(item.replace(" ", _NO_BREAK_SPACE) for item in items))
+    return [line.replace(_NO_BREAK_SPACE, " ") for line in lines]
 
 
 def _wrap(text: str, indent: str = "  ") -> list[str]:

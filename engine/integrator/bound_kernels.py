@@ -32,8 +32,9 @@ from engine.integrator.source.recurrence import Definition, GeneratedCode, find_
 from engine.integrator.source.series import Setting, Structure
 
 _KERNEL_MODULES = (propagate, periodic_shooting, fixed_step, orbit_lanes, interior)
-# Number of cached potentials; binding the coefficients of another potential of a known structure takes milliseconds.
+# Number of cached potentials; to bind the coefficients of another potential of a known structure takes milliseconds.
 _BOUND_POTENTIALS = 256
+# Held while code is generated.
 _lock = threading.Lock()
 # Code, name of the module and kernels of each structure. Entries stay, because machine code is never unloaded.
 _code_by_structure: dict[Structure, tuple[GeneratedCode, str, dict[str, GeneratedKernel]]] = {}
@@ -63,16 +64,16 @@ def load_kernels(
 
     Returns
     -------
-    A module with these functions, to be called without their leading addresses and without `coefficients`. The generated
-    functions that a kernel needs are compiled, which takes some seconds, or loaded from the cache, when a potential of the same
-    structure first uses it.
+    A module with these functions, to be called without their leading addresses and without `coefficients`. When a potential of
+    this structure first uses a kernel, the generated functions that it calls are loaded from the cache or compiled, which takes
+    some seconds.
     """
     return _load(definition, Setting(channels, sides, rotation != 0.0), rotation)
 
 
 def is_generated(definition: Definition, setting: Setting) -> bool:
-    """Return whether functions were generated for a potential of the same structure; generating them takes up to 0.3 s."""
-    # Outlines are compared first, because finding the structure of a new formula takes up to 0.2 s.
+    """Return whether functions were generated for a potential of the same structure; to generate them takes up to 0.3 s."""
+    # Outlines are compared first, because to find the structure of a new formula takes up to 0.2 s.
     return (_outline(definition), setting) in _outlines and find_structure(definition, setting) in _code_by_structure
 
 
@@ -102,17 +103,18 @@ class GeneratedKernel:
     def _compile(self) -> int:
         self._dispatcher.compile(self._signature)
         self._dispatcher.disable_compile()
-        compiled = self._dispatcher.get_compile_result(self._signature)
-        address: int = compiled.library.get_pointer_to_function(compiled.fndesc.llvm_func_name)
+        result = self._dispatcher.get_compile_result(self._signature)
+        address: int = result.library.get_pointer_to_function(result.fndesc.llvm_func_name)
         return address
 
     @property
     def py_func(self) -> Any:
-        """The Python function; code compiled from this function can be inspected, unlike code from the cache."""
+        """The Python function; code compiled from it can be inspected, unlike code from the cache."""
         return self._dispatcher.py_func
 
     def __call__(self, *arguments: Any) -> Any:
         """Call with arguments that can be cast to the types of the signature; TypeError for other arguments."""
+        # `address` compiles the function.
         assert self.address
         return self._dispatcher(*arguments)
 
@@ -120,9 +122,9 @@ class GeneratedKernel:
 class _BoundKernel:
     """A kernel together with the addresses and coefficients of one potential."""
 
-    def __init__(self, function: Any, needed: tuple[GeneratedKernel, ...], coefficients: np.ndarray) -> None:
+    def __init__(self, function: Any, callees: tuple[GeneratedKernel, ...], coefficients: np.ndarray) -> None:
         self.function = function
-        self._generated = needed
+        self._callees = callees
         self._coefficients = coefficients
 
     @property
@@ -131,30 +133,31 @@ class _BoundKernel:
         return list(self.function.signatures)
 
     def __call__(self, *arguments: Any) -> Any:
-        return self.function(*(generated.address for generated in self._generated), self._coefficients, *arguments)
+        return self.function(*(callee.address for callee in self._callees), self._coefficients, *arguments)
 
 
 @functools.lru_cache(maxsize=_BOUND_POTENTIALS)
 def _load(definition: Definition, setting: Setting, rotation: float) -> ModuleType:
-    code, name, generated = _define(find_structure(definition, setting))
+    code, module_name, generated = _define(find_structure(definition, setting))
     _outlines.add((_outline(definition), setting))
     coefficients = code.tabulate(definition, rotation)
-    bound = ModuleType(name)
-    for each, function in generated.items():
-        setattr(bound, each, _BoundKernel(function, (), coefficients))
+    bound_module = ModuleType(module_name)
+    for name, function in generated.items():
+        setattr(bound_module, name, _BoundKernel(function, (), coefficients))
     for module in _KERNEL_MODULES:
-        for each, function in vars(module).items():
+        for name, function in vars(module).items():
             if isinstance(function, Dispatcher) and function.py_func.__module__ == module.__name__:
                 # Parameters for addresses have the names of the generated functions.
-                names = inspect.signature(function.py_func).parameters
-                needed = tuple(generated[parameter] for parameter in names if parameter in generated)
-                if needed:
-                    setattr(bound, each, _BoundKernel(function, needed, coefficients))
-    return bound
+                parameters = inspect.signature(function.py_func).parameters
+                callees = tuple(generated[parameter] for parameter in parameters if parameter in generated)
+                # Kernels without such parameters depend on no potential.
+                if callees:
+                    setattr(bound_module, name, _BoundKernel(function, callees, coefficients))
+    return bound_module
 
 
 def _define(structure: Structure) -> tuple[GeneratedCode, str, dict[str, GeneratedKernel]]:
-    """Return an entry of `_code_by_structure`; for a known structure, a thread never waits for other threads."""
+    """Return the entry of `_code_by_structure`; for a known structure, a thread never waits for other threads."""
     if structure not in _code_by_structure:
         with _lock:
             if structure not in _code_by_structure:
@@ -164,7 +167,7 @@ def _define(structure: Structure) -> tuple[GeneratedCode, str, dict[str, Generat
 
 
 def _outline(definition: Definition) -> Hashable:
-    """Return the powers of x and y of a polynomial, or the graph of an expression."""
+    """Return what identifies most structures without much work: the powers of a polynomial, or the graph of an expression."""
     return make_graph((definition,))[0] if isinstance(definition, Expression) else frozenset((i, j) for i, j, _ in definition)
 
 
@@ -177,6 +180,7 @@ def _define_module(code: GeneratedCode) -> tuple[str, dict[str, GeneratedKernel]
     # Numba looks for the module of a kernel here when it loads the kernel from the cache.
     sys.modules[name] = module
     source = "\n\n".join(function.kernel for function in code.functions)
+    # Numba reads the source of a function by way of this cache.
     linecache.cache[f"<{name}>"] = (len(source), None, source.splitlines(keepends=True), f"<{name}>")
     programs = {function.program.name: straight_line(function.program) for function in code.functions}
     vars(module).update(kernel=kernel, read_table=table_reader(len(code.entries)), **programs)

@@ -30,6 +30,7 @@ from engine.integrator.kernels import (
     slice_starts,
 )
 
+# Types of arguments: numbers, arrays of doubles and integers by their dimensions, tuples of arrays, and sequences of arguments.
 _void, _address, _number, _count, _flag = types.void, types.int64, types.float64, types.int64, types.boolean
 _f1, _f2, _f3 = types.float64[::1], types.float64[:, ::1], types.float64[:, :, ::1]
 _i1, _i2, _codes, _flags = types.int64[::1], types.int64[:, ::1], types.int8[::1], types.uint8[::1]
@@ -73,7 +74,7 @@ def module_digest() -> str:
 
 
 def kernel_module() -> bytes:
-    """Return the module, from the cache or built in some seconds; see `engine.integrator.jit.kernel_module.lower_kernels`."""
+    """Return the module of `KERNELS`, from the cache or built in some seconds, see `jit.kernel_module.lower_kernels`."""
     with _building:
         return _load_or_build()
 
@@ -84,12 +85,14 @@ def _load_or_build() -> bytes:
 
 
 def _build() -> bytes:
+    # This calls `_main` in another process.
     command = [sys.executable, "-m", __name__]
     return subprocess.run(command, env=os.environ | SETTINGS, stdout=subprocess.PIPE, check=True).stdout
 
 
 def _main() -> None:
-    """Write the module to the standard output."""
+    """Build the module and write it to the standard output."""
+    # WebAssembly computes pairs of lanes.
     propagate.VECTOR = PAIR
     sys.stdout.buffer.write(lower_kernels(KERNELS))
 

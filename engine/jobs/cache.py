@@ -1,4 +1,4 @@
-"""Thread-safe least-recently-used cache of results, bounded by memory."""
+"""A thread-safe cache of results that is bounded by memory and drops the least recently used results."""
 
 from __future__ import annotations
 
@@ -8,20 +8,20 @@ from typing import Any
 
 from cachetools import LRUCache
 
-# Size that counts for a result without arrays, in bytes.
-_SMALL_RESULT = 1024
+# Size with which a result without arrays counts, in bytes.
+_SMALL_SIZE = 1024
 
 ABSENT: Any = object()
-"""Marks a missing result where None is a possible result."""
+"""Stands for a missing result where None is a possible result."""
 
 
 class ResultCache:
-    """Least-recently-used cache of results.
+    """A cache of results that drops the least recently used results.
 
     Parameters
     ----------
     limit
-        Largest total size in bytes, 0 or more; larger results are not stored. The size of a result is its attribute ``nbytes``; a
+        Largest total size in bytes, 0 or more; a larger result is not stored. The size of a result is its attribute ``nbytes``; a
         result without arrays counts as small.
     """
 
@@ -59,4 +59,4 @@ class ResultCache:
 
 def _size(result: Any) -> int:
     """Return the size in bytes with which a result counts."""
-    return getattr(result, "nbytes", 0) or _SMALL_RESULT
+    return getattr(result, "nbytes", 0) or _SMALL_SIZE

@@ -11,8 +11,9 @@ from engine.jobs.manager import Jobs
 from engine.jobs.subscription import Subscription
 
 MOST_REQUESTS = 32
-"""Default limit on the open requests of one client; more than all controls of a page can cause together."""
+"""Default limit on the open requests of one client, more than all controls of a page can cause together."""
 
+# Largest legal limit on the open requests of one client.
 _LARGEST_LIMIT = 1000
 
 
@@ -47,9 +48,12 @@ class JobClient:
         self, job: Job[Result], on_result: Callable[[Result], None], on_error: Callable[[Exception], None]
     ) -> Subscription:
         """Request a result as `Jobs.request` does; `on_error` receives a ValueError if too many requests are open."""
-        return self._refuse(on_error) or self._add(
-            self._jobs.request(job, on_result, on_error, client=self, account=self._account)
-        )
+        refusal = self._refuse(on_error)
+        if refusal is not None:
+            return refusal
+        subscription = self._jobs.request(job, on_result, on_error, client=self, account=self._account)
+        self._subscriptions.append(subscription)
+        return subscription
 
     def close(self) -> None:
         """Cancel all subscriptions."""
@@ -57,12 +61,8 @@ class JobClient:
             subscription.cancel()
         self._subscriptions.clear()
 
-    def _add(self, subscription: Subscription) -> Subscription:
-        self._subscriptions.append(subscription)
-        return subscription
-
     def _refuse(self, on_error: Callable[[Exception], None]) -> Subscription | None:
-        """Return None if another request is allowed, else a closed subscription whose error has been reported."""
+        """Return None if another request is allowed, otherwise a closed subscription whose error has been reported."""
         self._subscriptions = [subscription for subscription in self._subscriptions if subscription.open]
         if len(self._subscriptions) < self._most_requests:
             return None

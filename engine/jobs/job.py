@@ -14,7 +14,7 @@ from engine.jobs.cache import ResultCache
 
 
 class Queue(Enum):
-    """The queue in which the calls of a job wait for a thread."""
+    """The kind of the calls of a job, which decides in which queue they wait for a thread."""
 
     FIRST_FRAME = "first frame"
     """The function makes many short calls, which precede all other calls until its first result."""
@@ -26,7 +26,7 @@ class Queue(Enum):
     """The function is one call of up to seconds."""
 
     LIMITED = "limited"
-    """The function makes one call on text typed by a visitor, in a process with limits if any; one call per account at a time."""
+    """The function is one call on text typed by a visitor, in a process with limits if any; one per account at a time."""
 
     COMPILATION = "compilation"
     """The function compiles kernels; only one such call runs at a time in the process."""
@@ -36,8 +36,8 @@ class Queue(Enum):
 class Job[Result]:
     """A function and its arguments, hashable; equal jobs are computed once.
 
-    The manager adds those of the following options for which the function has parameters: ``execution``, ``on_frame`` for partial
-    results, ``resume``, and ``find_result``, which returns the result of another job.
+    The manager also passes the following arguments, if the function has parameters with these names: ``execution``, ``on_frame``,
+    to call with partial results, ``resume``, and ``find_result``, a function that returns the result of another job.
 
     Attributes
     ----------
@@ -53,7 +53,7 @@ class Job[Result]:
     orbits
         Number of orbits that the function holds in memory.
     find_earlier
-        Finds a cached result to continue: called with the job and the cache, it returns the value of ``resume`` or None.
+        A function of the job and of the cache that returns a cached result to continue, the value of ``resume``, or None.
     """
 
     function: Callable[..., Result]
@@ -70,7 +70,7 @@ class Job[Result]:
 
     def keywords(self, offered: Mapping[str, Any]) -> dict[str, Any]:
         """Return the keyword arguments of a call: the options, and the offered values for which the function has parameters."""
-        names = _parameters(self.function)
+        names = _parameter_names(self.function)
         return {**{name: value for name, value in offered.items() if name in names}, **dict(self.options)}
 
 
@@ -84,7 +84,7 @@ def run_job[Result](job: Job[Result], execution: Execution, known: Mapping[Job[A
     execution
         The options with which the job and the jobs among its arguments run.
     known
-        Known results of some of these jobs.
+        Results by job, for the jobs whose results are known.
 
     Raises
     ------
@@ -92,14 +92,14 @@ def run_job[Result](job: Job[Result], execution: Execution, known: Mapping[Job[A
         When cancelled.
     """
     if job in known:
-        found: Result = known[job]
-        return found
-    arguments = [run_job(each, execution, known) if isinstance(each, Job) else each for each in job.arguments]
+        known_result: Result = known[job]
+        return known_result
+    arguments = [run_job(value, execution, known) if isinstance(value, Job) else value for value in job.arguments]
     result = job.function(*arguments, **job.keywords({"execution": execution}))
     execution.raise_if_cancelled()
     return result
 
 
 @functools.cache
-def _parameters(function: Callable[..., Any]) -> frozenset[str]:
+def _parameter_names(function: Callable[..., Any]) -> frozenset[str]:
     return frozenset(inspect.signature(function).parameters)

@@ -1,4 +1,4 @@
-"""Job manager: background computations that are shared while in flight, cancellable, and cached in bounded memory."""
+"""The job manager. Background computations are shared while in flight, can be cancelled, and are cached in bounded memory."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ DEFAULT_CACHE_BYTES = 512 * 2**20
 """Default memory limit of cached results, in bytes."""
 
 DEFAULT_ORBITS = 4 * 2**20
-"""Default limit on the orbits of large running jobs; about 500 MiB."""
+"""Default limit on the number of orbits of large running jobs, which take about 500 MiB."""
 
-# Number of coordinating threads, which mostly wait for the pool; further jobs are queued.
+# Number of coordinating threads, one for each running job, which mostly wait for the pool; further jobs are queued.
 _COORDINATORS = 1024
 
 log = logging.getLogger(__name__)
@@ -102,7 +102,7 @@ class Jobs:
         self._limited = limited
         self._clock = clock
         self._scheduler = FairScheduler(None if threads is None else create_thread_pool(threads), clock)
-        # Numba compiles one function at a time, so more threads would only wait for each other and use memory for orbits.
+        # Numba compiles one function at a time, so more threads would only wait for each other.
         self._compilations = FairScheduler(create_thread_pool(1), clock)
         self._limited_calls = FairScheduler(create_thread_pool(limited_calls), clock, one_each=True)
         self._semaphore = OrbitSemaphore(most_orbits)
@@ -130,7 +130,7 @@ class Jobs:
         job
             The job.
         on_result
-            Called from another thread with the result; if results have an attribute ``complete``, partial results come before.
+            Called from another thread with the result; if results have an attribute ``complete``, also with partial results.
         on_error
             Called from another thread with the exception if the computation fails.
         client
@@ -138,7 +138,7 @@ class Jobs:
             the second frame of any map.
         account
             The account whose share of the limit of compiled code the job uses, and whose turn it takes in the queues of limited
-            calls and of compilations. With None no account is charged, and the turn is that of the client.
+            calls and of compilations. With None, no account is charged, and the job takes the turn of its client.
         """
         subscription = Subscription(partial(self._unsubscribe, job), on_result, on_error)
         with self._lock:
@@ -181,7 +181,7 @@ class Jobs:
         return MapPriority(lambda: self._scheduler.first_frames_spared, self._clock)
 
     def spare_first_frames(self, spared: bool) -> None:
-        """Defer calls whose results may be replaced unseen, or stop doing so; see `FairScheduler.spare_first_frames`."""
+        """Defer calls whose results may be replaced before they are seen, or end this; see `FairScheduler.spare_first_frames`."""
         self._scheduler.spare_first_frames(spared)
 
     def pause_background(self, paused: bool) -> None:
@@ -207,6 +207,7 @@ class Jobs:
                 del self._in_flight[job]
 
     def _run_job(self, run: _Run) -> None:
+        """Compute a job, and deliver its result or its error; a coordinating thread calls this."""
         error: Exception | None = None
         result: Any = ABSENT
         try:
@@ -227,8 +228,8 @@ class Jobs:
                 subscription.deliver(result, last=True)
 
     def _compute(self, job: Job[Any], run: _Run, publish: Callable[[Any], None] | None) -> Any:
-        """Call the function of a job that `run` has started, or of a job that this job needs."""
-        arguments = [self._find_result(run, each) if isinstance(each, Job) else each for each in job.arguments]
+        """Call the function of the job of a run, or of another job that it needs."""
+        arguments = [self._find_result(run, value) if isinstance(value, Job) else value for value in job.arguments]
         executors: Mapping[Queue, Executor] = dict.fromkeys(Queue, self._executor) if self._executor else run.executors
         offered = {
             "execution": Execution(executors[Queue.BACKGROUND], run.cancel),
@@ -244,17 +245,18 @@ class Jobs:
         return call()
 
     def _find_result[Result](self, run: _Run, job: Job[Result]) -> Result:
-        """Return the complete result of a job that another job needs, from the cache or computed and then cached."""
+        """Return the complete result of a job that the job of a run needs, from the cache or computed and then cached."""
         result: Any = self.cache.get(job, ABSENT)
         if not _is_complete(result):
             result = self._compute(job, run, None)
             self.cache.put(job, result)
         if not _is_complete(result):
             raise CancelledError
-        found: Result = result
-        return found
+        complete_result: Result = result
+        return complete_result
 
     def _create_executors(self, run: _Run) -> Mapping[Queue, QueueExecutor]:
+        """Return the executors of a run, one for each kind of calls."""
         # All pages of an account share a turn if one call may occupy the only thread for seconds.
         turn = run.client if run.account is None else run.account
         calls = self._scheduler.executor(run.client, run.priority)

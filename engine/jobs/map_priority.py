@@ -1,4 +1,4 @@
-"""Priority of the calls of a map: its first frame comes first, and parts that the next map may replace unseen come last."""
+"""Priority of the calls of a map: its first frame comes first; parts that the next map may replace before they are seen, last."""
 
 from __future__ import annotations
 
@@ -8,30 +8,30 @@ from collections.abc import Callable
 from engine.jobs.scheduler import Clock, Priority
 
 REST_SECONDS = 1.0
-"""Time in seconds after the request of a map in which the map is often replaced, because its user is still searching."""
+"""Time after its request, in seconds, during which a map is often replaced, because its user is still searching."""
 
 CROWDED_REST_SECONDS = 3.0
-"""The same time while the process is crowded, when most maps are replaced before a second frame is computed."""
+"""This time while the process is crowded, in seconds; most maps are then replaced before a second frame is computed."""
 
 
 class MapPriority:
-    """Priority of one map, from its request on.
+    """Priority of the calls of one map; the time counts from the request, at which the object is made.
 
-    The calls until the first frame have `Priority.FIRST_FRAME`. Calls with later integration times, which change few pixels, have
-    `Priority.UNSETTLED` during the first `REST_SECONDS`, so that other calls run first, but no thread stays idle. While the
-    process is crowded, all calls after the first frame have this priority for `CROWDED_REST_SECONDS`.
+    Calls until the first frame have `Priority.FIRST_FRAME`. Calls with longer integration times, which change few pixels, have
+    `Priority.UNSETTLED` during the first `REST_SECONDS`: other calls run first, but no thread stays idle. While the process is
+    crowded, all calls after the first frame have this priority for `CROWDED_REST_SECONDS`.
 
     Parameters
     ----------
     is_crowded
-        Whether the process is crowded.
+        Returns whether the process is crowded.
     clock
         The clock; by default the clock of this process.
     """
 
     def __init__(self, is_crowded: Callable[[], bool], clock: Clock = time) -> None:
         self._is_crowded, self._clock = is_crowded, clock
-        self._requested = clock.monotonic()
+        self._request_time = clock.monotonic()
         self._first_horizon: float | None = None
         self._horizon = 0.0
 
@@ -48,7 +48,8 @@ class MapPriority:
         return Priority.UNSETTLED if self._may_be_replaced(self._first_horizon) else Priority.BACKGROUND
 
     def _may_be_replaced(self, first_horizon: float) -> bool:
-        seconds = self._clock.monotonic() - self._requested
+        """Return whether the map is likely to be replaced before the results of its calls are seen."""
+        seconds = self._clock.monotonic() - self._request_time
         if self._is_crowded():
             return seconds < CROWDED_REST_SECONDS
         return seconds < REST_SECONDS and self._horizon > first_horizon

@@ -1,4 +1,4 @@
-"""Semaphore that bounds the number of orbits held in memory by all jobs together."""
+"""A semaphore that bounds the number of orbits that all jobs together hold in memory."""
 
 from __future__ import annotations
 
@@ -9,18 +9,19 @@ from contextlib import contextmanager
 from engine.foundations.execution import Execution
 
 SMALL_JOB = 2**16
-"""Jobs of at most this many orbits, such as a map of 256 × 256, are not counted and never wait."""
+"""Largest number of orbits, such as a map of 256 × 256, of a job that does not count and never waits."""
 
+# Interval between checks for a cancellation of a waiting job, in seconds.
 _CANCEL_POLL_SECONDS = 0.2
 
 
 class OrbitSemaphore:
-    """Weighted semaphore for large jobs: each job acquires one unit for each orbit that it holds.
+    """A weighted semaphore for large jobs: each job acquires one unit for each orbit that it holds.
 
     Parameters
     ----------
     limit
-        Largest number of orbits held at the same time. A job with more orbits runs when no other large job does.
+        Largest number of orbits held at the same time. A job with more orbits runs when no other large job runs.
     """
 
     def __init__(self, limit: int) -> None:
@@ -31,15 +32,15 @@ class OrbitSemaphore:
     @contextmanager
     def acquire(self, orbits: int, execution: Execution) -> Iterator[None]:
         """Hold this many orbits while the context is active; CancelledError if the wait is cancelled."""
-        orbits = orbits if orbits > SMALL_JOB else 0
+        counted_orbits = orbits if orbits > SMALL_JOB else 0
         with self._released:
-            while orbits and self.held and self.held + orbits > self.limit:
+            while counted_orbits and self.held and self.held + counted_orbits > self.limit:
                 self._released.wait(_CANCEL_POLL_SECONDS)
                 execution.raise_if_cancelled()
-            self.held += orbits
+            self.held += counted_orbits
         try:
             yield
         finally:
             with self._released:
-                self.held -= orbits
+                self.held -= counted_orbits
                 self._released.notify_all()

@@ -1,4 +1,4 @@
-"""Fair scheduling of many clients' calls on one thread pool, by priority, and then by the time since a client's last turn."""
+"""Fair scheduling of the calls of many clients on one thread pool: by priority, and then by the time since the last turn."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from cachetools import LRUCache
 
 from engine.foundations.execution import count_workers, default_executor
 
-# While background calls are paused, a long call of duration d is followed by a pause of 9 d: a duty cycle of 10 %.
+# Pause after a long call while background calls are paused, in units of its duration: a duty cycle of 10 %.
 _PAUSE_PER_LONG_CALL = 9.0
 
 # Number of clients whose last turns are known.
@@ -51,6 +51,8 @@ class Priority(IntEnum):
 
 
 class _Call(NamedTuple):
+    """A queued call with its future."""
+
     executor: QueueExecutor
     future: Future[Any]
     function: Callable[[], Any]
@@ -116,14 +118,14 @@ class FairScheduler:
         self._next_long_call = 0.0
 
     def executor(self, client: Hashable, priority: Callable[[], Priority]) -> QueueExecutor:
-        """Create an executor for one job.
+        """Return a new executor for one job.
 
         Parameters
         ----------
         client
             The client of the job. All jobs of one client share its turn.
         priority
-            Evaluated for each pending call whenever a thread is free.
+            Returns the present priority of the calls; it is asked whenever a thread is free.
         """
         return QueueExecutor(self, client, priority)
 
@@ -136,8 +138,8 @@ class FairScheduler:
     def pause_background(self, paused: bool) -> None:
         """Pause or resume `Priority.BACKGROUND` calls and calls of lower priority, to relieve an overloaded process.
 
-        During the pause, long calls have a duty cycle of 10 % of one thread. To start the next long call, call this method about
-        every 0.1 s during the pause.
+        During the pause, long calls have a duty cycle of 10 % of one thread. The next long call starts only when this method is
+        called, so it should be called about every 0.1 s during the pause.
         """
         with self._lock:
             resumed, self._background_paused = self._background_paused and not paused, paused
@@ -145,11 +147,11 @@ class FairScheduler:
             self._start_threads(self.threads if resumed else 1)
 
     def spare_first_frames(self, spared: bool) -> None:
-        """Keep one thread free for first frames and delay `Priority.UNSETTLED` calls; or stop doing so.
+        """Keep one thread free for first frames and delay `Priority.UNSETTLED` calls, or end this.
 
-        A single thread is not kept free. When other programs use the processor, a short call takes long, and the first frame of a
-        map would wait for several short calls in turn. To start delayed calls that have become settled, call this method about
-        every 0.1 s.
+        When other programs use the processor, a short call takes long, and the first frame of a map would wait for several short
+        calls in turn. If there is only one thread, it is not kept free. Delayed calls whose priority has changed start only when
+        this method is called, so it should be called about every 0.1 s.
         """
         with self._lock:
             ended, self.first_frames_spared = self.first_frames_spared and not spared, spared
@@ -177,7 +179,7 @@ class FairScheduler:
             call.cancel()
 
     def _start_threads(self, most: int) -> None:
-        """Let up to `most` more threads run calls, if calls are pending."""
+        """Start up to `most` more threads of the pool, if calls are pending."""
         with self._lock:
             count = min(most, self.threads - self._active_threads) if self._pending else 0
             self._active_threads += count
@@ -220,9 +222,10 @@ class FairScheduler:
             return call, priority
 
     def _find_next(self) -> tuple[QueueExecutor, Priority] | None:
-        waiting = [client for client in self._pending if not (self._one_each and self._served[client])]
-        waiting.sort(key=lambda client: self._last_turns.get(client, 0))
-        candidates = [(executor, executor.priority()) for client in waiting for executor in self._pending[client]]
+        """Return the executor of the next call that may start, and its priority; None if there is no such call."""
+        allowed = [client for client in self._pending if not (self._one_each and self._served[client])]
+        allowed.sort(key=lambda client: self._last_turns.get(client, 0))
+        candidates = [(executor, executor.priority()) for client in allowed for executor in self._pending[client]]
         priority = min((priority for _, priority in candidates if self._may_start(priority)), default=None)
         return next((candidate for candidate in candidates if candidate[1] is priority), None)
 
@@ -231,18 +234,20 @@ class FairScheduler:
             del self._pending[client]
 
     def _may_start(self, priority: Priority) -> bool:
+        """Return whether a call of a priority may start now."""
         if priority is Priority.FIRST_FRAME:
             return True
-        fewer = max(self.threads - 1, 1)
-        others = self._running.total() - self._running[Priority.FIRST_FRAME]
-        if self.first_frames_spared and (others >= fewer or priority is Priority.UNSETTLED):
+        # One thread is kept free, unless it is the only one.
+        most_threads = max(self.threads - 1, 1)
+        running_others = self._running.total() - self._running[Priority.FIRST_FRAME]
+        if self.first_frames_spared and (running_others >= most_threads or priority is Priority.UNSETTLED):
             return False
         if priority is not Priority.LONG_CALL:
             return not self._background_paused
-        running = self._running[priority]
+        running_long_calls = self._running[Priority.LONG_CALL]
         if self._background_paused:
-            return running == 0 and self._clock.monotonic() >= self._next_long_call
-        return running < fewer
+            return running_long_calls == 0 and self._clock.monotonic() >= self._next_long_call
+        return running_long_calls < most_threads
 
 
 class QueueExecutor(Executor):

@@ -14,13 +14,13 @@ class JobStats:
     in_flight
         Running and queued jobs.
     calls_waiting
-        Calls of these jobs that no thread has started; 0 if `Jobs` was given an executor.
+        Calls of these jobs that no thread has started; 0 if `Jobs` has an executor of the caller.
     done, failed, cancelled
         Number of jobs that have ended, by outcome.
     cache_bytes, cache_limit
         Size of the cached results and its limit, in bytes.
     orbits_held, orbits_limit
-        Orbits of large running jobs and their limit.
+        Number of orbits of large running jobs, and its limit.
     threads
         Number of worker threads.
     computed

@@ -29,13 +29,13 @@ class Subscription:
         self._release = release
         self._on_result = on_result
         self._on_error = on_error
-        # Serializes the callbacks: a partial result from another thread must not follow the final result.
+        # Held during a callback, because a partial result from another thread must not follow the final result.
         self._delivery_lock = threading.RLock()
         self.open = True
         """Whether more results, or an error, may follow."""
 
     def cancel(self) -> None:
-        """Receive nothing more. Returns at once; may be called repeatedly."""
+        """Close the subscription, which receives nothing more. Returns at once; may be called repeatedly."""
         self.open = False
         self._release(self)
 

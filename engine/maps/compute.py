@@ -1,4 +1,4 @@
-"""Computation of escape maps: all pixels at once, or in blocks of rows where memory requires it."""
+"""Computation of escape maps: all pixels at once, or in blocks of rows if all orbits need too much memory."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ LARGEST_RUN = 2**20
 """Largest number of pixels whose orbits are in memory together; larger maps are computed in blocks and cannot be resumed."""
 
 DEEP_PIXEL = 1e-7
-"""Distance of pixels, in units of the well, below which a map reports the share of pixels lost to double precision."""
+"""Distance of pixels, in units of the well, below which the share of pixels lost to double precision is estimated."""
 
 SAMPLED_SIDE = 16
 """Approximate number of pixels per side that are sampled for `estimate_rounded_share`."""
@@ -53,10 +53,9 @@ def compute_map(
         Called in this thread with the map so far, at increasing intervals: first at coarse resolution, then at full resolution,
         then with longer integration times. A map of more than 2²⁰ pixels is filled block by block.
     cancel, executor, on_progress
-        Replace the fields of `execution` with these names if given. All other long functions take ``execution=Execution(executor,
-        cancel)`` instead; here both are allowed.
+        Replace the fields of `execution` with these names. All other long functions have only the parameter `execution`.
     resume
-        An earlier map, complete or cancelled, with an equal spec except that its t_max may be smaller. Its orbits are continued.
+        An earlier map, complete or cancelled, whose orbits are continued. Its spec must be equal, but its t_max may be smaller.
         Maps computed in blocks cannot be resumed.
     execution
         How the computation runs. When it is cancelled, the map so far is returned, with ``complete`` False.
@@ -77,8 +76,8 @@ def compute_map(
     >>> escapes.complete, round(sum(escapes.fractions().values()), 12)
     (True, 1.0)
     """
-    given: dict[str, Any] = {"cancel": cancel, "executor": executor, "on_progress": on_progress}
-    execution = replace(execution, **{name: value for name, value in given.items() if value is not None})
+    fields_by_name: dict[str, Any] = {"cancel": cancel, "executor": executor, "on_progress": on_progress}
+    execution = replace(execution, **{name: value for name, value in fields_by_name.items() if value is not None})
     if resume is not None:
         _check_resumable(spec, resume)
     work = _begin(spec, resume, coarse_first=on_frame is not None)
@@ -90,7 +89,7 @@ def compute_map(
 
 
 def _begin(spec: MapSpec, resume: EscapeMap | None, *, coarse_first: bool) -> MapRun | LineStack | BlockStack:
-    """Return the computation of a map, in units of the well unless the map is along a parameter."""
+    """Return the computation of a map, in units of the well or, along a parameter, in the units of the request."""
     keeps_states = spec.resolution[0] * spec.resolution[1] <= LARGEST_RUN
     if spec.plane.parameter is not None:
         return LineStack(spec, resume, keeps_states=keeps_states)
@@ -100,12 +99,13 @@ def _begin(spec: MapSpec, resume: EscapeMap | None, *, coarse_first: bool) -> Ma
     return MapRun(spec.in_well_units(), earlier, coarse_first=coarse_first)
 
 
-def _in_units_of(spec: MapSpec, found: EscapeMap) -> EscapeMap:
+def _in_units_of(spec: MapSpec, escape_map: EscapeMap) -> EscapeMap:
     """Return a map of `_begin` in the units of its request."""
-    return found if spec.plane.parameter is not None else found.restored(spec)
+    return escape_map if spec.plane.parameter is not None else escape_map.restored(spec)
 
 
 def _check_resumable(spec: MapSpec, resume: EscapeMap) -> None:
+    """Raise ValueError unless a map can be continued for a request."""
     if resume.batch is None:
         raise ValueError("resume: this map has no integration state; must be a map returned by compute_map, not a frame")
     different = [field.name for field in fields(spec) if getattr(resume.spec, field.name) != getattr(spec, field.name)]
@@ -114,9 +114,10 @@ def _check_resumable(spec: MapSpec, resume: EscapeMap) -> None:
 
 
 def _with_rounded_share(result: EscapeMap, execution: Execution) -> EscapeMap:
-    """Add to a map in units of the well, if it is a deep zoom, the share of pixels that double precision does not support."""
-    pixels = (np.ptp(axis) / max(axis.size - 1, 1) for axis in (result.x, result.ordinate))
-    is_deep = result.spec.plane.parameter is None and 0.0 < min(pixels) < DEEP_PIXEL
+    """Add the share of pixels that double precision does not support to a map of `_begin`, if it is a deep zoom."""
+    spacings = (np.ptp(axis) / max(axis.size - 1, 1) for axis in (result.x, result.ordinate))
+    # The spacing of a single row or column is 0.
+    is_deep = result.spec.plane.parameter is None and 0.0 < min(spacings) < DEEP_PIXEL
     if not (result.complete and is_deep):
         return result
     share = estimate_rounded_share(result, replace(execution, on_progress=None))
@@ -139,14 +140,14 @@ def row_blocks(spec: MapSpec, max_pixels: int) -> Iterator[np.ndarray]:
     """
     columns, rows = spec.resolution
     height = max(max_pixels // columns, 1)
-    mirrored = spec.plane.mirrored_axes
-    if mirrored is None or not mirrored[1]:
-        yield from (np.arange(low, min(low + height, rows)) for low in range(0, rows, height))
+    mirrored_axes = spec.plane.mirrored_axes
+    if mirrored_axes is None or not mirrored_axes[1]:
+        yield from (np.arange(begin, min(begin + height, rows)) for begin in range(0, rows, height))
         return
-    half = max(height // 2, 1)
-    for low in range(0, (rows + 1) // 2, half):
-        lower = np.arange(low, min(low + half, (rows + 1) // 2))
-        yield np.union1d(lower, rows - 1 - lower)
+    half_height = max(height // 2, 1)
+    for begin in range(0, (rows + 1) // 2, half_height):
+        lower_rows = np.arange(begin, min(begin + half_height, (rows + 1) // 2))
+        yield np.union1d(lower_rows, rows - 1 - lower_rows)
 
 
 class BlockStack:
@@ -162,7 +163,7 @@ class BlockStack:
 
     def __init__(self, spec: MapSpec, max_pixels: int) -> None:
         self.spec, self._max_pixels = spec, max_pixels
-        self._rows_done, self._horizon = 0, 0.0
+        self._done_rows, self._horizon = 0, 0.0
         self._arrays = empty_arrays(PIXEL_ARRAYS, spec.resolution[::-1])
 
     def stages(self, execution: Execution, _on_change: OnChange) -> Iterator[Stage]:
@@ -171,17 +172,18 @@ class BlockStack:
             yield partial(self._compute, rows, replace(execution, on_progress=None))
 
     def _compute(self, rows: np.ndarray, execution: Execution) -> None:
+        """Compute the block of some rows."""
         run = MapRun(self.spec, rows=rows)
         run_stages(run, execution)
         block = run.frame()
         for name, array in self._arrays.items():
             array[rows] = getattr(block, name)
-        self._rows_done += rows.size
+        self._done_rows += rows.size
         self._horizon = block.horizon
 
     def progress(self) -> float:
         """Return the share of the rows that are done."""
-        return self._rows_done / self.spec.resolution[1]
+        return self._done_rows / self.spec.resolution[1]
 
     def frame(self) -> EscapeMap:
         """Return the map so far, with views of the arrays, because copies would need too much memory."""
@@ -197,8 +199,8 @@ def estimate_rounded_share(escape_map: EscapeMap, execution: Execution = DEFAULT
     """Estimate the share of pixels of a complete map whose fate or crossings change with the errors of double precision.
 
     About `SAMPLED_SIDE`² pixels, evenly spaced, are integrated again from the same starts with `SECOND_TOLERANCE`, so that only
-    the errors of the integration differ. If the outcome changes, one of the two outcomes is wrong. The share of changes is
-    therefore at most the sum of the shares of wrong pixels in both integrations, and at least the difference.
+    the errors of the integration differ. If an outcome changes, one of the two outcomes is wrong. The share of changes is
+    therefore at most the sum of the shares of wrong pixels in both integrations, and at least the difference of these shares.
 
     Parameters
     ----------
@@ -211,14 +213,15 @@ def estimate_rounded_share(escape_map: EscapeMap, execution: Execution = DEFAULT
     -------
     The share of the sampled interior pixels whose fate or number of crossings changes, 0 to 1; NaN without interior pixels.
     """
-    thinned = _sample_pixels(escape_map)
-    unlike = find_unlike_neighbours(thinned.fate, thinned.crossings)
-    return run_to_frame(TrustTest(thinned, unlike, SAME_STARTS), execution).doubtful_share
+    sample = _sample_pixels(escape_map)
+    unlike = find_unlike_neighbours(sample.fate, sample.crossings)
+    return run_to_frame(TrustTest(sample, unlike, SAME_STARTS), execution).doubtful_share
 
 
 def _sample_pixels(escape_map: EscapeMap) -> EscapeMap:
     """Return evenly spaced pixels of a map, with the request of the whole map."""
-    down, right = (max(1, side // SAMPLED_SIDE) for side in escape_map.fate.shape)
-    arrays = {name: getattr(escape_map, name)[down // 2 :: down, right // 2 :: right] for name in PIXEL_ARRAYS}
-    x, ordinate = escape_map.x[right // 2 :: right], escape_map.ordinate[down // 2 :: down]
+    row_step, column_step = (max(1, side // SAMPLED_SIDE) for side in escape_map.fate.shape)
+    rows, columns = slice(row_step // 2, None, row_step), slice(column_step // 2, None, column_step)
+    arrays = {name: getattr(escape_map, name)[rows, columns] for name in PIXEL_ARRAYS}
+    x, ordinate = escape_map.x[columns], escape_map.ordinate[rows]
     return replace(escape_map, x=x, ordinate=ordinate, batch=None, **arrays)

@@ -19,7 +19,7 @@ from engine.maps.spec import MapSpec
 from engine.propagation.fates import Fate
 from engine.systems.outcomes import Exit
 
-# The verbs for the outcomes in each array.
+# The verb for an orbit and its outcome, by array.
 _VERBS = {"origin": "entered", "fate": "leaves"}
 
 
@@ -35,7 +35,7 @@ class OriginFateMap(PixelAnalysis):
         (columns,), (rows,) pixel centres.
     origin, fate
         (rows, columns) int8: the outcome k ≥ 1, such as the channel through which the orbit entered or leaves, or a `Fate`.
-        `Fate.BOUNDED` means inside since −t_max, or until t_max. Read-only.
+        `Fate.BOUNDED` means that the orbit is inside since −t_max, or until t_max. Read-only.
     """
 
     x: np.ndarray
@@ -46,27 +46,29 @@ class OriginFateMap(PixelAnalysis):
 
     @property
     def fate_labels(self) -> Sequence[str]:
-        """Labels of the outcomes from 1 on."""
+        """Labels of the outcomes 1, 2, …"""
         return [outcome.label for outcome in self.spec.outcomes]
 
     def count_passages(self) -> np.ndarray:
         """Return the number of starts by origin (row) and fate (column), 0 for bounded; int64, (outcomes + 1, outcomes + 1)."""
         size = len(self.spec.outcomes) + 1
-        interior = (self.origin >= 0) & (self.fate >= 0)
-        pairs = self.origin[interior].astype(np.int64) * size + self.fate[interior]
-        return np.bincount(pairs, minlength=size * size).reshape(size, size)
+        is_decided = (self.origin >= 0) & (self.fate >= 0)
+        pair_codes = self.origin[is_decided].astype(np.int64) * size + self.fate[is_decided]
+        return np.bincount(pair_codes, minlength=size * size).reshape(size, size)
 
     def describe(self) -> str:
         """Describe the shares of the passages in one sentence."""
         counts = self.count_passages()
         total = max(int(counts.sum()), 1)
-        only_exits = all(outcome.kind is Exit for outcome in self.spec.outcomes)
-        ends, alike = ("enter and leave", "through the same exit") if only_exits else ("end in both time directions", "alike")
+        has_only_exits = all(outcome.kind is Exit for outcome in self.spec.outcomes)
+        verb, manner = (
+            ("enter and leave", "through the same exit") if has_only_exits else ("end in both time directions", "alike")
+        )
         passing, same, bounded = (
             format_share(count / total) for count in (counts[1:, 1:].sum(), np.trace(counts[1:, 1:]), counts[0, 0])
         )
         return (
-            f"{passing} of the interior starts lie on orbits that {ends}, {same} {alike}; "
+            f"{passing} of the interior starts lie on orbits that {verb}, {same} {manner}; "
             f"{bounded} are bounded in both time directions, the rest in one."
         )
 
@@ -104,7 +106,10 @@ def compute_origin_fates(spec: MapSpec, *, execution: Execution = DEFAULT_EXECUT
            [410,  34,  18,  34],
            [ 34, 410,  34,  18]])
     """
-    forward, backward = (compute_map(replace(spec, backward=way), execution=execution.part(int(way), 2)) for way in (False, True))
+    forward, backward = (
+        compute_map(replace(spec, backward=is_backward), execution=execution.part(int(is_backward), 2))
+        for is_backward in (False, True)
+    )
     if not (forward.complete and backward.complete):
         raise CancelledError
     return join_origin_fates(forward, backward)

@@ -28,10 +28,10 @@ from engine.slices.axes import HeldParameter, highest_energy
 from engine.slices.parameter_family import ManyExitsError, parameter_family
 from engine.slices.window import Window
 
-# Up to this time, in units of the well, a line is one task of the executor, of about 50 ms at most. Dividing a line into tiles,
-# for which a thread waits, takes three times as long. This pays only for orbits that are still inside.
+# Time up to which a line is one task of the executor, in units of the well; a task takes about 50 ms at most. To divide a line
+# into tiles, for which a thread waits, takes three times as long, and pays only for orbits that are still inside at this time.
 _FIRST_HORIZON = 1000.0
-# Strides between the lines of the first frames.
+# Strides between the lines of successive frames.
 _STRIDES = (8, 4, 2, 1)
 # The arrays whose positive codes are numbers of outcomes.
 _OUTCOME_ARRAYS = ("fate", "outside")
@@ -54,7 +54,7 @@ class Line:
     place
         The index of the line in the arrays of the whole map.
     numbers
-        (outcomes + 1,) fate on the whole map of each fate of the line; entry 0 is 0.
+        (outcomes + 1,) for each fate of the line, the fate on the whole map; entry 0 is 0.
     """
 
     spec: MapSpec
@@ -63,32 +63,35 @@ class Line:
 
     def of(self, escape_map: EscapeMap) -> EscapeMap:
         """Return this line of a map, with the outcome numbers of the line, and with its integration state if the map has one."""
-        own = np.zeros(int(self.numbers.max(initial=0)) + 1, np.int8)
-        own[self.numbers] = np.arange(self.numbers.size)
+        line_numbers = np.zeros(int(self.numbers.max(initial=0)) + 1, np.int8)
+        line_numbers[self.numbers] = np.arange(self.numbers.size)
         arrays: dict[str, Any] = {name: getattr(escape_map, name)[self.place] for name in PIXEL_ARRAYS}
         for name in _OUTCOME_ARRAYS:
-            arrays[name] = renumber(arrays[name], own)
+            arrays[name] = renumber(arrays[name], line_numbers)
         x, ordinate = self.spec.pixel_centres()
         line = replace(escape_map, spec=replace(self.spec, t_max=escape_map.spec.t_max), x=x, ordinate=ordinate, **arrays)
         if escape_map.batch is None:
             return line
         pixels = np.arange(escape_map.fate.size).reshape(escape_map.fate.shape)[self.place].ravel()
-        which = np.searchsorted(escape_map.continued_pixels, pixels[line.continued_pixels])
-        return replace(line, batch=escape_map.batch.take(which))
+        indices = np.searchsorted(escape_map.continued_pixels, pixels[line.continued_pixels])
+        return replace(line, batch=escape_map.batch.take(indices))
 
 
 def find_lines(spec: MapSpec) -> list[Line | None]:
     """Return the lines of a map along a parameter, in increasing order of its values; None where there is no potential."""
-    axis, place = spec.plane.parameter, spec.plane.parameter_axis
+    axis, axis_index = spec.plane.parameter, spec.plane.parameter_axis
     assert axis is not None
+    assert axis_index is not None
     window, family = spec.find_window(), parameter_family(axis)
-    return [_line(spec, window, family.member, k, value) for k, value in enumerate(spec.pixel_centres()[place or 0].tolist())]
+    return [_line(spec, window, family.member, k, value) for k, value in enumerate(spec.pixel_centres()[axis_index].tolist())]
 
 
 def _line(spec: MapSpec, window: Window, find_member: Callable[[float], Any], k: int, value: float) -> Line | None:
+    """Return line number k, at a value of the parameter; None if the system has no potential there."""
     try:
         member = find_member(value)
     except ManyExitsError:
+        # This is a ValueError too, but concerns the whole map.
         raise
     except ValueError:
         return None
@@ -97,10 +100,12 @@ def _line(spec: MapSpec, window: Window, find_member: Callable[[float], Any], k:
     edges = value - 0.5, value + 0.5
     place: Place
     if spec.plane.parameter_axis == 0:
-        place, size, part = np.s_[:, k : k + 1], (1, rows), Window(*edges, window.ordinate_low, window.ordinate_high)
+        place, resolution = np.s_[:, k : k + 1], (1, rows)
+        line_window = Window(*edges, window.ordinate_low, window.ordinate_high)
     else:
-        place, size, part = np.s_[k : k + 1, :], (columns, 1), Window(window.x_low, window.x_high, *edges)
-    line_spec = replace(spec, potential=member.potential, plane=spec.plane.line(value), resolution=size, window=part)
+        place, resolution = np.s_[k : k + 1, :], (columns, 1)
+        line_window = Window(window.x_low, window.x_high, *edges)
+    line_spec = replace(spec, potential=member.potential, plane=spec.plane.line(value), resolution=resolution, window=line_window)
     return Line(line_spec, place, member.numbers_at(highest_energy(spec.energy)))
 
 
@@ -120,67 +125,70 @@ class LineStack:
     def __init__(self, spec: MapSpec, resume: EscapeMap | None = None, *, keeps_states: bool = True) -> None:
         self.spec, self._keeps_states = spec, keeps_states
         lines = find_lines(spec)
-        self._count, self._lines = len(lines), {k: line for k, line in enumerate(lines) if line is not None}
-        self._found: dict[int, EscapeMap] = {}
+        self._line_count, self._lines = len(lines), {k: line for k, line in enumerate(lines) if line is not None}
+        # The maps of the lines so far.
+        self._line_maps: dict[int, EscapeMap] = {}
         self._stride, self._horizon = _STRIDES[0], 0.0
         self._arrays = empty_arrays(PIXEL_ARRAYS, spec.resolution[::-1])
-        for k in range(self._count):
+        for k in range(self._line_count):
             if k not in self._lines:
                 # The system has no potential at this value.
-                here = (slice(None), k) if spec.plane.parameter_axis == 0 else k
-                self._arrays["fate"][here], self._arrays["started"][here] = Fate.FORBIDDEN, True
+                index = (slice(None), k) if spec.plane.parameter_axis == 0 else k
+                self._arrays["fate"][index], self._arrays["started"][index] = Fate.FORBIDDEN, True
             elif resume is not None:
                 self._put(k, self._lines[k].of(resume))
 
     def stages(self, execution: Execution, on_change: OnChange) -> Iterator[Stage]:
         """Yield the stages, see `Staged`; each integrates the orbits of some lines to a horizon."""
         first, last = _FIRST_HORIZON * self.spec.potential.units.time, self.spec.t_max
-        is_divided = first < last and self._keeps_states and not self._found
-        for horizon in (first, last) if is_divided else (last,):
+        has_two_horizons = first < last and self._keeps_states and not self._line_maps
+        for horizon in (first, last) if has_two_horizons else (last,):
             for stride, lines in self._refinements():
                 yield partial(self._advance, stride, lines, horizon, execution, on_change)
             self._horizon = horizon
 
     def _refinements(self) -> Iterator[tuple[int, list[int]]]:
         """Yield (stride, lines), coarse to fine, with each line once."""
-        seen: set[int] = set()
+        yielded: set[int] = set()
         for stride in _STRIDES:
-            chosen = [k for k in np.unique(representative_indices(self._count, stride)).tolist() if k not in seen]
-            seen |= set(chosen)
-            yield stride, [k for k in chosen if k in self._lines]
+            numbers = [k for k in np.unique(representative_indices(self._line_count, stride)).tolist() if k not in yielded]
+            yielded |= set(numbers)
+            yield stride, [k for k in numbers if k in self._lines]
 
     def _advance(self, stride: int, lines: list[int], horizon: float, execution: Execution, on_change: OnChange) -> None:
         """Integrate the orbits of some lines up to a time."""
-        waiting = [k for k in lines if _continues(self._found.get(k))]
-        arguments = [(self._lines[k], horizon, self._found.get(k)) for k in waiting]
+        continued = [k for k in lines if _continues(self._line_maps.get(k))]
+        arguments = [(self._lines[k], horizon, self._line_maps.get(k)) for k in continued]
         with _coordinating_threads() as threads:
             if horizon <= _FIRST_HORIZON * self.spec.potential.units.time:
                 futures = [execution.submit(_compute_line, *each) for each in arguments]
             else:
-                alone = replace(execution, on_progress=None)
-                futures = [threads.submit(_compute_line, *each, alone) for each in arguments]
-            for k, found in _as_finished(dict(zip(futures, waiting, strict=True)), execution):
-                self._put(k, found)
+                without_progress = replace(execution, on_progress=None)
+                futures = [threads.submit(_compute_line, *each, without_progress) for each in arguments]
+            for k, line_map in _as_finished(dict(zip(futures, continued, strict=True)), execution):
+                self._put(k, line_map)
                 on_change(False)
         if not execution.is_cancelled:
             self._stride = min(self._stride, stride)
 
-    def _put(self, k: int, found: EscapeMap) -> None:
+    def _put(self, k: int, line_map: EscapeMap) -> None:
+        """Copy the map of a line, up to any time, into the arrays."""
         line = self._lines[k]
-        self._found[k] = found if self._keeps_states else replace(found, batch=None)
+        self._line_maps[k] = line_map if self._keeps_states else replace(line_map, batch=None)
         for name, array in self._arrays.items():
-            codes = getattr(found, name)
-            array[line.place] = renumber(codes, line.numbers) if name in _OUTCOME_ARRAYS else codes
-        if found.spec.t_max < self.spec.t_max:
-            open_ended = (found.fate == Fate.BOUNDED) & (found.evidence == Evidence.INTEGRATED)
+            values = getattr(line_map, name)
+            array[line.place] = renumber(values, line.numbers) if name in _OUTCOME_ARRAYS else values
+        if line_map.spec.t_max < self.spec.t_max:
+            # Orbits that are bounded until then only are undecided on the whole map.
+            is_undecided = (line_map.fate == Fate.BOUNDED) & (line_map.evidence == Evidence.INTEGRATED)
             for name, value in (("fate", Fate.NOT_COMPUTED), ("evidence", Evidence.NONE)):
                 array = self._arrays[name]
-                array[line.place] = np.where(open_ended, value, array[line.place])
+                array[line.place] = np.where(is_undecided, value, array[line.place])
 
     def progress(self) -> float:
         """Return the share of the work done, averaged over the lines."""
-        done = (found.progress * min(1.0, found.spec.t_max / self.spec.t_max) for found in self._found.values())
-        return sum(done) / len(self._lines) if self._lines else 1.0
+        shares = (line_map.progress * min(1.0, line_map.spec.t_max / self.spec.t_max) for line_map in self._line_maps.values())
+        return sum(shares) / len(self._lines) if self._lines else 1.0
 
     def frame(self) -> EscapeMap:
         """Return the map so far."""
@@ -194,13 +202,15 @@ class LineStack:
         if not self._keeps_states:
             return frame
         numbers = np.arange(frame.fate.size).reshape(frame.fate.shape)
+        # The empty first items serve a map without lines.
         pixels, batches = [np.zeros(0, int)], [OrbitBatch.empty(np.zeros(0, np.int64))]
         for k, line in self._lines.items():
-            found = self._found.get(k)
-            if found is not None and found.batch is not None:
-                pixels.append(numbers[line.place].ravel()[found.continued_pixels])
-                batches.append(found.batch)
-        joined = OrbitBatch(**{f.name: np.concatenate([getattr(b, f.name) for b in batches]) for f in fields(OrbitBatch)})
+            line_map = self._line_maps.get(k)
+            if line_map is not None and line_map.batch is not None:
+                pixels.append(numbers[line.place].ravel()[line_map.continued_pixels])
+                batches.append(line_map.batch)
+        names = [field.name for field in fields(OrbitBatch)]
+        joined = OrbitBatch(**{name: np.concatenate([getattr(batch, name) for batch in batches]) for name in names})
         return replace(frame, batch=joined.take(np.argsort(np.concatenate(pixels))))
 
 
@@ -221,7 +231,7 @@ def analyse_map[Analysis: PixelAnalysis](
     begin
         A function that begins the analysis of a map of one potential, or of a line with its place, and returns its computation.
     kind
-        The class of the analysis.
+        The class of the analysis, for a map along a parameter.
     **choices
         Fields of the analysis that are the same for all lines.
     on_frame
@@ -251,21 +261,23 @@ class _LineAnalyses[Analysis: PixelAnalysis]:
         self._map, self._begin, self._kind, self._choices = escape_map, begin, kind, choices
         self._arrays = empty_arrays(kind.pixel_arrays, escape_map.fate.shape)
         self._lines = [line for line in find_lines(escape_map.spec) if line is not None]
-        self._finished, self._complete = 0, True
+        # Number of lines whose analysis has ended, and whether all these analyses are complete.
+        self._finished_count, self._complete = 0, True
 
     def stages(self, execution: Execution, on_change: OnChange) -> Iterator[Stage]:
         """Yield the stages, see `Staged`; all lines form one stage."""
         yield partial(self._analyse, execution, on_change)
 
     def _analyse(self, execution: Execution, on_change: OnChange) -> None:
-        alone = replace(execution, on_progress=None)
+        """Analyse all lines."""
+        without_progress = replace(execution, on_progress=None)
         with _coordinating_threads() as threads:
-            running = {threads.submit(self._analyse_line, line, alone): line for line in self._lines}
-            for line, found in _as_finished(running, execution):
+            lines = {threads.submit(self._analyse_line, line, without_progress): line for line in self._lines}
+            for line, analysis in _as_finished(lines, execution):
                 for name, values in self._arrays.items():
-                    values[line.place] = getattr(found, name)
-                self._finished += 1
-                self._complete = self._complete and found.complete
+                    values[line.place] = getattr(analysis, name)
+                self._finished_count += 1
+                self._complete = self._complete and analysis.complete
                 on_change(True)
 
     def _analyse_line(self, line: Line, execution: Execution) -> Analysis:
@@ -273,28 +285,31 @@ class _LineAnalyses[Analysis: PixelAnalysis]:
 
     def progress(self) -> float:
         """Return the share of the lines that are finished."""
-        return self._finished / max(len(self._lines), 1)
+        return self._finished_count / max(len(self._lines), 1)
 
     def frame(self) -> Analysis:
         """Return the analysis so far."""
         arrays: dict[str, Any] = {name: read_only(values.copy()) for name, values in self._arrays.items()}
-        complete = self._complete and self._finished == len(self._lines)
+        complete = self._complete and self._finished_count == len(self._lines)
         return self._kind(spec=self._map.spec, complete=complete, **arrays, **self._choices)
 
 
-def _as_finished[Key, Found](running: dict[Future[Found], Key], execution: Execution) -> Iterator[tuple[Key, Found]]:
-    """Yield results as they are finished. When the computation is cancelled, calls that have not begun are dropped."""
-    for future in as_completed(running):
+def _as_finished[Key, Result](keys: dict[Future[Result], Key], execution: Execution) -> Iterator[tuple[Key, Result]]:
+    """Yield the key and the result of each call when it is finished.
+
+    When the computation is cancelled, calls that have not begun are dropped.
+    """
+    for future in as_completed(keys):
         if execution.is_cancelled:
-            for waiting in running:
-                waiting.cancel()
-        found = execution.collect(future)
-        if found is not None:
-            yield running[future], found
+            for pending in keys:
+                pending.cancel()
+        result = execution.collect(future)
+        if result is not None:
+            yield keys[future], result
 
 
 def _coordinating_threads() -> ThreadPoolExecutor:
-    """Return threads for lines that are computed concurrently. The threads share the executor, and mostly wait for tiles."""
+    """Return threads for lines that are computed concurrently; they share the executor, and mostly wait for tiles."""
     return ThreadPoolExecutor(2 * count_cores(), thread_name_prefix="lines")
 
 
@@ -310,6 +325,7 @@ def _compute_line(line: Line, t_max: float, earlier: EscapeMap | None, execution
     try:
         run_stages(run, execution)
     except ValueError as error:
-        held = next(axis for axis in spec.plane.axes if isinstance(axis, HeldParameter))
-        raise ValueError(f"{held.key}={held.value:.6g}, {error}") from None
+        # The axis across the line tells the value of the parameter.
+        parameter = next(axis for axis in spec.plane.axes if isinstance(axis, HeldParameter))
+        raise ValueError(f"{parameter.key}={parameter.value:.6g}, {error}") from None
     return run.result().restored(spec)

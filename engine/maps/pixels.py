@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PixelAnalysis(MapResult):
-    """Result of an analysis of every pixel of a map.
+    """Base of results of an analysis of every pixel of a map.
 
     Attributes
     ----------
@@ -32,7 +32,7 @@ class PixelAnalysis(MapResult):
     spec: MapSpec
     complete: bool = field(default=True, kw_only=True)
     pixel_arrays: ClassVar[PixelArrays] = {}
-    """The arrays with a value for each pixel, in the form that `empty_arrays` takes."""
+    """The arrays with a value for each pixel, as `empty_arrays` takes them."""
 
     def to_xarray(self) -> xr.Dataset:
         """Return the values of the pixels as a dataset with named axes and provenance, which can be written as NetCDF."""
@@ -61,9 +61,9 @@ class MirrorPixels:
     Attributes
     ----------
     symmetric
-        Whether the potential and the pixels have this symmetry.
+        Whether the potential and the pixels are symmetric under x → −x.
     partner
-        (n,) the mirror image of each pixel; without the symmetry, the pixel itself.
+        (n,) the mirror image of each pixel; without this symmetry, the pixel itself.
     """
 
     def __init__(self, spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> None:
@@ -72,12 +72,12 @@ class MirrorPixels:
         self.partner = np.arange(x.size * ordinate.size) if partner is None else partner
 
     def firsts_among(self, pixels: np.ndarray) -> np.ndarray:
-        """Return the pixels among `pixels` (n,) that are the first of their pair."""
+        """Return those of `pixels` (n,) that are the first of their pair."""
         firsts: np.ndarray = pixels[pixels <= self.partner[pixels]]
         return firsts
 
     def firsts_of(self, pixels: np.ndarray) -> np.ndarray:
-        """Return the first pixels of the pairs of `pixels` (n,). Both are sorted and distinct."""
+        """Return the first pixel of the pair of each of `pixels` (n,); given and returned pixels are sorted and distinct."""
         if not self.symmetric:
             return pixels
         is_first = np.zeros(self.partner.size, bool)
@@ -91,7 +91,7 @@ class MirrorPixels:
 
 
 class PixelCodes:
-    """Holds the codes of the pixels of a map while an analysis decides them. Both of two mirror images get the same code.
+    """Holds the codes of the pixels of a map while an analysis decides them. Two mirror images have the same code.
 
     Parameters
     ----------
@@ -119,9 +119,9 @@ class PixelCodes:
 
     def mirrored(self, values: np.ndarray) -> np.ndarray:
         """Return a read-only copy of values (rows, columns) in which the second pixel of each pair has the value of the first."""
-        copied = values.copy()
-        self._mirror.copy_to_seconds(copied)
-        return read_only(copied)
+        mirrored = values.copy()
+        self._mirror.copy_to_seconds(mirrored)
+        return read_only(mirrored)
 
     def snapshot(self) -> tuple[np.ndarray, bool]:
         """Return a read-only copy of the codes (rows, columns), and whether all pixels are decided."""

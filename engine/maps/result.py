@@ -39,6 +39,7 @@ PIXEL_ARRAYS: PixelArrays = {
 }
 """The (rows, columns) arrays of a map."""
 
+# Names of the arrays that files contain.
 _STORED_ARRAYS = tuple(name for name in PIXEL_ARRAYS if name != "started")
 
 
@@ -51,7 +52,7 @@ type MapLike = EscapeMap | xr.Dataset
 """A map as measures and analyses accept it: an `EscapeMap`, or its dataset, such as a map of a sweep."""
 
 NOTED_SHARE = 0.01
-"""A map reports the share of interior pixels that double precision does not support if the share is at least this."""
+"""Smallest share of interior pixels that double precision does not support at which a map reports this share."""
 
 
 @with_former_fields
@@ -69,12 +70,12 @@ class EscapeMap(MapResult):
         See `Outcomes`; undecided pixels are `Fate.NOT_COMPUTED`.
     evidence
         int8, the `Evidence` of each bounded orbit: the reason why it is called bounded. Crossings and energy error of an orbit
-        bounded on evidence refer to the time up to which it was integrated.
+        that is bounded on evidence refer to the time up to which it was integrated.
     outside
-        int8, the number of the outcome of a start that is outside, as in `fate`: beyond an exit, in a disc, or beyond the escape
+        int8, for a start that is outside, the number of the outcome there, as in `fate`: of an exit, a disc, or the escape
         radius; 0 inside.
     stride
-        In each square of `stride` pixels a side, at least one pixel has been started; 1 if all pixels have been started.
+        Side, in pixels, of squares in which at least one pixel has been started; 1 if all pixels have been started.
     horizon
         Time up to which orbits are integrated in the current stage; t_max in the last stage.
     progress
@@ -86,8 +87,8 @@ class EscapeMap(MapResult):
     batch
         States of the orbits of `continued_pixels` for ``resume``, in units of the well; None in frames.
     rounded_share
-        For a complete map in a deep zoom, the estimated share of the interior pixels that double precision does not support,
-        because their outcome changes with the errors of the integration; otherwise None.
+        For a complete map in a deep zoom, the estimated share of the interior pixels that double precision does not support:
+        their outcome changes with the errors of the integration. Otherwise None.
 
     Examples
     --------
@@ -122,10 +123,10 @@ class EscapeMap(MapResult):
     def numbers(self) -> dict[str, Any]:
         """Return the request, and the share of each outcome among the interior starts."""
         spec = self.spec
-        made_by = {"potential": spec.potential.name, "plane": spec.plane.title, "energy": str(spec.energy), "t_max": spec.t_max}
-        shares = self.fractions().items()
+        request = {"potential": spec.potential.name, "plane": spec.plane.title, "energy": str(spec.energy), "t_max": spec.t_max}
+        shares = {name_fate(code, spec.outcomes): share for code, share in self.fractions().items()}
         rounded = {} if self.rounded_share is None else {"lost to rounding, about": self.rounded_share}
-        return made_by | {name_fate(code, spec.outcomes): share for code, share in shares} | {"complete": self.complete} | rounded
+        return request | shares | {"complete": self.complete} | rounded
 
     @property
     def t_max(self) -> float:
@@ -151,8 +152,8 @@ class EscapeMap(MapResult):
     @property
     def continued_pixels(self) -> np.ndarray:
         """(n,) the pixels, numbered row by row, whose outcome a larger t_max can change."""
-        undecided = (self.fate == Fate.NOT_COMPUTED) | (self.evidence == Evidence.INTEGRATED)
-        return np.flatnonzero(self.started & undecided)
+        can_change = (self.fate == Fate.NOT_COMPUTED) | (self.evidence == Evidence.INTEGRATED)
+        return np.flatnonzero(self.started & can_change)
 
     @property
     def undecided(self) -> float:
@@ -196,8 +197,8 @@ class EscapeMap(MapResult):
         Parameters
         ----------
         count_outside
-            Whether outside starts count as escaped at the outcome of their place, as in the percentages of Zotos (2014); the
-            shares then depend on the window. By default, the shares are those of the interior starts.
+            Whether outside starts count as escaped, with the outcome `outside`, as in the percentages of Zotos (2014). The shares
+            then depend on the window. By default, the shares are those of the interior starts.
         """
         fate = self.fate
         if checked_flag("count_outside", count_outside):
@@ -209,8 +210,8 @@ class EscapeMap(MapResult):
 
         Returns
         -------
-        The arrays, of (rows, columns) / `stride` rounded up, and the window that they cover. This window can extend beyond that
-        of the map by less than one square, because the last squares may be incomplete.
+        The arrays, of (rows, columns) / `stride` rounded up, and the window that they cover. This window can extend beyond the
+        window of the map by less than one square, because the last squares may be incomplete.
         """
         names = ("fate", "escape_time", "crossings", "evidence")
         if self.stride == 1:
@@ -277,19 +278,19 @@ def collect_map(
 def outcome_shares(fate: np.ndarray, outcomes: Sequence[Outcome]) -> dict[int, float]:
     """Return the share of each outcome, by code, among the interior starts of fates of any shape; 0 without interior starts."""
     interior = fate[find_interior(fate)]
-    ends = (code for code, outcome in enumerate(outcomes, 1) if outcome.occurs)
-    codes = (*ends, Fate.BOUNDED, Fate.NOT_COMPUTED, Fate.FAILED)
+    outcome_codes = (code for code, outcome in enumerate(outcomes, 1) if outcome.occurs)
+    codes = (*outcome_codes, Fate.BOUNDED, Fate.NOT_COMPUTED, Fate.FAILED)
     return {int(code): float(np.mean(interior == code)) if interior.size else 0.0 for code in codes}
 
 
 def find_interior(fate: np.ndarray) -> np.ndarray:
-    """Return whether starts are neither forbidden nor outside, for fates of any shape."""
+    """Return whether starts are neither forbidden nor outside, given fates of any shape."""
     interior: np.ndarray = (fate != Fate.FORBIDDEN) & (fate != Fate.OUTSIDE)
     return interior
 
 
 def representative_indices(size: int, stride: int) -> np.ndarray:
-    """Return for each of `size` rows or columns the first computed in its block of `stride`: the middle, or the last of all."""
+    """Return, for each of `size` rows or columns, the first computed in its block of `stride`: the middle, or the last of all."""
     return np.minimum(np.arange(size) // stride * stride + stride // 2, size - 1)
 
 

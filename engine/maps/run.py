@@ -50,10 +50,9 @@ def looks_for_tori(spec: MapSpec) -> bool:
 class MapRun:
     """Computes a map, or some of its rows, in units of the well.
 
-    If two pixels are mirror images of each other, only the first is computed.
-
-    The results up to a time do not depend on t_max, so a map with a smaller t_max is the beginning of this map. Stages end at
-    fixed times. At these times, starting with `FIRST_TEST_TIME`, orbits that are still inside are tested for evidence.
+    If two pixels are mirror images of each other, only the first is computed. The results up to a time do not depend on t_max, so
+    a map can be continued to a larger t_max. Stages end at fixed times. At these times, starting with `FIRST_TEST_TIME`, orbits
+    that are still inside are tested for evidence.
 
     Parameters
     ----------
@@ -86,7 +85,7 @@ class MapRun:
         self._mirror = MirrorPixels(spec, self.x, self.ordinate)
         rows_of_pixels, columns_of_pixels = np.divmod(np.arange(self.ordinate.size * self.x.size), self.x.size)
         self._energy = spec.energies(self.x[columns_of_pixels], self.ordinate[rows_of_pixels])
-        # With an axis h, each row or column has its own energy and exits.
+        # With an axis h, each row or column of pixels has its own energy and exits, which are a row of `_curves`.
         self._curve_row = spec.plane.energy_groups(*self.shape)
         self._curves = np.repeat(closed_exits(spec.potential)[None], self._curve_row[-1] + 1, axis=0)
         self._rows_without_exits = set(range(len(self._curves)))
@@ -99,25 +98,26 @@ class MapRun:
     def _continue(self, earlier: EscapeMap) -> None:
         """Copy the outcomes of an earlier map, and the states of the orbits that a larger t_max can change."""
         assert earlier.batch is not None
-        continued = earlier.continued_pixels
+        continued_pixels = earlier.continued_pixels
         self._started = earlier.started.ravel().copy()
         self._earlier_errors = earlier.energy_error.ravel().copy()
-        self._earlier_errors[continued] = np.nan
+        self._earlier_errors[continued_pixels] = np.nan
         self._batch.set_outcomes(
             earlier.fate.ravel(), earlier.escape_time.ravel(), earlier.crossings.ravel(),
             earlier.outside.ravel(), earlier.evidence.ravel(),
         )  # fmt: skip
-        self._batch.put(continued, earlier.batch)
-        self._batch.reopen(continued)
+        self._batch.put(continued_pixels, earlier.batch)
+        self._batch.reopen(continued_pixels)
 
     def stages(self, execution: Execution, on_change: OnChange) -> Iterator[Stage]:
         """Yield the stages, see `Staged`; each integrates orbits to a horizon, or looks for evidence there."""
-        changed = partial(on_change, False)
+        on_pixels = partial(on_change, False)
         self._find_starts(execution)
         for pixels, stride, horizon in self._targets():
+            # Here `self.horizon` is that of the preceding stage.
             if looks_for_tori(self.spec) and self.horizon >= FIRST_TEST_TIME:
-                yield partial(self._test_for_evidence, self.horizon, execution, changed)
-            yield partial(self._advance, pixels, stride, horizon, execution, changed)
+                yield partial(self._test_for_evidence, self.horizon, execution, on_pixels)
+            yield partial(self._advance, pixels, stride, horizon, execution, on_pixels)
 
     def _targets(self) -> Iterator[tuple[np.ndarray, int, float]]:
         """Yield (pixels, stride, horizon): every refinement at the shortest horizon, then all pixels at longer horizons."""
@@ -158,30 +158,31 @@ class MapRun:
         """Compute the exits that the pixels need, and start those pixels that have not been started."""
         self.stride, self.horizon = stride, horizon
         self._find_exits(pixels)
-        fresh = pixels[~self._started[pixels]]
-        tested = self._batch.mark_outside(self.spec.potential, fresh, self._curves, execution=execution)
-        self._started[tested] = True
+        new_pixels = pixels[~self._started[pixels]]
+        started_pixels = self._batch.mark_outside(self.spec.potential, new_pixels, self._curves, execution=execution)
+        self._started[started_pixels] = True
         if self.spec.use_evidence:
             self._close(pixels[self._started[pixels]])
 
     def _close(self, pixels: np.ndarray) -> None:
         """Mark orbits whose energy is below every saddle as bounded, without integration."""
-        closed = self.spec.potential.well.is_closed_at(self._energy[pixels])
-        undecided = self._batch.fate[pixels] == Fate.NOT_COMPUTED
-        self._batch.mark_bounded(pixels[closed & undecided], Evidence.CLOSED)
+        is_closed = self.spec.potential.well.is_closed_at(self._energy[pixels])
+        is_undecided = self._batch.fate[pixels] == Fate.NOT_COMPUTED
+        self._batch.mark_bounded(pixels[is_closed & is_undecided], Evidence.CLOSED)
 
     def _find_exits(self, pixels: np.ndarray) -> None:
         """Find the exits at the energies of the pixels, except where they are known."""
         if not self._rows_without_exits:
             return
-        rows, firsts = np.unique(self._curve_row[pixels], return_index=True)
-        for row, pixel in zip(rows.tolist(), pixels[firsts], strict=True):
+        # One pixel of each energy.
+        rows, first_indices = np.unique(self._curve_row[pixels], return_index=True)
+        for row, pixel in zip(rows.tolist(), pixels[first_indices], strict=True):
             if row in self._rows_without_exits:
                 self._curves[row] = exit_curves(self.spec.potential, float(self._energy[pixel]))
                 self._rows_without_exits.discard(row)
 
     def _test_for_evidence(self, reached: float, execution: Execution, on_round: Callable[[], None]) -> None:
-        """Mark orbits inside at t = `reached` as bounded if there is evidence; a cancelled test marks no orbits."""
+        """Mark orbits that are inside at t = `reached` as bounded if there is evidence; a cancelled test marks no orbits."""
         spec, batch = self.spec, self._batch
         tested = self._find_untested(reached, execution)
         if not tested.size:
@@ -208,8 +209,8 @@ class MapRun:
         batch = self._batch
         untested = np.flatnonzero((batch.fate == Fate.NOT_COMPUTED) & (batch.tested < reached))
         firsts = self._mirror.firsts_among(untested)
-        # Orbits stop before the step across `reached`. An orbit that escapes in this step counts as escaped on a map that ends
-        # here.
+        # Orbits stop before the step across `reached`. On a map with t_max = `reached`, an orbit can escape in this step, so the
+        # step is taken here too.
         propagate_batch(self.spec.potential, self._curves, batch, firsts, reached, final=True, execution=execution)
         inside: np.ndarray = firsts[batch.fate[firsts] == Fate.BOUNDED]
         batch.reopen(inside)
@@ -230,12 +231,12 @@ class MapRun:
         return collect_map(self.spec, (self.x, self.ordinate), arrays, **stage)
 
     def _outcomes(self) -> Outcomes:
-        """Return the outcomes of all n pixels, (n,) arrays; second mirror images get those of the first."""
-        seconds = self._mirror.partner
-        firsts = np.flatnonzero(self._started & (seconds > np.arange(seconds.size)))
+        """Return the outcomes of all n pixels, (n,) arrays; second mirror images get the outcomes of the first."""
+        partner = self._mirror.partner
+        firsts = np.flatnonzero(self._started & (partner > np.arange(partner.size)))
         if firsts.size:
-            self._batch.copy_to_images(firsts, seconds[firsts], self.spec.potential.well.mirror_numbers(self._energy[firsts]))
-            self._started[seconds[firsts]] = True
+            self._batch.copy_to_images(firsts, partner[firsts], self.spec.potential.well.mirror_numbers(self._energy[firsts]))
+            self._started[partner[firsts]] = True
         outcomes = collect_outcomes(self.spec.potential, self._energy, self._batch)
         if self._earlier_errors is None:
             return outcomes
@@ -245,20 +246,20 @@ class MapRun:
     def progress(self) -> float:
         """Return the share of the work done: the time covered, as a share of t_max, averaged over the interior pixels."""
         fate = self._batch.fate
-        covered = np.where(fate == Fate.NOT_COMPUTED, np.minimum(self._batch.t / self.spec.t_max, 1.0), 1.0)
-        # Second mirror images are copied later.
-        interior = find_interior(fate) & (self._mirror.partner >= np.arange(fate.size))
-        return float(covered[interior].mean()) if interior.any() else 1.0
+        shares = np.where(fate == Fate.NOT_COMPUTED, np.minimum(self._batch.t / self.spec.t_max, 1.0), 1.0)
+        # Second mirror images do not count, because they are copied later.
+        counts = find_interior(fate) & (self._mirror.partner >= np.arange(fate.size))
+        return float(shares[counts].mean()) if counts.any() else 1.0
 
 
 def _start_states(spec: MapSpec, x: np.ndarray, ordinate: np.ndarray, pixels: np.ndarray) -> np.ndarray:
-    """Return the initial states of n pixels of a map with these pixel centres, of shape (n, 4); runs in a worker."""
+    """Return the initial states of n pixels of a map with these pixel centres, of shape (n, 4); called in a worker."""
     rows, columns = np.divmod(pixels, x.size)
     return spec.start_states(x[columns], ordinate[rows])
 
 
 def _coarsest_stride(shape: tuple[int, int]) -> int:
-    """Return the smallest power of 2 with which one pixel per square gives at most `COARSE_PIXELS` pixels."""
+    """Return the smallest power of 2 for which there are at most `COARSE_PIXELS` squares of this side."""
     stride = 1
     while math.ceil(shape[0] / stride) * math.ceil(shape[1] / stride) > COARSE_PIXELS:
         stride *= 2

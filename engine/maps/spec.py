@@ -1,4 +1,4 @@
-"""The request for an escape map: frozen, validated and hashable, so it also serves as a cache key."""
+"""The request for an escape map. It is frozen, validated and hashable, so it also serves as a key of caches."""
 
 from __future__ import annotations
 
@@ -42,35 +42,35 @@ FINEST_PIXEL = 1e-15
 @with_former_fields
 @dataclass(frozen=True)
 class MapSpec:
-    """An escape map: the orbits, the resolution and the integration time.
+    """The request for an escape map: the orbits, the resolution and the integration time.
 
-    Making a request computes nothing; `find_window` computes the default window, which depends on the exits.
+    Nothing is computed when a request is made. `find_window` computes the default window, which depends on the exits.
 
     Parameters
     ----------
     potential
         The `Potential`.
     plane
-        The slice of starts: a `Plane` or another `Slice`. A plane can be given by name, "x_px", as on the command line, or "(x,
-        px)".
+        The slice of starts: a `Plane` or another `Slice`. A plane can be given by name: "x_px", as on the command line, or
+        "(x, px)".
     energy
         h, finite, dimensionless; on a slice with an axis h a pair (low, high). At or below the escape energy no orbit escapes.
     resolution
         Columns and rows, each 1 to 4096.
     window
-        Part of the slice, by default the whole interior. A `Window`, or (x_low, x_high, ordinate_low, ordinate_high); None for
-        the default window, also after ``dataclasses.replace(spec, energy=…)``. With an odd number of columns or rows, the default
+        Part of the slice: a `Window`, or (x_low, x_high, ordinate_low, ordinate_high). None for the default window, which shows
+        the whole interior, also after ``dataclasses.replace(spec, energy=…)``. With an odd number of columns or rows, the default
         window is shifted by half a pixel if its middle line would be a line of symmetry, on which orbits stay for ever.
     t_max
-        Integration time, 0 < t_max ≤ 1e8, dimensionless. The default is 1e5; in rotating frames it is 1000/Ω, and with centres or
-        an escape radius 1000, because bounded orbits are integrated to the end there. If the unit of time 1/ω of the well is
-        above 1, the limit is 1e8 in this unit.
+        Integration time, 0 < t_max ≤ 1e8, dimensionless. The default is 1e5. In rotating frames it is 1000/Ω, and with bodies or
+        an escape radius 1000, because bounded orbits are then integrated to the end. If the unit of time 1/ω of the well is above
+        1, the limit is 1e8 in this unit.
     use_evidence
         Whether an orbit may be called bounded before t_max, on evidence that it never escapes, see `Evidence`.
     backward
-        Follow orbits into the past. This equals following (x, y, −px, −py) into the future, in a rotating frame
-        with −Ω for Ω. Fates are then the outcomes backward in time, such as the channels through which orbits entered,
-        escape times count backward from the start, and crossings are the upward crossings of the reversed orbit.
+        Whether to follow orbits into the past, which equals following (x, y, −px, −py) into the future, in a rotating frame with
+        −Ω for Ω. Fates are then the outcomes backward in time, such as the channels through which orbits entered. Escape times
+        count backward from the start, and crossings are the upward crossings of the reversed orbit.
 
     Raises
     ------
@@ -137,7 +137,7 @@ class MapSpec:
 
     @property
     def outcomes(self) -> tuple[Outcome, ...]:
-        """The outcomes of orbits, in the order of their fates from 1; along a parameter, those of all its potentials."""
+        """The outcomes with the fates 1, 2, …; along a parameter, those of all its potentials."""
         axis = self.plane.parameter
         return self.potential.outcomes_at(self.energy) if axis is None else parameter_family(axis).outcomes
 
@@ -170,7 +170,7 @@ class MapSpec:
         return trace_zero_velocity_curve(self.potential, self.plane, self.energy, self.find_window())
 
     def in_well_units(self) -> MapSpec:
-        """Return the map in units of the well, with its window; the legal ranges of t_max and energy do not apply to this map."""
+        """Return the request in units of the well, with its window; the legal ranges of t_max and energy do not apply to it."""
         units, window = self.potential.units, self.find_window()
         potential = self.potential.reversed_in_time if self.backward else self.potential
         return replace_unchecked(
@@ -200,14 +200,16 @@ class MapSpec:
 
     def provenance(self) -> dict[str, Any]:
         """Return the request in plain values, with the integrator and the package version."""
-        window, (axes, held), axis = self.find_window(), write_slice(self.plane), self.plane.parameter
+        window = self.find_window()
+        axes, fixed_values = write_slice(self.plane)
+        parameter = self.plane.parameter
         return describe_run(
             self.potential,
             energy=self.energy,
             plane=self.plane.title,
             axes=axes,
-            fix=held,
-            system=json.dumps(None if axis is None else asdict(axis.system)),
+            fix=fixed_values,
+            system=json.dumps(None if parameter is None else asdict(parameter.system)),
             window=window.edges,
             default_window=int(self.window is None),
             resolution=self.resolution,
@@ -226,9 +228,10 @@ class MapSpec:
 
 def finest_pixel(spec: MapSpec, window: Window) -> tuple[float, float]:
     """Return the smallest distances of pixels, in x and in the ordinate, that double precision allows in a window."""
-    x_unit, unit = spec.plane.axis_units(spec.potential.units)
-    x, ordinate = max(map(abs, (window.x_low, window.x_high))), max(map(abs, (window.ordinate_low, window.ordinate_high)))
-    return FINEST_PIXEL * max(x_unit, x), FINEST_PIXEL * max(unit, ordinate)
+    x_unit, ordinate_unit = spec.plane.axis_units(spec.potential.units)
+    largest_x = max(abs(window.x_low), abs(window.x_high))
+    largest_ordinate = max(abs(window.ordinate_low), abs(window.ordinate_high))
+    return FINEST_PIXEL * max(x_unit, largest_x), FINEST_PIXEL * max(ordinate_unit, largest_ordinate)
 
 
 def _check_pixels(spec: MapSpec, window: Window) -> None:
@@ -250,24 +253,25 @@ def _checked_resolution(resolution: Any) -> tuple[int, int]:
 
 def read_spec(dataset: xr.Dataset) -> MapSpec:
     """Return the request of a map, from the attributes of its dataset; the energy of one map of a sweep is its coordinate h."""
-    found = dataset.attrs
-    if found.get("along"):
+    attributes = dataset.attrs
+    if attributes.get("along"):
         raise ValueError(
-            f"dataset: is of a sweep along {found['axis']}, whose fates have the numbers of the sweep; must be a map of "
+            f"dataset: is of a sweep along {attributes['axis']}, whose fates have the numbers of the sweep; must be a map of "
             "compute_map, or one of a sweep over energies"
         )
     try:
-        chosen = json.loads(found["system"])
-        system = System(**chosen) if chosen else System("I")
-        plane = read_slice(str(found["axes"]), str(found["fix"]), system)
-        energy = found["energy"] if "energy" in found else float(dataset["h"].values)
-        window = None if found["default_window"] else tuple(float(edge) for edge in found["window"])
-        columns, rows = map(int, found["resolution"])
+        system_fields = json.loads(attributes["system"])
+        # Without a parameter as axis, any system serves to read the slice.
+        system = System(**system_fields) if system_fields else System("I")
+        plane = read_slice(str(attributes["axes"]), str(attributes["fix"]), system)
+        energy = attributes["energy"] if "energy" in attributes else float(dataset["h"].values)
+        window = None if attributes["default_window"] else tuple(float(edge) for edge in attributes["window"])
+        columns, rows = map(int, attributes["resolution"])
     except KeyError as error:
         raise ValueError(f"dataset: has no attribute {error}; must be the dataset of a map written by this version") from None
     return MapSpec(
-        read_potential(found), plane, _plain(energy), (columns, rows), window,  # type: ignore[arg-type]
-        float(found["t_max"]), use_evidence=bool(found["use_evidence"]), backward=bool(found["backward"]),
+        read_potential(attributes), plane, _plain(energy), (columns, rows), window,  # type: ignore[arg-type]
+        float(attributes["t_max"]), use_evidence=bool(attributes["use_evidence"]), backward=bool(attributes["backward"]),
     )  # fmt: skip
 
 

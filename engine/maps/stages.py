@@ -24,7 +24,7 @@ Pause = Callable[[float], float]
 """A function that returns the pause in seconds after a frame, given the time in seconds since the start of the computation."""
 
 OnChange = Callable[[bool], None]
-"""A function to call whenever pixels may have changed; its argument tells whether a stage has ended."""
+"""A function to call whenever pixels may have changed; its argument is whether a stage has ended."""
 
 
 class Frame(Protocol):
@@ -65,23 +65,23 @@ def run_stages[F: Frame](
     execution
         How the computation runs; progress is reported whenever pixels may have changed.
     on_frame
-        Called in this thread with incomplete frames: first at the end of a stage, whose frame has one resolution, then after
-        pauses.
+        Called in this thread with incomplete frames: first at the end of a stage, so that the frame has one resolution, and then
+        after pauses.
     pause
-        Returns the pauses; by default they grow.
+        Returns the pause after a frame; by default, pauses grow.
     """
-    follow = _Follower(work, execution, on_frame, pause)
-    for stage in work.stages(execution, follow):
+    on_change = _Follower(work, execution, on_frame, pause)
+    for stage in work.stages(execution, on_change):
         if execution.is_cancelled:
             break
         stage()
-        follow(True)
+        on_change(True)
 
 
 def run_to_frame[F: Frame](
     work: Staged[F], execution: Execution, on_frame: Callable[[F], None] | None = None, pause: Pause = frame_pause
 ) -> F:
-    """Return the last frame after `run_stages`; if it is complete, `on_frame` also receives it."""
+    """Apply `run_stages`, and return the last frame; if it is complete, `on_frame` also receives it."""
     run_stages(work, execution, on_frame, pause)
     frame = work.frame()
     if on_frame is not None and frame.complete:
@@ -90,19 +90,20 @@ def run_to_frame[F: Frame](
 
 
 class _Follower[F: Frame]:
-    """Reports progress, and publishes incomplete frames of a computation with pauses between them."""
+    """An `OnChange` that reports progress, and publishes incomplete frames of a computation with pauses between them."""
 
     def __init__(self, work: Staged[F], execution: Execution, on_frame: Callable[[F], None] | None, pause: Pause) -> None:
         self._work, self._execution, self._on_frame, self._pause = work, execution, on_frame, pause
-        self._started = time.monotonic()
-        self._next_frame: float | None = None
+        self._start_time = time.monotonic()
+        # Time of the next frame; None before the first frame.
+        self._next_time: float | None = None
 
-    def __call__(self, stage_over: bool) -> None:
+    def __call__(self, stage_has_ended: bool) -> None:
         now = time.monotonic()
-        is_due = stage_over if self._next_frame is None else now >= self._next_frame
+        is_due = stage_has_ended if self._next_time is None else now >= self._next_time
         if self._on_frame is not None and is_due:
             frame = self._work.frame()
             if not frame.complete:
                 self._on_frame(frame)
-                self._next_frame = time.monotonic() + self._pause(now - self._started)
+                self._next_time = time.monotonic() + self._pause(now - self._start_time)
         self._execution.report(self._work.progress)

@@ -17,9 +17,9 @@ BOX = 5
 """Default side of a box in pixels; a box has 25 starts, as in Daza et al. (2016)."""
 
 COUNTS_BOUNDED = True
-"""Whether bounded orbits are a label. They are, because staying bounded is a possible outcome of a start."""
+"""Whether bounded orbits have a label of their own: yes, because to stay bounded is a possible outcome of a start."""
 
-# Two labels in equal parts give exactly ln 2, and the mean over boxes can exceed ln 2 by rounding.
+# Boxes with two labels in equal parts have an entropy of ln 2; their mean can exceed ln 2 by less than this, due to rounding.
 _ROUNDING = 1e-12
 
 
@@ -34,9 +34,9 @@ class BasinEntropy(RecordedResult):
     s_bb
         S_bb, the mean entropy of the boxes with more than one label; NaN if there are no such boxes.
     s_b_error, s_bb_error
-        Standard errors of these means for independent boxes; NaN for fewer than two boxes. The boxes of a tiling are more evenly
-        distributed: shifting the tiling by a few pixels changed S_b and S_bb of some maps by up to about two thirds of these
-        errors. The errors do not include the effect of another box size or resolution, which is larger.
+        Standard errors of these means for independent boxes; NaN for fewer than two boxes. The means of a tiling vary less than
+        those of independent boxes: shifting the tiling by a few pixels changed S_b and S_bb of some maps by up to about two
+        thirds of these errors. The errors do not include the larger effect of another box size or resolution.
     boxes, boundary_boxes
         Number of boxes that count, and number of these boxes with more than one label.
     labels
@@ -71,14 +71,14 @@ class BasinEntropy(RecordedResult):
 
     def describe(self) -> str:
         """Return the result in one or two sentences."""
-        size = f"{self.box} × {self.box} starts"
+        box_text = f"{self.box} × {self.box} starts"
         if not self.boxes:
-            return f"No basin entropy: no box of {size} consists only of starts that count."
-        whole = f"S_b = {_with_error(self.s_b, self.s_b_error)} over {format_count(self.boxes, 'box', 'boxes')} of {size}"
+            return f"No basin entropy: no box of {box_text} consists only of starts that count."
+        mean = f"S_b = {_with_error(self.s_b, self.s_b_error)} over {format_count(self.boxes, 'box', 'boxes')} of {box_text}"
         if not self.boundary_boxes:
-            return f"{whole}: no box holds more than one label."
+            return f"{mean}: no box holds more than one label."
         boundary = f"S_bb = {_with_error(self.s_bb, self.s_bb_error)} over the {self.boundary_boxes} on a boundary"
-        return f"{whole}; {boundary}. {self._conclusion()}"
+        return f"{mean}; {boundary}. {self._conclusion()}"
 
     def _conclusion(self) -> str:
         if self.beyond_ln2:
@@ -91,8 +91,8 @@ class BasinEntropy(RecordedResult):
 def compute_basin_entropy(labels: Any, valid: Any = None, *, box: int = BOX) -> BasinEntropy:
     """Compute the basin entropies S_b and S_bb of a labelled image.
 
-    The image is tiled with boxes from its first row and column. A strip at the far edges that is narrower than a box is left out,
-    and so are boxes with a pixel that does not count. With p_ij the share of label j in box i,
+    The image is tiled with boxes from its first row and column. A strip at the far edges that is narrower than a box does not
+    count, nor does a box with a pixel that does not count. With p_ij the share of label j in box i,
 
         S_i = Σ_j p_ij ln(1/p_ij),   S_b = mean of all S_i,   S_bb = mean of the S_i of boxes with several labels
 
@@ -102,10 +102,11 @@ def compute_basin_entropy(labels: Any, valid: Any = None, *, box: int = BOX) -> 
     Parameters
     ----------
     labels
-        A complete map or its dataset, such as ``dataset.sel(h=0.3)`` of a sweep, whose bounded orbits are a basin of their own;
-        or (rows, columns) integers, where equal integers are one basin.
+        A complete map or its dataset, such as ``dataset.sel(h=0.3)`` of a sweep; its bounded orbits are a basin of their own. Or
+        (rows, columns) integers; equal integers are one basin.
     valid
-        (rows, columns) bool, the pixels that count; for a map, the interior pixels. None for all, if no label is negative.
+        (rows, columns) bool, the pixels that count. None for the interior pixels of a map, or for all pixels of an array without
+        negative labels.
     box
         Side of a box in pixels, 2 to the shorter side of the image.
 
@@ -150,16 +151,16 @@ def _tile(image: np.ndarray, box: int) -> np.ndarray:
 
 
 def _box_entropies(boxes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return S_i, exactly 0 for one label, and the number of labels of each box, both (boxes,)."""
-    count, size = boxes.shape
-    ordered = np.sort(boxes, axis=1)
+    """Return S_i and the number of labels of each box, (boxes,) each; S_i is exactly 0 for one label."""
+    box_count, pixels_per_box = boxes.shape
+    sorted_boxes = np.sort(boxes, axis=1)
     # Runs of equal labels in the sorted boxes, given by the index of their first pixel.
     is_first = np.ones(boxes.shape, np.bool_)
-    is_first[:, 1:] = ordered[:, 1:] != ordered[:, :-1]
-    first = np.flatnonzero(is_first)
-    share = np.diff(first, append=boxes.size) / size
-    box = first // size
-    return np.bincount(box, -share * np.log(share), count), np.bincount(box, minlength=count)
+    is_first[:, 1:] = sorted_boxes[:, 1:] != sorted_boxes[:, :-1]
+    run_starts = np.flatnonzero(is_first)
+    shares = np.diff(run_starts, append=boxes.size) / pixels_per_box
+    box_index = run_starts // pixels_per_box
+    return np.bincount(box_index, -shares * np.log(shares), box_count), np.bincount(box_index, minlength=box_count)
 
 
 def _mean_and_error(entropies: np.ndarray) -> tuple[float, float]:

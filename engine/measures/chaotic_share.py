@@ -23,9 +23,9 @@ class ChaoticShare(Result):
     Attributes
     ----------
     chaotic, judged
-        Number of chaotic orbits, and of all bounded orbits that are judged.
+        Number of chaotic orbits, and number of all bounded orbits that are judged.
     share
-        Share of chaotic orbits; NaN if no orbit is judged.
+        Share of the chaotic orbits among the judged orbits; NaN if no orbit is judged.
     low, high
         95 % Wilson interval of the share, which holds for independent random starts; NaN if no orbit is judged.
     """
@@ -74,7 +74,8 @@ def compute_chaotic_share(character: Any) -> ChaoticShare:
     codes = np.asarray(getattr(character, "character", character))
     if codes.dtype.kind not in "iu":
         raise ValueError(f"character={short_repr(character)}: must be a RegularityMap, or an array of codes of Regularity")
-    chaotic, judged = int(np.count_nonzero(codes == Regularity.CHAOTIC)), int(np.count_nonzero(np.isin(codes, _JUDGEMENTS)))
+    chaotic = int(np.count_nonzero(codes == Regularity.CHAOTIC))
+    judged = int(np.count_nonzero(np.isin(codes, _JUDGEMENTS)))
     if not judged:
         return ChaoticShare(0, 0, np.nan, np.nan, np.nan)
     low, high = wilson_interval(chaotic, judged)

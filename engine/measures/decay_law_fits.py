@@ -24,16 +24,16 @@ from engine.measures.starts import Measurable, Starts, read_starts
 
 # Half-width of the 95 % interval of a normal distribution, in standard deviations.
 _DEVIATIONS = 1.96
-# Ratio of the number of escapes in the next window tried to that in the current window.
+# Number of escapes in the next window that is tried, as a share of the number in the present window.
 _WINDOW_RATIO = 0.9
-# Where a law first appears to hold, an undetectable remainder of the transient still biases the rate. The fit therefore uses only
-# this share of the escapes, the latest.
+# Share of the escapes in the first window in which a law appears to hold, the latest, that the fit uses; with all of them, an
+# undetectable remainder of the transient would bias the rate.
 _SETTLED_SHARE = 0.5
-# Degrees of the polynomials in the test of a law. Degree 1 is left out, because it is almost the score.
+# Degrees of the Legendre polynomials in the test of a law; degree 1 is almost the score.
 _DEGREES = (2, 3, 4)
 # Factors that normalise these polynomials.
 _NORMS = np.sqrt(2.0 * np.array(_DEGREES) + 1.0)
-# Steepness below which the variance of the uniform distribution is used.
+# Steepness below which the variance is that of the uniform distribution.
 _FLAT = 1e-2
 
 
@@ -45,21 +45,21 @@ def fit_decay_laws(
 ) -> DecayLaws:
     """Fit an exponential law and a power law to the escape times in a window, and decide which one holds, if any.
 
-    Rates are maximum-likelihood estimates from the escape times inside the window, given that they lie in it. Therefore neither
-    regular orbits, which never escape, nor the cutoff at t_max cause a bias. Bit-identical escape times belong to mirror images
-    and count once. All times are treated as independent draws although the starts form a grid: where a law held, rates from
-    shifted grids scattered 0.8 to 1.1 times as much as the interval implies (docs/measures.md). A law is ruled out by Neyman's
-    smooth test, with the fitted rate taken into account (Thomas & Pierce 1979, J. Am. Stat. Assoc. 74, 441).
+    Rates are maximum-likelihood estimates from the escape times inside the window, on condition that a time lies inside.
+    Therefore neither regular orbits, which never escape, nor the cutoff at t_max cause a bias. Bit-identical escape times belong
+    to mirror images and count once. All times are treated as independent draws although the starts form a grid: where a law held,
+    rates from shifted grids scattered 0.8 to 1.1 times as much as the interval implies (docs/measures.md). A law is ruled out by
+    Neyman's smooth test, with the fitted rate taken into account (Thomas & Pierce 1979, J. Am. Stat. Assoc. 74, 441).
 
     A window chosen automatically ends at t_max. Decreasing numbers of the latest escapes are tried until a law is ruled out
-    neither for these escapes nor for their later half. This half is the window, by the rule of Deluca & Corral (2013, Acta
-    Geophys. 61, 1351) with an additional margin. If there is no such window, there is no fit. The laws are compared by their
+    neither for these escapes nor for their later half, which is then the window: the rule of Deluca & Corral (2013, Acta Geophys.
+    61, 1351) with an additional margin. If there is no such window, there is no fit. The laws are compared by their
     log-likelihood ratio (Vuong 1989, Econometrica 57, 307).
 
     Parameters
     ----------
     statistics
-        The escapes, or a map or the outcomes of `classify_orbits`, whose escapes are then counted.
+        The escapes; or a map, or the outcomes of `classify_orbits`, whose escapes are counted first.
     t_max
         Integration time of the orbits that did not escape, 0 < t_max ≤ 1e8, dimensionless; at most that of the statistics, which
         is the default. Later escapes are left out.
@@ -84,27 +84,28 @@ def fit_decay_laws(
         statistics = compute_statistics(read_starts("statistics", statistics))
     t_max = _checked_horizon(statistics, t_max)
     if window is not None:
-        ends = checked_array("window", window)
-        if ends.shape != (2,) or not 0.0 < ends[0] < ends[1] <= t_max:
+        limits = checked_array("window", window)
+        if limits.shape != (2,) or not 0.0 < limits[0] < limits[1] <= t_max:
             raise ValueError(f"window={short_repr(window)}: must be (t_low, t_high) with 0 < t_low < t_high ≤ t_max={t_max:g}")
     t_high = t_max if window is None else float(window[1])
     all_times = np.unique(statistics.escape_times)
     times = all_times[(all_times > 0.0) & (all_times <= t_high)]
     t_low = _choose_t_low(times, t_high) if window is None else float(window[0])
+    # Without a window, t_low is NaN, and all escapes are counted.
     sample = _Sample(t_low, t_high, times[times > (t_low if np.isfinite(t_low) else 0.0)])
     counts = (sample.times.size, all_times.size, statistics.undecided)
     laws = DecayLaws(*compute_survival(statistics), t_low, t_high, *counts, made_by=statistics.made_by)
-    if counts[0] < MIN_ESCAPES or statistics.undecided or not np.isfinite(t_low):
+    if sample.times.size < MIN_ESCAPES or statistics.undecided or not np.isfinite(t_low):
         return laws
     return _compare(laws, sample, statistics)
 
 
 def _checked_horizon(statistics: EscapeStatistics, t_max: float | None) -> float:
-    """Return the time up to which the escapes are known."""
-    checked = checked_t_max(statistics.t_max if t_max is None else t_max)
-    if checked > statistics.t_max:
+    """Return the time up to which escapes are used; ValueError if it is after the time up to which they are known."""
+    horizon = checked_t_max(statistics.t_max if t_max is None else t_max)
+    if horizon > statistics.t_max:
         raise ValueError(f"t_max={t_max:g}: must be at most {statistics.t_max:g}, the integration time of the statistics")
-    return checked
+    return horizon
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,10 +121,10 @@ class _Sample:
         return to_unit_time(law, self.t_low, self.t_high, self.times)
 
     def p_value(self, law: DecayLaw) -> float:
-        """Return the probability that a sample of the law deviates as much from its own fit, by Neyman's smooth test.
+        """Return the probability that a sample of the law deviates at least as much from its own fit, by Neyman's smooth test.
 
         Under the law, the means of the Legendre polynomials of the cumulative shares are normally distributed around 0. The fit
-        reduces their covariance by the part along the score u − ⟨u⟩.
+        reduces the covariance of these means by the part along the score u − ⟨u⟩.
         """
         from scipy import special
 
@@ -131,8 +132,8 @@ class _Sample:
         shares = cumulative_share(_fit_steepness(u), u)
         polynomials = np.polynomial.legendre.legvander(2.0 * shares - 1.0, _DEGREES[-1])[:, _DEGREES] * _NORMS
         score = u - u.mean()
-        along = score @ polynomials
-        covariance = np.eye(len(_DEGREES)) - np.outer(along, along) / (u.size * (score @ score))
+        score_part = score @ polynomials
+        covariance = np.eye(len(_DEGREES)) - np.outer(score_part, score_part) / (u.size * (score @ score))
         means = polynomials.mean(axis=0)
         return float(special.chdtrc(len(_DEGREES), u.size * means @ np.linalg.solve(covariance, means)))
 
@@ -142,11 +143,13 @@ class _Sample:
 
         u = self.unit_times(law)
         steepness = _fit_steepness(u)
-        k, forward = abs(steepness), u if steepness > 0.0 else 1.0 - u
-        # The Jacobian du/dt of the unit time that is linear in ln t is 1 / (t · length).
-        jacobian = 0.0 if law is DecayLaw.EXPONENTIAL else np.log(self.times)
+        # A rising density is a falling density of 1 − u.
+        k = abs(steepness)
+        falling_u = u if steepness > 0.0 else 1.0 - u
+        # du/dt is 1/length if u is linear in t, and 1/(t · length) if u is linear in ln t.
+        log_t = 0.0 if law is DecayLaw.EXPONENTIAL else np.log(self.times)
         likelihoods: np.ndarray = (
-            -np.log(special.exprel(-k)) - k * forward - np.log(window_length(law, self.t_low, self.t_high)) - jacobian
+            -np.log(special.exprel(-k)) - k * falling_u - np.log(window_length(law, self.t_low, self.t_high)) - log_t
         )
         return likelihoods
 
@@ -163,17 +166,18 @@ def _choose_t_low(times: np.ndarray, t_high: float) -> float:
 
 
 def _latest(times: np.ndarray, t_high: float, count: int) -> _Sample:
-    """Return the latest `count` escapes; the window begins at the preceding escape."""
+    """Return the sample of the latest `count` escapes; its window begins at the escape before them."""
     return _Sample(float(times[-count - 1]), t_high, times[-count:])
 
 
 def _compare(laws: DecayLaws, sample: _Sample, statistics: EscapeStatistics) -> DecayLaws:
-    """Fit both laws to a sample, and find the law that holds and is significantly more likely."""
-    escaped = [int(np.count_nonzero(statistics.escape_times <= t)) for t in (sample.t_low, sample.t_high)]
-    survival = [1.0 - count / statistics.decided for count in escaped]
+    """Return the laws with both fits to a sample, and with the law that holds and is significantly more likely."""
+    escaped_counts = [int(np.count_nonzero(statistics.escape_times <= t)) for t in (sample.t_low, sample.t_high)]
+    survival = [1.0 - count / statistics.decided for count in escaped_counts]
     exponential, power_law = (_fit_law(law, sample, *survival) for law in DecayLaw)
     differences = sample.log_likelihoods(DecayLaw.EXPONENTIAL) - sample.log_likelihoods(DecayLaw.POWER_LAW)
-    ratio, half_width = float(differences.mean()), _DEVIATIONS * float(differences.std()) / math.sqrt(differences.size)
+    ratio = float(differences.mean())
+    half_width = _DEVIATIONS * float(differences.std()) / math.sqrt(differences.size)
     preferred = None
     if exponential.plausible and ratio > half_width:
         preferred = DecayLaw.EXPONENTIAL
@@ -198,18 +202,18 @@ def _fit_law(law: DecayLaw, sample: _Sample, survival_low: float, survival_high:
 def _fit_steepness(u: np.ndarray) -> float:
     """Return the maximum-likelihood steepness k, of either sign, of a density ∝ exp(−k u) on 0 ≤ u ≤ 1.
 
-    k solves ½ ₁F₁(2; 3; −k) / ₁F₁(1; 2; −k) = 1/k − 1/(exp k − 1) = mean of u; the left form is also accurate for small k.
-    Replacing u by 1 − u changes only the sign of k.
+    k solves ½ ₁F₁(2; 3; −k) / ₁F₁(1; 2; −k) = 1/k − 1/(exp k − 1) = mean of u; the first expression is also accurate for small
+    k. Replacing u by 1 − u changes only the sign of k.
     """
     from scipy import special
 
     mean = float(u.mean())
-    lower = min(mean, 1.0 - mean)
+    falling_mean = min(mean, 1.0 - mean)
 
     def excess(k: float) -> float:
-        return float(0.5 * special.hyp1f1(2.0, 3.0, -k) / special.exprel(-k)) - lower
+        return float(0.5 * special.hyp1f1(2.0, 3.0, -k) / special.exprel(-k)) - falling_mean
 
-    steepness = find_root(excess, 0.0, 2.0 / lower, absolute=2e-12, relative=4 * float(np.finfo(float).eps))
+    steepness = find_root(excess, 0.0, 2.0 / falling_mean, absolute=2e-12, relative=4 * float(np.finfo(float).eps))
     return float(np.copysign(steepness, 0.5 - mean))
 
 

@@ -16,7 +16,7 @@ from engine.foundations.result import RecordedResult
 from engine.foundations.wording import format_count, format_number, format_whole
 
 MIN_ESCAPES = 100
-"""Smallest number of escapes in a window for a fit, which gives the rate to about 20 %. Choosing a window needs twice as many."""
+"""Smallest number of escapes in a window for a fit, which gives the rate to about 20 %; choosing a window takes twice as many."""
 
 MIN_P_VALUE = 0.1
 """Laws with a smaller p value are ruled out (Clauset, Shalizi & Newman 2009, SIAM Rev. 51, 661, section 4.1)."""
@@ -43,11 +43,11 @@ class LawFit:
     low, high
         95 % interval of the rate at fixed t_low.
     p_value
-        Probability that a sample of the law deviates as much from its own fit, 0 to 1.
+        Probability that a sample of the law deviates at least as much from its own fit, 0 to 1.
     t_low, t_high
-        Window of time.
+        Window of time, dimensionless.
     survival_low, survival_high
-        S(t_low) and S(t_high) of the starts.
+        S(t_low) and S(t_high), the shares of the decided starts that are still inside at these times.
     """
 
     law: DecayLaw
@@ -82,7 +82,7 @@ class DecayLaws(RecordedResult):
     Attributes
     ----------
     times, survival
-        (m,) survival S(t), the share of the decided starts that are still inside just after t.
+        (m,) increasing escape times, and S, the share of the decided starts that are still inside just after each time.
     t_low, t_high
         Window of the fits; t_low is NaN if no law holds in any window that could be chosen.
     escapes
@@ -119,8 +119,8 @@ class DecayLaws(RecordedResult):
         if self.exponential is None or self.power_law is None:
             return self._describe_missing_fit()
         kappa, gamma = _describe_fit("κ", self.exponential), _describe_fit("γ", self.power_law)
-        part = f"{format_whole(self.escapes)} of {format_count(self.escapes_in_all, 'escape')}"
-        data = f"{part}, t = {format_number(self.t_low)} to {format_number(self.t_high)}"
+        sample = f"{format_whole(self.escapes)} of {format_count(self.escapes_in_all, 'escape')}"
+        data = f"{sample}, t = {format_number(self.t_low)} to {format_number(self.t_high)}"
         if self.preferred is DecayLaw.EXPONENTIAL:
             return f"Exponential: {kappa}; {data}. A power law is less likely{_describe_exclusion(self.power_law)}."
         if self.preferred is DecayLaw.POWER_LAW:
@@ -147,8 +147,8 @@ class DecayLaws(RecordedResult):
             return "The data do not decide between the two laws"
         if possible:
             return f"The {possible[0]} may hold, but is not clearly more likely"
-        ruled_out = max(exponential.p_value, power_law.p_value) < MIN_P_VALUE
-        return "Neither law holds" if ruled_out else "These escapes do not show a decay"
+        are_ruled_out = max(exponential.p_value, power_law.p_value) < MIN_P_VALUE
+        return "Neither law holds" if are_ruled_out else "These escapes do not show a decay"
 
 
 def _describe_fit(symbol: str, fit: LawFit) -> str:
@@ -181,5 +181,5 @@ def cumulative_share(steepness: float, u: np.ndarray) -> np.ndarray:
 
     k = abs(steepness)
     share: np.ndarray = u * special.exprel(-k * u) / special.exprel(-k)
-    # The factor exp k, which overflows, is divided out.
+    # For a rising density, the factor exp k is divided out, because it can overflow.
     return np.exp(-k * (1.0 - u)) * share if steepness < 0.0 else share

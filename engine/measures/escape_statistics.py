@@ -1,4 +1,4 @@
-"""Escape statistics of a map or of a rectangle in it: outcomes, escape times and upward crossings of y = 0."""
+"""Escape statistics of a map or of a window in it: outcomes, escape times and upward crossings of y = 0."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ MAX_SURVIVAL_POINTS = 500
 _LOWEST_CODE = int(min(Fate))
 # Relative difference below which times count as equal, because no bins fit between them.
 _EQUAL_TIMES = 1e-9
-# A histogram of equal times extends from the time multiplied by this factor to the time divided by it.
+# Lower edge of a histogram of equal times, as a share of the time; the upper edge is the time divided by this share.
 _LOWER_EDGE = 0.5
 
 
@@ -90,7 +90,7 @@ class EscapeStatistics(OrbitResult):
 
     @property
     def shares(self) -> dict[int, float]:
-        """Share of N0 by outcome, from 1 on, and by `Fate.BOUNDED`, `NOT_COMPUTED` and `FAILED`; 0 without starts."""
+        """Share of N0 by fate: outcomes 1, 2, …, `Fate.BOUNDED`, `NOT_COMPUTED` and `FAILED`; 0 without starts."""
         counts = dict(enumerate(self.channel_counts, start=1))
         counts |= {int(Fate.BOUNDED): self.bounded, int(Fate.NOT_COMPUTED): self.undecided, int(Fate.FAILED): self.failed}
         return {code: count / self.starts if self.starts else 0.0 for code, count in counts.items()}
@@ -105,8 +105,8 @@ class EscapeStatistics(OrbitResult):
     def escape_probabilities(self) -> np.ndarray:
         """p_n = dN_n / N_n, where N_n orbits have not escaped before their n-th crossing; shaped like `crossing_counts`.
 
-        N_0 is the number of decided starts, so the product of all 1 − p_n is the bounded share of these. In a finished map
-        without failures, N_0 is the number of starts. An unfinished map lacks late escapes, and all of its p_n can change.
+        N_0 is the number of decided starts, so the product of all 1 − p_n is the bounded share of the decided starts. In a
+        finished map without failures, N_0 is the number of starts. An unfinished map lacks late escapes, and all p_n can change.
         """
         escaped_before = np.cumsum(self.crossing_counts) - self.crossing_counts
         return read_only(self.crossing_counts / (self.decided - escaped_before))
@@ -152,7 +152,7 @@ def compute_statistics(frame: Measurable | Starts, window: GivenWindow | None = 
     frame
         The map, or its dataset, such as ``dataset.sel(h=0.3)`` of a sweep; or the outcomes of `classify_orbits`.
     window
-        Only pixels whose centre lies in this rectangle, edges included, count; given as in `MapSpec`. The rectangle can extend
+        Rectangle, given as in `MapSpec`: only pixels whose centres lie in the rectangle, edges included, count. It can extend
         beyond the map or miss it. None for all pixels, and for orbits that do not form a map.
 
     Examples
@@ -162,14 +162,17 @@ def compute_statistics(frame: Measurable | Starts, window: GivenWindow | None = 
     >>> statistics.starts, statistics.channel_counts, round(statistics.median_escape_time, 2)
     (1124, (496, 496, 66, 66), 1.51)
     """
-    starts, made_by = read_starts("frame", frame), {}
+    starts = read_starts("frame", frame)
+    made_by = dict(starts.made_by)
     if window is not None:
-        box = checked_window(window)
-        starts, made_by = starts.inside(box), {"counted_in": box.edges}
-    fate, escaped = starts.fate, starts.fate >= 1
-    times = starts.escape_time[escaped]
-    codes = len(starts.outcomes) + 1 - _LOWEST_CODE
-    counts = np.bincount(fate.ravel().astype(np.intp) - _LOWEST_CODE, minlength=codes).tolist()
+        rectangle = checked_window(window)
+        starts = starts.inside(rectangle)
+        made_by["counted_in"] = rectangle.edges
+    has_escaped = starts.fate >= 1
+    times = starts.escape_time[has_escaped]
+    # The number of starts by code; the lowest code, which is negative, has index 0.
+    code_count = len(starts.outcomes) + 1 - _LOWEST_CODE
+    counts = np.bincount(starts.fate.ravel().astype(np.intp) - _LOWEST_CODE, minlength=code_count).tolist()
     return EscapeStatistics(
         channel_counts=tuple(counts[1 - _LOWEST_CODE :]),
         bounded=counts[Fate.BOUNDED - _LOWEST_CODE],
@@ -177,11 +180,11 @@ def compute_statistics(frame: Measurable | Starts, window: GivenWindow | None = 
         failed=counts[Fate.FAILED - _LOWEST_CODE],
         mean_escape_time=float(times.mean()) if times.size else float("nan"),
         median_escape_time=float(np.median(times)) if times.size else float("nan"),
-        crossing_counts=read_only(np.bincount(starts.crossings[escaped])),
+        crossing_counts=read_only(np.bincount(starts.crossings[has_escaped])),
         escape_times=read_only(times),
         t_max=starts.t_max,
         outcomes=starts.outcomes,
-        made_by={**starts.made_by, **made_by},
+        made_by=made_by,
     )
 
 
@@ -191,8 +194,8 @@ def compute_survival(statistics: EscapeStatistics) -> tuple[np.ndarray, np.ndarr
     Parameters
     ----------
     statistics
-        The escapes. Undecided starts count neither as inside nor as escaped, so S is too small at late times in an unfinished
-        map.
+        The escapes. Undecided starts count neither as inside nor as escaped. In an unfinished map, S is therefore too small at
+        late times.
 
     Returns
     -------
@@ -205,8 +208,9 @@ def compute_survival(statistics: EscapeStatistics) -> tuple[np.ndarray, np.ndarr
     times, counts = np.unique(statistics.escape_times, return_counts=True)
     survival = 1.0 - np.cumsum(counts) / max(statistics.decided, 1)
     if times.size > MAX_SURVIVAL_POINTS:
-        first = times[times > 0.0][0]
-        grid = np.geomspace(first, times[-1], MAX_SURVIVAL_POINTS - 1)[:-1]
+        # The first time is added below, as it can be 0.
+        first_positive = times[times > 0.0][0]
+        grid = np.geomspace(first_positive, times[-1], MAX_SURVIVAL_POINTS - 1)[:-1]
         selected = np.unique([0, *(np.searchsorted(times, grid, side="right") - 1), times.size - 1])
         times, survival = times[selected], survival[selected]
     return read_only(times), read_only(survival)

@@ -25,7 +25,7 @@ class ExitMatching(OrbitResult):
     entrances
         (m,) numbers of the exits through which orbits enter.
     ends
-        (k,) fates of orbits: `Fate.BOUNDED` for orbits that stay until t_max, and the outcomes from 1 on that occur.
+        (k,) fates of orbits: `Fate.BOUNDED` for orbits that stay until t_max, and the numbers of the outcomes that can occur.
     counts
         (m, k) numbers of orbits with each entrance and end. Orbits whose integration failed do not count.
     outcomes
@@ -54,8 +54,8 @@ class ExitMatching(OrbitResult):
     def returning_share(self) -> float:
         """Share of the orbits that leave through the exit through which they entered; NaN without orbits."""
         total = int(self.counts.sum())
-        same = self.counts[self.entrances[:, None] == self.ends]
-        return float(same.sum()) / total if total else float("nan")
+        returning_counts = self.counts[self.entrances[:, None] == self.ends]
+        return float(returning_counts.sum()) / total if total else float("nan")
 
     def name_ends(self) -> Sequence[str]:
         """Return the ends in words."""
@@ -73,21 +73,21 @@ class ExitMatching(OrbitResult):
         return {"entrance": entrance, "exit": end, **{name: values.ravel() for name, values in numbers.items()}}
 
     def describe(self) -> str:
-        """Return the share of orbits that return, in a sentence."""
+        """Return the shares of orbits that return and that stay, in a sentence."""
         total = int(self.counts.sum())
-        stay = int(self.counts[:, self.ends == Fate.BOUNDED].sum())
+        staying_count = int(self.counts[:, self.ends == Fate.BOUNDED].sum())
         if not total:
             return "No orbit enters."
-        back = f"{format_share(self.returning_share)} leave through the exit by which they entered"
-        return f"Of {total} orbits that enter {back}, and {format_share(stay / total)} stay."
+        returning = f"{format_share(self.returning_share)} leave through the exit by which they entered"
+        return f"Of {total} orbits that enter {returning}, and {format_share(staying_count / total)} stay."
 
 
 def compute_exit_matching(entrances: Any, outcomes: Measurable | Starts) -> ExitMatching:
     """Count entering orbits by the exit through which they enter and the exit through which they leave.
 
-    If orbits forget how they entered before they leave, the shares are the same for all entrances: those of the exits in the
-    flux. Differences are due to orbits that pass quickly, along the tubes that connect entrances and exits, called "dynamical
-    matching" (Collins, Kramer, Carpenter, Ezra & Wiggins 2014, J. Chem. Phys. 141, 034111).
+    If orbits forget how they entered before they leave, the shares are the same for all entrances: the shares of the exits in the
+    flux. Differences are due to orbits that pass quickly along the tubes that connect entrances and exits, which is called
+    "dynamical matching" (Collins, Kramer, Carpenter, Ezra & Wiggins 2014, J. Chem. Phys. 141, 034111).
 
     Parameters
     ----------
@@ -116,9 +116,11 @@ def compute_exit_matching(entrances: Any, outcomes: Measurable | Starts) -> Exit
     starts, entered = read_starts("outcomes", outcomes), checked_integers("entrances", entrances)
     if entered.shape != starts.fate.shape or entered.ndim != 1 or (entered.size and entered.min() < 1):
         raise ValueError(f"entrances of shape {entered.shape}: must be one integer of 1 or more per orbit, {starts.fate.shape}")
-    known = max([len(starts.outcomes), *starts.fate.tolist()])
-    occurring = [end for end in range(1, known + 1) if end > len(starts.outcomes) or starts.outcomes[end - 1].occurs]
+    # Without known outcomes, the fates are the outcomes.
+    outcome_count = max([len(starts.outcomes), *starts.fate.tolist()])
+    occurring = [end for end in range(1, outcome_count + 1) if end > len(starts.outcomes) or starts.outcomes[end - 1].occurs]
     rows, ends = np.unique(entered), np.array([int(Fate.BOUNDED), *occurring])
     counts = np.array([[np.count_nonzero((entered == row) & (starts.fate == end)) for end in ends] for row in rows], np.int64)
+    # Without orbits, the shape has to be stated.
     counts = read_only(counts.reshape(rows.size, ends.size))
     return ExitMatching(read_only(rows), read_only(ends), counts, starts.outcomes, made_by=starts.made_by)

@@ -1,4 +1,4 @@
-"""Islands: connected parts of the bounded starts, and their areas with the error due to the resolution."""
+"""Islands: connected parts of the bounded starts of a map. Their areas have an error due to the resolution."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _VARIANCE_PER_LENGTH = 0.0724
 
 @dataclass(frozen=True)
 class Islands(RecordedResult):
-    """Bounded starts of a map; areas in units of the axes.
+    """Areas of the bounded starts of a map, in units of its axes.
 
     Attributes
     ----------
@@ -30,7 +30,7 @@ class Islands(RecordedResult):
     count
         Number of connected parts of at least four pixels; pixels that share a corner are connected.
     largest, largest_error
-        Area of the largest of these parts, and its error; 0 if there are no parts.
+        Area of the largest of these parts, and its error; 0 if there is no such part.
     """
 
     area: float
@@ -56,8 +56,8 @@ def compute_islands(starts: Measurable | Starts) -> Islands:
     An area is the number of pixels times the area of a pixel. Its error is due to the resolution alone: the number of points of a
     square lattice in a region with a smooth edge of length L, in units of the spacing, has the variance 0.0724 L if the lattice
     lies at random (Matérn 1989, J. Microsc. 153, 269; Gundersen & Jensen 1987, J. Microsc. 147, 229). L is π/4 times the number
-    of pairs of neighbours of which only one is bounded, as for an edge of all directions. Islands with an edge that is not smooth
-    at the scale of a pixel have larger errors. The error does not include orbits that escape after t_max.
+    of pairs of neighbours of which only one is bounded, as for an edge that has all directions equally. Islands with an edge that
+    is not smooth at the scale of a pixel have larger errors. The error does not include orbits that escape after t_max.
 
     Parameters
     ----------
@@ -83,25 +83,27 @@ def compute_islands(starts: Measurable | Starts) -> Islands:
     # This import is slow.
     from scipy import ndimage
 
-    found = read_complete_starts("starts", starts)
-    if found.axes is None:
+    checked_starts = read_complete_starts("starts", starts)
+    if checked_starts.axes is None:
         raise ValueError("starts: must be a map")
-    bounded = found.fate == Fate.BOUNDED
-    parts, _ = ndimage.label(bounded, np.ones((3, 3)))
-    pixels = np.bincount(parts.ravel())[1:]
-    largest = parts == 1 + int(pixels.argmax()) if pixels.size else np.zeros_like(bounded)
-    if pixels.max(initial=0) < LEAST_ISLAND:
-        largest = np.zeros_like(bounded)
+    bounded = checked_starts.fate == Fate.BOUNDED
+    part_numbers, _ = ndimage.label(bounded, np.ones((3, 3)))
+    # The number 0 means that a start is not bounded.
+    pixel_counts = np.bincount(part_numbers.ravel())[1:]
+    if pixel_counts.max(initial=0) >= LEAST_ISLAND:
+        in_largest = part_numbers == 1 + int(pixel_counts.argmax())
+    else:
+        in_largest = np.zeros_like(bounded)
     return Islands(
-        *_find_area(bounded, found.pixel_area),
-        int(np.count_nonzero(pixels >= LEAST_ISLAND)),
-        *_find_area(largest, found.pixel_area),
-        made_by=found.made_by,
+        *_find_area(bounded, checked_starts.pixel_area),
+        int(np.count_nonzero(pixel_counts >= LEAST_ISLAND)),
+        *_find_area(in_largest, checked_starts.pixel_area),
+        made_by=checked_starts.made_by,
     )
 
 
 def _find_area(inside: np.ndarray, pixel_area: float) -> tuple[float, float]:
     """Return the area of the pixels that are `inside`, (rows, columns), and its error."""
-    edges = sum(int(np.count_nonzero(np.diff(inside, axis=axis))) for axis in (0, 1))
-    length: Any = 0.25 * np.pi * edges
+    edge_pairs = sum(int(np.count_nonzero(np.diff(inside, axis=axis))) for axis in (0, 1))
+    length: Any = 0.25 * np.pi * edge_pairs
     return float(np.count_nonzero(inside) * pixel_area), float(np.sqrt(_VARIANCE_PER_LENGTH * length) * pixel_area)

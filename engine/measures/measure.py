@@ -21,11 +21,14 @@ class Bars(StrEnum):
     GRID_ERROR = "error of the resolution"
 
 
-# Descriptions of the ends of an interval.
 LOW = "lower end of the 95 % interval of the {}"
+"""Description of the lower end of an interval, given the description of its number."""
+
 HIGH = "upper end of the 95 % interval of the {}"
-# Suffixes of the names of the variables of a number, with their descriptions.
-_ENDINGS: Mapping[Bars, Mapping[str, str]] = {
+"""Description of the upper end of an interval, given the description of its number."""
+
+# Suffixes of the names of the variables of a number, each with the description of its variable.
+_SUFFIXES: Mapping[Bars, Mapping[str, str]] = {
     Bars.NONE: {"": "{}"},
     Bars.INTERVAL: {"": "{}", "_low": LOW, "_high": HIGH},
     Bars.STANDARD_ERROR: {"": "{}", "_error": "standard error of the {}"},
@@ -59,17 +62,17 @@ class Quantity:
 
     def variables(self, result: Any) -> Variables:
         """Return the number and its errors as variables of a dataset; NaN if `result` is None."""
-        endings = _ENDINGS[self.bars]
-        found = (math.nan,) * len(endings) if result is None else self.read(result)
-        values = found if isinstance(found, tuple) else (found,)
+        suffixes = _SUFFIXES[self.bars]
+        numbers = (math.nan,) * len(suffixes) if result is None else self.read(result)
+        values = numbers if isinstance(numbers, tuple) else (numbers,)
         return {
-            self.name + ending: describe_number(value, words.format(self.words))
-            for value, (ending, words) in zip(values, endings.items(), strict=True)
+            self.name + suffix: describe_number(value, description.format(self.words))
+            for value, (suffix, description) in zip(values, suffixes.items(), strict=True)
         }
 
 
 def describe_number(value: float, words: str) -> tuple[tuple[()], float, dict[str, str]]:
-    """Return a number as a variable of a dataset."""
+    """Return a dimensionless number as a variable of a dataset, with its description in words."""
     return (), value, {"long_name": words, "units": "1"}
 
 
@@ -86,7 +89,7 @@ class Curve:
     least_top
         Smallest upper limit of a linear axis, which begins at 0.
     level
-        Value of a marked horizontal line, and its label.
+        Value and label of a marked horizontal line; None for no line.
     """
 
     axis: str
@@ -101,7 +104,7 @@ NO_CURVE = Curve("")
 
 @dataclass(frozen=True)
 class Measure:
-    """A measure of a map.
+    """A measure of a map: an entry of the table of measures.
 
     Attributes
     ----------
@@ -112,7 +115,7 @@ class Measure:
     meaning
         Meaning of the measure in about five words.
     compute
-        Returns the result for a map and what is measured on it; None if the measure is not defined there.
+        Returns the result for a `MeasuredMap`; None if the measure is not defined there.
     quantities
         Numbers of the measure.
     help
@@ -124,7 +127,7 @@ class Measure:
     slow
         Whether the measure integrates further orbits, and is therefore computed on demand.
     place
-        Description of what the measure counts, if not the starts in a box; otherwise empty.
+        Description of what the measure counts, if these are not the starts in a box; otherwise empty.
     terms
         Terms of the glossary that the measure needs, with their definitions.
     other_variables
@@ -151,12 +154,12 @@ class Measure:
 
     @property
     def bars(self) -> Bars:
-        """Meaning of the error bars of the curves."""
+        """Meaning of the error bars of the curves, which is the same for all of them."""
         return next((quantity.bars for quantity in self.quantities if quantity.label), Bars.NONE)
 
     def variables(self, point: Any, result: Any) -> Variables:
         """Return the variables of the measure in the dataset of a sweep; numbers are NaN if `result` is None."""
-        found = {} if self.other_variables is None else dict(self.other_variables(point, result))
+        variables = {} if self.other_variables is None else dict(self.other_variables(point, result))
         for quantity in self.quantities:
-            found |= quantity.variables(result)
-        return found
+            variables |= quantity.variables(result)
+        return variables

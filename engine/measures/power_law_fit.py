@@ -27,18 +27,19 @@ MIN_DECADES = 1.9
 """Smallest range of separations for an exponent, in decades."""
 
 MAX_BEND = 2.0
-"""Largest quadratic term of log f in log ε, in standard errors, with which the curve counts as a straight line."""
+"""Largest quadratic term of log f in log ε, in standard errors, at which the curve counts as a straight line."""
 
 TRANSITION_FACTOR = 10.0
-"""The fit begins this factor below the largest separation of the straight range, because noise hides the end of a bend.
+"""Ratio of the largest separation of the straight range and the largest separation of the fit; noise hides the end of a bend.
 
 In trials with shares that saturate at some ε, the 95 % interval contained the exponent in 63 to 76 % of the cases without this
 factor, and in 94 to 97 % with it.
 """
 
 MIN_PROBABILITY = 1e-4
-"""No power law is claimed if the probability of a scatter at least as large as observed is below this."""
+"""Smallest probability of a scatter at least as large as observed at which a power law is claimed."""
 
+# Probability that the interval of an exponent contains it.
 _CONFIDENCE = 0.95
 # Relative rounding error of a separation.
 _ROUNDING = 1e-9
@@ -71,8 +72,8 @@ class UncertaintyExponent(RecordedResult):
     misfit
         χ² per degree of freedom of the used shares about the fitted line; NaN if the shares are too few for a fit.
     one_inside, both_inside
-        (m,) int64, number of pairs with one orbit, or with both orbits, still inside at the horizon. Only these pairs could
-        change in a longer integration. The pairs of `one_inside` are part of `uncertain`. Empty if not known.
+        (m,) int64, number of pairs of which one orbit, or both orbits, are still inside at the horizon. A longer integration
+        could change these pairs only. The pairs of `one_inside` are part of `uncertain`. Empty if not known.
     horizon
         Integration time of the orbits, dimensionless; NaN if not known.
     """
@@ -142,16 +143,17 @@ def fit_uncertainty(separations: Any, pairs: Any, uncertain: Any) -> Uncertainty
     """Fit f(ε) = A ε^α to counts of uncertain pairs of starts.
 
     A and α maximise the binomial likelihood of k uncertain pairs out of n at each ε (for the law see Grebogi, McDonald, Ott &
-    Yorke 1983, Phys. Lett. A 99, 415). The law holds for small ε. The largest separation is therefore left out as long as the
-    shares bend (`MAX_BEND`) or scatter too much (`MIN_PROBABILITY`), as shares do where they saturate. From the first straight
-    range, the separations within a factor of `TRANSITION_FACTOR` of its largest separation are also left out. Separations with
-    too few pairs (`MIN_EXPECTED_PAIRS`) never count. There is no exponent if too few separations remain (`MIN_SEPARATIONS`,
+    Yorke 1983, Phys. Lett. A 99, 415). The law holds for small ε. The largest separation is therefore left out repeatedly, until
+    the shares neither bend (`MAX_BEND`) nor scatter too much (`MIN_PROBABILITY`), as they do where they saturate. Of this
+    straight range, the separations within a factor of `TRANSITION_FACTOR` of the largest are also left out. Separations with too
+    few pairs (`MIN_EXPECTED_PAIRS`) never count. There is no exponent if too few separations remain (`MIN_SEPARATIONS`,
     `MIN_DECADES`).
 
     The 95 % interval is the wider of two: a normal interval from the binomial errors alone, and a Student t interval with these
-    errors times √(χ² per degree of freedom), which includes the scatter of a boundary that differs slightly from scale to scale.
-    In trials it contained the exponent in 94 to 97 % of the cases, and in 93 % if each of 17 shares, known to 7 %, was wrong by a
-    further 8 %. With 15 %, half of the trials gave no exponent, and the interval contained it in 89 % of the other half.
+    errors times √(χ² per degree of freedom). The latter includes the scatter of a boundary that differs slightly from scale to
+    scale. In trials the interval contained the exponent in 94 to 97 % of the cases, and in 93 % if each of 17 shares, known to
+    7 %, was wrong by a further 8 %. With 15 % instead of 8 %, half of the trials gave no exponent; in the other half, the
+    interval contained the exponent in 89 % of the cases.
 
     Parameters
     ----------
@@ -209,37 +211,39 @@ class _Law:
 
 def _find_law(epsilon: np.ndarray, n: np.ndarray, k: np.ndarray) -> _Law:
     """Find the power law that holds from the largest possible ε downwards; if there is none, return the last attempt."""
-    decreasing = np.argsort(-epsilon, kind="stable")
-    last = _Law(decreasing[:0])
-    for begin in range(decreasing.size):
-        tail = decreasing[begin:]
+    by_decreasing_epsilon = np.argsort(-epsilon, kind="stable")
+    last_attempt = _Law(by_decreasing_epsilon[:0])
+    for begin in range(by_decreasing_epsilon.size):
+        tail = by_decreasing_epsilon[begin:]
         line = _fit_law(_with_enough_pairs(tail, epsilon, n, k), epsilon, n, k)
         if line is None:
             break
-        last = line
+        last_attempt = line
         if line.plausible and abs(line.bend) <= MAX_BEND:
+            # Beyond the transition.
             inner = tail[epsilon[tail] * TRANSITION_FACTOR <= epsilon[tail[0]] * (1.0 + _ROUNDING)]
             law = _fit_law(_with_enough_pairs(inner, epsilon, n, k), epsilon, n, k)
             if law is None:
-                return _Law(last.used)
+                return _Law(last_attempt.used)
             if law.plausible:
                 return replace(law, holds=True)
-            last = law
-    return last
+            last_attempt = law
+    return last_attempt
 
 
-def _with_enough_pairs(which: np.ndarray, epsilon: np.ndarray, n: np.ndarray, k: np.ndarray) -> np.ndarray:
-    """Return the separations of `which` at which the law fitted to all of `which` expects enough uncertain and certain pairs."""
-    which = which[k[which] < n[which]]
-    if np.count_nonzero(k[which]) < MIN_SEPARATIONS:
-        return which[:0]
-    share = predict_shares(epsilon[which], n[which], k[which])
-    enough: np.ndarray = which[n[which] * np.minimum(share, 1.0 - share) >= MIN_EXPECTED_PAIRS]
-    return enough
+def _with_enough_pairs(indices: np.ndarray, epsilon: np.ndarray, n: np.ndarray, k: np.ndarray) -> np.ndarray:
+    """Return the indices of separations at which the law fitted to all of them expects enough uncertain and certain pairs."""
+    # The likelihood requires certain pairs at each separation.
+    indices = indices[k[indices] < n[indices]]
+    if np.count_nonzero(k[indices]) < MIN_SEPARATIONS:
+        return indices[:0]
+    share = predict_shares(epsilon[indices], n[indices], k[indices])
+    with_enough: np.ndarray = indices[n[indices] * np.minimum(share, 1.0 - share) >= MIN_EXPECTED_PAIRS]
+    return with_enough
 
 
 def predict_shares(epsilon: np.ndarray, n: np.ndarray, k: np.ndarray) -> np.ndarray:
-    """Return f at each separation by the most likely power law; at least two of the k must be above 0, and all k below n."""
+    """Return f of the most likely power law at each separation; at least two of the k must be above 0, and all k below n."""
     design = _powers(np.log(epsilon), 1)
     shares: np.ndarray = np.exp(design @ _maximise_likelihood(design, n, k)[0])
     return shares
@@ -258,12 +262,13 @@ def _fit_law(used: np.ndarray, epsilon: np.ndarray, n: np.ndarray, k: np.ndarray
     freedom = x.size - 2
     chi2 = float(np.sum((k - n * share) ** 2 / (n * share * (1.0 - share))))
     exponent = float(slope / np.ptp(x))
-    tail = 0.5 * (1.0 + _CONFIDENCE)
-    errors = max(special.ndtri(tail), special.stdtrit(freedom, tail) * np.sqrt(chi2 / freedom))
+    probability = 0.5 * (1.0 + _CONFIDENCE)
+    # Half-width of the interval in binomial standard errors.
+    error_count = max(special.ndtri(probability), special.stdtrit(freedom, probability) * np.sqrt(chi2 / freedom))
     return _Law(
         used=used,
         exponent=exponent,
-        half_width=float(errors * np.sqrt(covariance[1, 1]) / np.ptp(x)),
+        half_width=float(error_count * np.sqrt(covariance[1, 1]) / np.ptp(x)),
         amplitude=float(np.exp(level - exponent * x.mean())),
         misfit=chi2 / freedom,
         bend=_measure_bend(x, n, k),
@@ -272,7 +277,7 @@ def _fit_law(used: np.ndarray, epsilon: np.ndarray, n: np.ndarray, k: np.ndarray
 
 
 def _measure_bend(x: np.ndarray, n: np.ndarray, k: np.ndarray) -> float:
-    """Return the quadratic term of log f in x in standard errors, which include the scatter about the fitted parabola."""
+    """Return the quadratic term of log f in x, in standard errors that include the scatter about the fitted parabola."""
     design = _powers(x, 2)
     coefficients, covariance = _maximise_likelihood(design, n, k)
     share = np.exp(design @ coefficients)
@@ -301,6 +306,8 @@ def _maximise_likelihood(design: np.ndarray, n: np.ndarray, k: np.ndarray) -> tu
         share = np.exp(design @ coefficients)
         return design.T @ (design * (n * share / (1.0 - share))[:, None]) / n.sum()
 
+    # A constant share.
     guess = np.eye(1, design.shape[1])[0] * np.log(k.sum() / n.sum())
-    found = optimize.minimize(loss, guess, method="trust-exact", jac=gradient, hess=information, options={"gtol": _TOLERANCE}).x
-    return found, np.linalg.inv(information(found)) / n.sum()
+    options = {"gtol": _TOLERANCE}
+    coefficients = optimize.minimize(loss, guess, method="trust-exact", jac=gradient, hess=information, options=options).x
+    return coefficients, np.linalg.inv(information(coefficients)) / n.sum()

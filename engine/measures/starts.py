@@ -1,4 +1,4 @@
-"""Starts with the outcomes of their orbits, as measures count them, with their labels; confidence intervals of shares."""
+"""The starts that measures count, with the outcomes of their orbits; labels of basins; confidence intervals of shares."""
 
 from __future__ import annotations
 
@@ -22,8 +22,9 @@ if TYPE_CHECKING:
 Z_95 = 1.959963984540054
 """Half-width of the central 95 % of the normal distribution, in standard deviations."""
 
-_STARTS = "an EscapeMap, or a dataset of one, or Outcomes"
-# Attributes of datasets that contain results, not the provenance.
+# Description of legal starts, for messages.
+_LEGAL_STARTS = "an EscapeMap, or a dataset of one, or Outcomes"
+# Names of the attributes of datasets that contain results, not the provenance.
 _RESULT_ATTRIBUTES = {"result", "outcomes", "worst_energy_error", "complete", "counts", "rounded_share"}
 
 
@@ -88,7 +89,7 @@ class Starts:
     complete: bool = True
 
     def place(self, window: Window) -> tuple[slice, slice]:
-        """Return the rows and columns of pixels whose centres lie in a window, edges included; ValueError if there is no map."""
+        """Return the rows and columns of the pixels whose centres lie in a window, edges included; ValueError without a map."""
         if self.axes is None:
             raise ValueError(f"window={window}: must be None for orbits that are no map")
         x, ordinate = self.axes
@@ -97,11 +98,11 @@ class Starts:
 
     def inside(self, window: Window) -> Starts:
         """Return the starts in a window, see `place`."""
-        rows, columns = place = self.place(window)
+        rows, columns = self.place(window)
         assert self.axes is not None
         x, ordinate = self.axes
-        parts = {name: getattr(self, name)[place] for name in ("fate", "escape_time", "crossings")}
-        return replace(self, axes=(x[columns], ordinate[rows]), **parts)
+        arrays = {name: getattr(self, name)[rows, columns] for name in ("fate", "escape_time", "crossings")}
+        return replace(self, axes=(x[columns], ordinate[rows]), **arrays)
 
 
 def _find_range(centres: np.ndarray, low: float, high: float) -> tuple[int, int]:
@@ -119,11 +120,11 @@ def read_starts(name: str, value: Any) -> Starts:
     if isinstance(value, Starts):
         return value
     if hasattr(value, "data_vars"):
-        return _read_dataset(checked_dataset(name, value, ("fate", "escape_time", "crossings"), _STARTS))
+        return _read_dataset(checked_dataset(name, value, ("fate", "escape_time", "crossings"), _LEGAL_STARTS))
     try:
         arrays = value.fate, value.escape_time, value.crossings, value.t_max, value.outcomes
     except AttributeError:
-        raise ValueError(f"{name}={short_repr(value)}: must be {_STARTS}") from None
+        raise ValueError(f"{name}={short_repr(value)}: must be {_LEGAL_STARTS}") from None
     if not hasattr(value, "ordinate"):
         return Starts(*arrays, made_by=getattr(value, "made_by", {}))
     axes, made_by = (value.x, value.ordinate), value.spec.provenance()
@@ -131,7 +132,7 @@ def read_starts(name: str, value: Any) -> Starts:
 
 
 def read_complete_starts(name: str, value: Any) -> Starts:
-    """Return starts as `read_starts` does; ValueError if some are not computed, because measures of basins need all."""
+    """Return starts as `read_starts` does; ValueError unless all are computed, as measures of basins require."""
     starts = read_starts(name, value)
     if not starts.complete:
         raise ValueError(f"{name}: the map is not complete; must be a complete map, only `compute_statistics` counts the others")
@@ -153,22 +154,23 @@ def checked_dataset(name: str, value: Any, arrays: Collection[str], legal: str) 
         Description of what is legal, for messages.
     """
     dataset: Any = with_present_names(value) if hasattr(value, "data_vars") else {}
-    missing = [each for each in arrays if each not in dataset]
+    missing = [array for array in arrays if array not in dataset]
     if "fate" in missing:
         raise ValueError(f"{name}={short_repr(value)}: must be {legal}")
     if missing:
         raise ValueError(f"{name}: a dataset of a map without {', '.join(missing)}; must have all arrays of the map")
     if dataset["fate"].ndim > len(("rows", "columns")):
         raise ValueError(f"{name}: a dataset of several maps; must be one of them, such as dataset.sel(h=…)")
-    found: xr.Dataset = dataset
-    return found
+    checked: xr.Dataset = dataset
+    return checked
 
 
 def _read_dataset(dataset: xr.Dataset) -> Starts:
     """Return the starts of a dataset; its attributes contain the outcomes, except in files of earlier versions."""
-    fate, escape_time, crossings = (np.asarray(dataset[each].values) for each in ("fate", "escape_time", "crossings"))
-    t_max, outcomes = float(dataset.attrs.get("t_max", np.inf)), read_outcomes(dataset.attrs.get("outcomes", "[]"))
-    made_by = {name: each for name, each in plain_attributes(dataset.attrs).items() if name not in _RESULT_ATTRIBUTES}
+    fate, escape_time, crossings = (np.asarray(dataset[name].values) for name in ("fate", "escape_time", "crossings"))
+    t_max = float(dataset.attrs.get("t_max", np.inf))
+    outcomes = read_outcomes(dataset.attrs.get("outcomes", "[]"))
+    made_by = {name: value for name, value in plain_attributes(dataset.attrs).items() if name not in _RESULT_ATTRIBUTES}
     complete = bool(dataset.attrs.get("complete", True))
     starts = Starts(fate, escape_time, crossings, t_max, outcomes, made_by=made_by, complete=complete)
     if fate.ndim == 1:
@@ -191,7 +193,7 @@ def exit_labels(fate: np.ndarray, *, bounded: bool) -> tuple[np.ndarray, np.ndar
     fate
         (rows, columns) integer `Fate` codes and outcomes of a map.
     bounded
-        Whether bounded orbits are a separate label, 0, or do not count; each measure has a constant `COUNTS_BOUNDED`.
+        Whether bounded orbits have a label, 0; otherwise they do not count. Each measure has a constant `COUNTS_BOUNDED`.
 
     Returns
     -------
@@ -211,7 +213,7 @@ def describe_labels(labels: Any) -> dict[str, Any]:
 
 
 def checked_labels(labels: Any, valid: Any, *, bounded: bool) -> tuple[np.ndarray, np.ndarray]:
-    """Return `labels` as integers and `valid` as bool, both (rows, columns); for a map they are those of `exit_labels`.
+    """Return `labels` as integers and `valid` as bool, (rows, columns) each; for a map, the results of `exit_labels`.
 
     Raises
     ------
@@ -259,9 +261,11 @@ def wilson_interval(counts: Any, totals: Any) -> tuple[np.ndarray, np.ndarray]:
         Limits between 0 and 1, of the common shape; 0 and 1 without draws.
     """
     counts, totals = np.broadcast_arrays(np.asarray(counts, float), np.asarray(totals, float))
-    drawn = np.maximum(totals, 1.0)
-    share, spread = counts / drawn, Z_95**2 / drawn
+    divisor = np.maximum(totals, 1.0)
+    share, spread = counts / divisor, Z_95**2 / divisor
     middle = (share + spread / 2) / (1 + spread)
     half_width = np.sqrt(spread * share * (1 - share) + spread**2 / 4) / (1 + spread)
-    some = totals > 0.0
-    return np.where(some, np.maximum(middle - half_width, 0.0), 0.0), np.where(some, np.minimum(middle + half_width, 1.0), 1.0)
+    has_draws = totals > 0.0
+    low = np.where(has_draws, np.maximum(middle - half_width, 0.0), 0.0)
+    high = np.where(has_draws, np.minimum(middle + half_width, 1.0), 1.0)
+    return low, high

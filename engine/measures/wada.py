@@ -15,10 +15,10 @@ from engine.foundations.wording import format_count
 from engine.measures.starts import checked_labels, describe_labels
 
 MIN_BASINS = 3
-"""Fewest basins for the Wada property; two basins always share their boundary."""
+"""Smallest number of basins for the Wada property; two basins always share their boundary."""
 
 COUNTS_BOUNDED = False
-"""Whether bounded orbits are a basin. They are not: Wada is a property of the exits (Aguirre, Vallejo & Sanjuán 2001).
+"""Whether bounded orbits are a basin: no, because Wada is a property of the exits (Aguirre, Vallejo & Sanjuán 2001).
 
 The edge of an island of bounded orbits is far from other boundaries between exits, so maps with islands would always fail.
 """
@@ -37,8 +37,8 @@ class WadaTest(RecordedResult):
     basins
         The labels of the basins in increasing order.
     radius
-        Smallest r for which every pixel of every slim boundary is within r pixels of each slim boundary: an integer, infinite
-        if a basin touches no other, NaN for fewer than three basins or without a boundary. A single pixel can decide the radius.
+        Smallest integer r for which every pixel of every slim boundary is within r pixels of each slim boundary. Infinite if a
+        basin touches no other basin; NaN for fewer than three basins or without a boundary. A single pixel can decide the radius.
     radius_99
         Smallest r for which this holds for 99 % of the boundary pixels.
     boundary_pixels
@@ -74,27 +74,27 @@ class WadaTest(RecordedResult):
             return f"The Wada test needs basins that touch; none of these {count} do."
         if math.isinf(self.radius):
             return f"Not Wada: of the {count} basins at least one touches no other."
-        most = f"{_PERCENTAGE} % of the {self.boundary_pixels} boundary pixels within {self.radius_99:g}"
-        return f"The boundaries of the {count} basins coincide within {format_count(int(self.radius), 'pixel')}, {most}."
+        most_pixels = f"{_PERCENTAGE} % of the {self.boundary_pixels} boundary pixels within {self.radius_99:g}"
+        return f"The boundaries of the {count} basins coincide within {format_count(int(self.radius), 'pixel')}, {most_pixels}."
 
 
 def compute_wada_test(labels: Any, valid: Any = None) -> WadaTest:
     """Measure how far the boundaries of all basins of an image are from being identical.
 
-    For each basin all other basins are merged into one. The slim boundary of this two-colour image consists of the pixels of
+    For each basin, all other basins are merged into one. The slim boundary of this two-colour image consists of the pixels of
     either colour with a pixel of the other colour above, below, left or right. Basins are Wada, up to the resolution, if each
     slim boundary, dilated by a few pixels, contains all other slim boundaries (Daza, Wagemakers & Sanjuán 2018, Sci. Rep. 8,
-    9954). Instead of deciding for a given radius, this function returns the smallest radius, and shares of the boundary pixels
-    instead of the image. Dilation uses the chessboard distance: radius r turns a pixel into a square with sides of 2r + 1.
+    9954). This function does not decide for a given radius, but returns the smallest radius, and the shares of the boundary
+    pixels within smaller radii. Dilation uses the chessboard distance: radius r turns a pixel into a square with sides of 2r + 1.
 
     Parameters
     ----------
     labels
-        A complete map or its dataset, such as ``dataset.sel(h=0.3)`` of a sweep, whose bounded orbits do not count; or (rows,
-        columns) integers, where equal integers are one basin.
+        A complete map or its dataset, such as ``dataset.sel(h=0.3)`` of a sweep; its bounded orbits do not count. Or (rows,
+        columns) integers; equal integers are one basin.
     valid
-        (rows, columns) bool, the pixels that count; None for all, if no label is negative. Other pixels and the edge of the image
-        form no boundary; distances are measured straight across them.
+        (rows, columns) bool, the pixels that count; None for all pixels of an array without negative labels, and for a map. Other
+        pixels and the edge of the image form no boundary; distances are measured straight across such pixels.
 
     Returns
     -------
@@ -121,18 +121,19 @@ def compute_wada_test(labels: Any, valid: Any = None) -> WadaTest:
         return WadaTest(basins, math.nan, math.nan, count, read_only(np.empty(0)), made_by=made_by)
     distances = np.sort(_largest_distances(labels, valid, basins, boundary))
     shares = np.cumsum(np.bincount(distances[np.isfinite(distances)].astype(np.intp))) / count
-    within = math.ceil(_PERCENTAGE * count / 100)
-    radius_99 = float(distances[within - 1])
+    least_count = math.ceil(_PERCENTAGE * count / 100)
+    radius_99 = float(distances[least_count - 1])
     return WadaTest(basins, float(distances[-1]), radius_99, count, read_only(shares), made_by=made_by)
 
 
 def _slim_boundary(colours: np.ndarray, valid: np.ndarray) -> np.ndarray:
     """Return the pixels, (rows, columns), that count and have a neighbour that counts and has another colour."""
     slim = np.zeros(colours.shape, np.bool_)
-    for before, after in ((np.s_[:-1], np.s_[1:]), (np.s_[:, :-1], np.s_[:, 1:])):
-        differs = (colours[before] != colours[after]) & valid[before] & valid[after]
-        slim[before] |= differs
-        slim[after] |= differs
+    # Neighbours in a column, and neighbours in a row.
+    for first, second in ((np.s_[:-1], np.s_[1:]), (np.s_[:, :-1], np.s_[:, 1:])):
+        differs = (colours[first] != colours[second]) & valid[first] & valid[second]
+        slim[first] |= differs
+        slim[second] |= differs
     return slim
 
 

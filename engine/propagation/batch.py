@@ -23,23 +23,23 @@ LARGEST_TILE = 2048
 """Largest number of orbits per tile."""
 
 STEP_BUDGET = 2_000_000
-"""Largest number of steps of all lanes in one kernel call, which takes 20 to 50 ms.
+"""Largest number of steps of all lanes in one kernel call, indices takes 20 to 50 ms.
 
 Cancellation and progress are handled between calls.
 """
 
-# With fewer active orbits, too many lanes are empty: a worker returns these orbits, to be combined with other orbits.
+# Number of active orbits below indices too many lanes are empty: a worker returns these orbits, to be combined with other orbits.
 _FULL_LANES = LANES - 2 * VECTOR
 
 
 @dataclass
 class OrbitBatch:
-    """The states of n orbits; their propagation can be continued at any time.
+    """The states of n orbits; their propagation can be continued at any time. Methods take orbits by their `indices`.
 
     Attributes
     ----------
     state
-        (n, 4) x, y, px, py at time `t`: where the orbit escaped, or where its next step starts.
+        (n, 4) x, y, px, py at time `t`, at indices the orbit escaped or its next step starts.
     t
         (n,) time reached; the escape time of an escaped orbit.
     crossings
@@ -51,15 +51,15 @@ class OrbitBatch:
     curve_row
         (n,) the row of the exit curves array for the energy of this orbit.
     outside
-        (n,) int8: number of the exit beyond which the start lies; 0 if it lies inside.
+        (n,) int8: number of the exit beyond indices the start lies; 0 for a start inside.
     evidence
-        (n,) int8 codes, see `Evidence`: why an orbit is bounded although it was not integrated to t_max; 0 for all other orbits.
+        (n,) int8 codes, see `Evidence`: why an orbit is bounded although it was not integrated to t_max; 0 for other orbits.
     remainder
         (n, 2) rounding errors of x and y of `state`, see `engine.integrator.kernels.propagate.Orbits`.
     tested
-        (n,) time of the last test for evidence; 0 before the first test.
+        (n,) time on the orbit of the last test for evidence, dimensionless; 0 before the first test.
     digits
-        (n,) digits to which averages agreed in the last test; infinite before the first test; see `BoundedOrbitSearch`.
+        (n,) digits to indices averages agreed in the last test; infinite before the first test; see `BoundedOrbitSearch`.
     """
 
     state: np.ndarray
@@ -78,88 +78,95 @@ class OrbitBatch:
     def empty(cls, curve_row: np.ndarray) -> OrbitBatch:
         """Return n orbits whose starts are set later."""
         n = curve_row.size
-        counts, codes = np.zeros((2, n), np.int64), np.zeros((2, n), np.int8)
-        fate = np.full(n, Fate.NOT_COMPUTED, np.int8)
-        states, times, digits = np.full((n, 4), np.nan), np.zeros((2, n)), np.full(n, np.inf)
         return cls(
-            states, times[0], counts[0], counts[1], fate, curve_row, codes[0], codes[1], np.zeros((n, 2)), times[1], digits
+            state=np.full((n, 4), np.nan),
+            t=np.zeros(n),
+            crossings=np.zeros(n, np.int64),
+            last_crossings=np.zeros(n, np.int64),
+            fate=np.full(n, Fate.NOT_COMPUTED, np.int8),
+            curve_row=curve_row,
+            outside=np.zeros(n, np.int8),
+            evidence=np.zeros(n, np.int8),
+            remainder=np.zeros((n, 2)),
+            tested=np.zeros(n),
+            digits=np.full(n, np.inf),
         )
 
     @classmethod
     def from_starts(cls, states: np.ndarray, curve_row: np.ndarray) -> OrbitBatch:
-        """Return orbits at t = 0. `mark_outside` finds the starts outside."""
+        """Return orbits at t = 0; `mark_outside` finds those that start outside."""
         batch = cls.empty(curve_row)
         batch.set_starts(np.arange(curve_row.size), states)
         return batch
 
-    def set_starts(self, which: np.ndarray, states: np.ndarray) -> None:
-        """Set the orbits `which` (indices) to `states`, (m, 4), at t = 0; orbits with a non-finite state are forbidden."""
-        self.state[which] = states
-        self.fate[which[~np.isfinite(states).all(axis=1)]] = Fate.FORBIDDEN
+    def set_starts(self, indices: np.ndarray, states: np.ndarray) -> None:
+        """Set some orbits to `states`, (m, 4), at t = 0; orbits with a non-finite state are forbidden."""
+        self.state[indices] = states
+        self.fate[indices[~np.isfinite(states).all(axis=1)]] = Fate.FORBIDDEN
 
     def set_outcomes(
         self, fate: np.ndarray, escape_time: np.ndarray, crossings: np.ndarray, outside: np.ndarray, evidence: np.ndarray
     ) -> None:
-        """Set the outcomes (n,) of all orbits without their states."""
+        """Set the outcomes (n,) of all orbits, but not their states."""
         self.fate[:], self.crossings[:], self.outside[:], self.evidence[:] = fate, crossings, outside, evidence
         self.t[:] = np.where(fate > 0, escape_time, 0.0)
 
     def mark_outside(
         self,
         potential: Potential,
-        which: np.ndarray,
+        indices: np.ndarray,
         curves: np.ndarray,
         *,
         execution: Execution = DEFAULT_EXECUTION,
     ) -> np.ndarray:
-        """Set `outside` and `fate` of the starts among `which` (indices) that lie outside the exits.
+        """Set `outside` and `fate` of those of the given orbits that start outside the exits.
 
-        Returns the indices that were tested: all, unless the test was cancelled.
+        Returns the indices of the orbits that were tested: all, unless the test was cancelled.
         """
-        tested = [which[:0]]
-        for part, channel in run_parts(
-            _find_outside, which, lambda part: (potential, self.state[part], curves, self.curve_row[part]),
+        tested_parts = [indices[:0]]
+        for part, exits in run_parts(
+            _find_outside, indices, lambda part: (potential, self.state[part], curves, self.curve_row[part]),
             execution=execution,
         ):  # fmt: skip
-            self.outside[part] = channel
-            self.fate[part[channel > 0]] = Fate.OUTSIDE
-            tested.append(part)
-        return np.concatenate(tested)
+            self.outside[part] = exits
+            self.fate[part[exits > 0]] = Fate.OUTSIDE
+            tested_parts.append(part)
+        return np.concatenate(tested_parts)
 
-    def mark_bounded(self, which: np.ndarray, evidence: np.ndarray | int) -> None:
-        """Store the evidence of the orbits `which` (indices); orbits with evidence become bounded."""
-        self.evidence[which] = evidence
-        self.fate[which[self.evidence[which] != Evidence.NONE]] = Fate.BOUNDED
+    def mark_bounded(self, indices: np.ndarray, evidence: np.ndarray | int) -> None:
+        """Store the evidence of some orbits; orbits with evidence become bounded."""
+        self.evidence[indices] = evidence
+        self.fate[indices[self.evidence[indices] != Evidence.NONE]] = Fate.BOUNDED
 
-    def copy_to_images(self, which: np.ndarray, images: np.ndarray, numbers: np.ndarray) -> None:
-        """Copy the results of the orbits `which` to the orbits `images`, their exact mirror images under x → −x.
+    def copy_to_images(self, indices: np.ndarray, images: np.ndarray, numbers: np.ndarray) -> None:
+        """Copy the results of some orbits to their exact mirror images under x → −x.
 
         Parameters
         ----------
-        which, images
-            Indices of the same shape.
+        indices, images
+            (m,) indices of the orbits and of their mirror images.
         numbers
-            (n, outcomes + 1) the image of each fate, see `Well.mirror_numbers`.
+            (m, outcomes + 1) the mirror image of each fate, see `Well.mirror_numbers`.
         """
-        self.state[images] = self.state[which] * [-1.0, 1.0, -1.0, 1.0]
-        self.remainder[images] = self.remainder[which] * [-1.0, 1.0]
+        self.state[images] = self.state[indices] * [-1.0, 1.0, -1.0, 1.0]
+        self.remainder[images] = self.remainder[indices] * [-1.0, 1.0]
         for name in ("t", "crossings", "last_crossings"):
-            getattr(self, name)[images] = getattr(self, name)[which]
-        fate, orbits = self.fate[which], np.arange(which.size)
-        self.fate[images] = np.where(fate > 0, numbers[orbits, np.maximum(fate, 0)], fate)
-        self.outside[images] = numbers[orbits, self.outside[which]]
-        on_evidence = self.evidence[which] != Evidence.NONE
-        self.evidence[images] = np.where(on_evidence, Evidence.MIRRORED, Evidence.NONE)
+            getattr(self, name)[images] = getattr(self, name)[indices]
+        fate, row = self.fate[indices], np.arange(indices.size)
+        self.fate[images] = np.where(fate > 0, numbers[row, np.maximum(fate, 0)], fate)
+        self.outside[images] = numbers[row, self.outside[indices]]
+        has_evidence = self.evidence[indices] != Evidence.NONE
+        self.evidence[images] = np.where(has_evidence, Evidence.MIRRORED, Evidence.NONE)
 
-    def reopen(self, which: np.ndarray) -> None:
-        """Make bounded orbits among `which` (indices) undecided again, so that they can be continued."""
-        self.fate[which], self.evidence[which] = Fate.NOT_COMPUTED, Evidence.NONE
-        self.last_crossings[which] = 0
+    def reopen(self, indices: np.ndarray) -> None:
+        """Make some bounded orbits undecided again, so that they can be continued."""
+        self.fate[indices], self.evidence[indices] = Fate.NOT_COMPUTED, Evidence.NONE
+        self.last_crossings[indices] = 0
 
     def final_evidence(self) -> np.ndarray:
         """Return the `Evidence` of each orbit, including `Evidence.INTEGRATED`; int8, of shape (n,)."""
-        integrated = (self.fate == Fate.BOUNDED) & (self.evidence == Evidence.NONE)
-        return np.where(integrated, np.int8(Evidence.INTEGRATED), self.evidence)
+        is_integrated = (self.fate == Fate.BOUNDED) & (self.evidence == Evidence.NONE)
+        return np.where(is_integrated, np.int8(Evidence.INTEGRATED), self.evidence)
 
     def for_kernels(self, pending: np.ndarray) -> Orbits:
         """Return the arrays that `propagate` changes in place. `pending`, uint8 (n,), is 1 for the orbits to propagate."""
@@ -170,18 +177,18 @@ class OrbitBatch:
         """Total size of the arrays in bytes."""
         return sum(getattr(self, field.name).nbytes for field in fields(self))
 
-    def take(self, which: np.ndarray) -> OrbitBatch:
-        """Return a copy of the orbits `which` (indices)."""
-        return replace(self, **{field.name: getattr(self, field.name)[which] for field in fields(self)})
+    def take(self, indices: np.ndarray) -> OrbitBatch:
+        """Return a copy of some orbits."""
+        return replace(self, **{field.name: getattr(self, field.name)[indices] for field in fields(self)})
 
-    def put(self, which: np.ndarray, orbits: OrbitBatch) -> None:
-        """Replace the orbits `which` (indices) by `orbits`."""
+    def put(self, indices: np.ndarray, orbits: OrbitBatch) -> None:
+        """Replace some orbits by `orbits`."""
         for field in fields(self):
-            getattr(self, field.name)[which] = getattr(orbits, field.name)
+            getattr(self, field.name)[indices] = getattr(orbits, field.name)
 
 
 def _find_outside(potential: Potential, states: np.ndarray, curves: np.ndarray, curve_row: np.ndarray) -> np.ndarray:
-    """Return the number of the exit beyond which each start lies, 0 for none; int8, of shape (n,). Runs in a worker."""
+    """Return the number of the exit beyond indices each start lies, 0 inside; int8, of shape (n,). Called in a worker."""
     x, y = np.ascontiguousarray(states[:, :2].T)
     with np.errstate(invalid="ignore"):
         # At the centre of a body V = −∞, so a start of any energy has an infinite momentum there.
@@ -221,19 +228,22 @@ def _advance_tile(
     horizon: float,
     final: bool,
     tolerance: float,
-    least: int,
+    least_active: int,
 ) -> Tile:
-    """Propagate the orbits of a tile by `STEP_BUDGET` steps, or until fewer than `least` are active; runs in a worker."""
+    """Propagate the orbits of a tile, in place, by `STEP_BUDGET` steps, or until fewer than `least_active` are active.
+
+    Called in a worker.
+    """
     exits = Exits(gates, curves, tile.batch.curve_row)
+    orbits = tile.batch.for_kernels(tile.active)
     kernels_of(potential).propagate(
-        np.arange(tile.orbits.size), horizon, final, tolerance, STEP_BUDGET, least, exits, tile.batch.for_kernels(tile.active),
-        NO_TRACE,
-    )  # fmt: skip
+        np.arange(tile.orbits.size), horizon, final, tolerance, STEP_BUDGET, least_active, exits, orbits, NO_TRACE
+    )
     return tile
 
 
 class OrbitPool:
-    """Queue of the orbits that wait for a worker.
+    """A queue of the orbits that wait for a worker.
 
     Parameters
     ----------
@@ -245,7 +255,8 @@ class OrbitPool:
 
     def __init__(self, orbits: np.ndarray, workers: int) -> None:
         self._waiting, self._workers = orbits, workers
-        self._taken = 0
+        # Number of orbits that are with workers.
+        self._taken_count = 0
 
     @property
     def waiting(self) -> int:
@@ -253,16 +264,16 @@ class OrbitPool:
         return self._waiting.size
 
     def take(self) -> np.ndarray:
-        """Return a worker's share of the remaining orbits, in whole SIMD vectors and at most `LARGEST_TILE`."""
-        share = math.ceil((self._waiting.size + self._taken) / self._workers)
+        """Remove a worker's share of the waiting orbits, in whole SIMD vectors and at most `LARGEST_TILE`, and return it."""
+        share = math.ceil((self._waiting.size + self._taken_count) / self._workers)
         size = min(fill_vectors(share), LARGEST_TILE)
         orbits, self._waiting = np.split(self._waiting, [size])
-        self._taken += orbits.size
+        self._taken_count += orbits.size
         return orbits
 
     def give_back(self, tile: Tile) -> None:
         """Queue the orbits of a tile that are still active."""
-        self._taken -= tile.orbits.size
+        self._taken_count -= tile.orbits.size
         self._waiting = np.concatenate([self._waiting, tile.orbits[tile.active != 0]])
 
 
@@ -270,7 +281,7 @@ def propagate_batch(
     potential: Potential,
     curves: np.ndarray,
     batch: OrbitBatch,
-    which: np.ndarray,
+    indices: np.ndarray,
     horizon: float,
     *,
     final: bool,
@@ -278,7 +289,7 @@ def propagate_batch(
     on_tiles: Callable[[], None] = lambda: None,
     tolerance: float = TOLERANCE,
 ) -> bool:
-    """Integrate the undecided orbits among `which` until they escape or reach `horizon`; the batch is changed in place.
+    """Integrate undecided orbits until they escape or reach `horizon`; the batch is changed in place.
 
     The result of each orbit is bit-identical for every executor and for every pattern of interruptions. All quantities are in
     units of the well.
@@ -291,10 +302,10 @@ def propagate_batch(
         (energies, channels, columns) exit curves, see `exit_curves`.
     batch
         The orbits.
-    which
-        Indices of the orbits to propagate.
+    indices
+        Indices of the orbits; those that are not undecided are left as they are.
     horizon
-        Time at which to stop, dimensionless.
+        Time at indices to stop, dimensionless.
     final
         Whether the horizon is t_max: orbits that reach it become bounded.
     execution
@@ -310,7 +321,7 @@ def propagate_batch(
     """
     workers = execution.workers
     gates = exit_gates(curves)
-    undecided = which[(batch.fate[which] == Fate.NOT_COMPUTED) & (batch.t[which] < horizon)]
+    undecided = indices[(batch.fate[indices] == Fate.NOT_COMPUTED) & (batch.t[indices] < horizon)]
     pool = OrbitPool(undecided, workers)
     running: set[Future[Tile]] = set()
 
@@ -318,17 +329,19 @@ def propagate_batch(
         # Tiles are queued ahead only while enough orbits for a full tile wait.
         while pool.waiting and len(running) < (2 * workers if pool.waiting > LARGEST_TILE else workers):
             tile = Tile.copy_from(batch, pool.take())
-            least = _FULL_LANES if pool.waiting and tile.orbits.size > _FULL_LANES else 0
-            running.add(execution.submit(_advance_tile, potential, curves, gates, tile, horizon, final, tolerance, least))
+            # Without other orbits to combine with, a worker keeps its orbits.
+            least_active = _FULL_LANES if pool.waiting and tile.orbits.size > _FULL_LANES else 0
+            running.add(execution.submit(_advance_tile, potential, curves, gates, tile, horizon, final, tolerance, least_active))
 
     keep_workers_busy()
     while running:
         done, running = wait(running, return_when=FIRST_COMPLETED)
         for future in done:
-            propagated = execution.collect(future)
-            if propagated is not None:
-                batch.put(propagated.orbits, propagated.batch)
-                pool.give_back(propagated)
+            tile = execution.collect(future)
+            # None after a cancellation.
+            if tile is not None:
+                batch.put(tile.orbits, tile.batch)
+                pool.give_back(tile)
         if not execution.is_cancelled:
             keep_workers_busy()
             on_tiles()

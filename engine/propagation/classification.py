@@ -32,8 +32,8 @@ class Outcomes(OrbitResult):
     fate
         int8 codes: k ≥ 1 for the outcome ``outcomes[k - 1]``, such as channel k, or a `Fate`.
     escape_time
-        float64, time of the passage through the exit, of the collision or of the passage of the escape radius; NaN for orbits
-        without an outcome.
+        float64, time of the outcome: of the passage through an exit, of the collision, or of the passage of the escape radius;
+        NaN without an outcome.
     crossings
         int32, upward crossings of y = 0 (not counting the start) before the escape or until t_max; 0 if there is no orbit.
     energy_error
@@ -56,12 +56,13 @@ class Outcomes(OrbitResult):
 
 def collect_outcomes(potential: Potential, energy: np.ndarray, batch: OrbitBatch) -> Outcomes:
     """Return the outcomes of a batch so far, in the units of its states; energy errors are relative to `energy` (n,)."""
-    orbit = (batch.fate >= Fate.BOUNDED) | (batch.fate == Fate.NOT_COMPUTED)
-    crossings = np.where(orbit, batch.crossings + batch.last_crossings, 0).astype(np.int32)
-    decided, error = batch.fate >= Fate.BOUNDED, np.full(batch.fate.size, np.nan)
-    reference = energy[decided]
-    difference = np.abs(potential.energy(batch.state[decided]) - reference)
-    error[decided] = difference / np.maximum(np.abs(reference), np.finfo(float).tiny)
+    is_orbit = (batch.fate >= Fate.BOUNDED) | (batch.fate == Fate.NOT_COMPUTED)
+    crossings = np.where(is_orbit, batch.crossings + batch.last_crossings, 0).astype(np.int32)
+    is_decided = batch.fate >= Fate.BOUNDED
+    reference = energy[is_decided]
+    difference = np.abs(potential.energy(batch.state[is_decided]) - reference)
+    error = np.full(batch.fate.size, np.nan)
+    error[is_decided] = difference / np.maximum(np.abs(reference), np.finfo(float).tiny)
     escape_time = np.where(batch.fate >= 1, batch.t, np.nan)
     return Outcomes(read_only(batch.fate.copy()), read_only(escape_time), read_only(crossings), read_only(error))
 
@@ -93,7 +94,7 @@ def classify_orbits(
 
     Returns
     -------
-    `Outcomes`, whose `to_pandas` and `to_xarray` have a row for each orbit.
+    The `Outcomes`; `to_pandas` and `to_xarray` have a row for each orbit.
 
     Raises
     ------
@@ -111,8 +112,10 @@ def classify_orbits(
     """
     states = _checked_states(potential, energy, states)
     t_max = potential.checked_t_max(t_max)
-    units, well = potential.units, potential.in_well_units
-    outcomes = classify_in_well_units(well, energy / units.energy, states / units.state, t_max / units.time, execution)
+    units = potential.units
+    outcomes = classify_in_well_units(
+        potential.in_well_units, energy / units.energy, states / units.state, t_max / units.time, execution
+    )
     made_by = describe_run(potential, energy=float(energy), t_max=t_max)
     return replace(units.restore(outcomes), t_max=t_max, outcomes=potential.outcomes_at(energy), made_by=made_by)
 
@@ -123,17 +126,17 @@ def classify_in_well_units(
     """Apply `classify_orbits` in units of the well; states are not checked, and `t_max` and `outcomes` are not set."""
     curves = exit_curves(potential, energy)[None]
     batch = OrbitBatch.from_starts(states, np.zeros(len(states), np.int64))
-    every_orbit = np.arange(len(states))
-    batch.mark_outside(potential, every_orbit, curves, execution=execution)
+    all_indices = np.arange(len(states))
+    batch.mark_outside(potential, all_indices, curves, execution=execution)
     propagate_batch(
-        potential, curves, batch, every_orbit, t_max, final=True, execution=execution,
+        potential, curves, batch, all_indices, t_max, final=True, execution=execution,
         on_tiles=lambda: execution.report(partial(_share_done, batch, t_max)),
     )  # fmt: skip
     return collect_outcomes(potential, np.full(len(states), energy), batch)
 
 
 def _share_done(batch: OrbitBatch, t_max: float) -> float:
-    """Return the share of the integration time that is done; an orbit that has ended counts as done."""
+    """Return the share of the total integration time that is done; an orbit that has ended counts as done."""
     return float(np.where(batch.fate == Fate.NOT_COMPUTED, np.minimum(batch.t / t_max, 1.0), 1.0).mean())
 
 

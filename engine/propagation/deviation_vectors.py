@@ -10,13 +10,15 @@ from engine.propagation.fixed_step_batches import map_tiles
 from engine.systems.compiled import fixed_step_size, kernels_of
 from engine.systems.potential import Potential
 
-# The initial vectors are fixed, so an orbit always has the same SALI. They are orthonormal, and generic, so no symmetry confines
-# them to a subspace.
 DEVIATION_VECTORS = read_only(np.array([[1.0, 2.0, 3.0, 4.0], [4.0, -3.0, 2.0, -1.0]]) / np.sqrt(30.0))
+"""The initial vectors, (2, 4). They are fixed, so an orbit always has the same SALI.
+
+They are orthonormal, and generic: no symmetry confines them to a subspace.
+"""
 
 
 def attach_deviations(states: np.ndarray) -> np.ndarray:
-    """Append the initial deviation vectors, and infinity as the smallest SALI so far, to n states; return (n, 13)."""
+    """Return n states with the initial deviation vectors, and infinity as the smallest SALI so far, of shape (n, 13)."""
     vectors = np.broadcast_to(DEVIATION_VECTORS.ravel(), (len(states), DEVIATION_VECTORS.size))
     return np.column_stack([states, vectors, np.full(len(states), np.inf)])
 
@@ -28,7 +30,7 @@ def propagate_deviations(
     *,
     execution: Execution = DEFAULT_EXECUTION,
 ) -> np.ndarray:
-    """Integrate orbits with their deviation vectors at a fixed step, and update the smallest SALI of each (Zotos 2014, eq. 9).
+    """Integrate orbits with their deviation vectors at a fixed step, and update their smallest SALI (Zotos 2014, eq. 9).
 
     Parameters
     ----------
@@ -50,7 +52,7 @@ def propagate_deviations(
 
 
 def _propagate_tile(potential: Potential, tile: np.ndarray, steps: int) -> np.ndarray:
-    """Return the rows of a tile (13, lanes) after some steps, of shape (lanes, 13)."""
+    """Return the orbits of a tile (13, lanes), which the kernel changes in place, after some steps; of shape (lanes, 13)."""
     with np.errstate(invalid="ignore"):
         kernels_of(potential).fixed_step_sali(fixed_step_size(potential), steps, tile[:4], tile[4:8], tile[8:12], tile[12])
     return tile.T

@@ -8,8 +8,8 @@ from enum import IntEnum
 class Evidence(IntEnum):
     """The reason why an orbit is classified as bounded.
 
-    ``NONE``: not classified as bounded. ``INTEGRATED``: integrated to t_max. ``CLOSED``: the energy is below every saddle, which
-    proves that the orbit is bounded. The other members are numerical evidence, not proof, that the orbit never escapes.
+    ``NONE``: the orbit is not classified as bounded. ``INTEGRATED``: it was integrated to t_max. ``CLOSED``: its energy is below
+    every saddle, which proves that it is bounded. The other members are numerical evidence, not proof, that it never escapes.
     ``QUASI_PERIODIC``: its weighted Birkhoff averages converge as on an invariant torus, which is very rare for other orbits.
     ``ENCLOSED``: invariant curves of quasi-periodic orbits separate it from every exit; the orbit itself may be chaotic.
     ``MIRRORED``: it is the mirror image of an orbit that is bounded on evidence.
@@ -34,5 +34,5 @@ _PHRASES = {
 
 
 def describe_evidence(evidence: int) -> str:
-    """Return a phrase for an `Evidence` code."""
+    """Return the reason for an `Evidence` code as a phrase, empty for ``NONE``."""
     return _PHRASES[Evidence(evidence)]

@@ -20,14 +20,11 @@ CHAOS_THRESHOLD = 1e-7
 """A bounded orbit is chaotic if its SALI falls to this value or below (Skokos 2001; the criterion of Zotos 2014)."""
 
 MIN_REGULAR_TIME = 1000.0
-"""Shortest orbit, in units of the well, that can be called regular without evidence of a torus.
-
-Weak chaos takes this long to show.
-"""
+"""Shortest time, in units of the well, after which an orbit can show no sign of chaos; weak chaos takes this long to show."""
 
 
 class Fate(IntEnum):
-    """Code of the fate of an orbit. Codes k from 1 are not members: the orbit ended at ``potential.outcomes[k - 1]``."""
+    """Code of the fate of an orbit. Codes k ≥ 1 are not members: the orbit ended at ``potential.outcomes[k - 1]``."""
 
     BOUNDED = events.BOUNDED
     FORBIDDEN = events.FORBIDDEN
@@ -40,7 +37,8 @@ class Regularity(IntEnum):
     """Character of a bounded orbit.
 
     ``NOT_APPLICABLE``: the orbit escapes or does not exist. ``REGULAR``: averages agree as on a torus. ``CHAOTIC``: SALI fell to
-    the threshold. ``NO_SIGN_OF_CHAOS``: neither happened until t_max; the orbit may be sticky. ``NOT_JUDGED``: not computed yet.
+    `CHAOS_THRESHOLD`. ``NO_SIGN_OF_CHAOS``: neither happened until t_max; the orbit may be sticky. ``NOT_JUDGED``: not computed
+    yet.
     """
 
     NOT_APPLICABLE = 0
@@ -86,13 +84,13 @@ def describe_fate(fate: int, outcomes: Sequence[Outcome] = ()) -> str:
     fate
         A `Fate`, or the number of an outcome.
     outcomes
-        The outcomes of the potential, `Potential.outcomes`; if they are not known, the fates from 1 on are channels.
+        The outcomes of the potential, `Potential.outcomes`; if they are not known, fates of 1 or more are channels.
     """
     return outcome_of(fate, outcomes).sentence if fate >= 1 else _SENTENCES[Fate(fate)]
 
 
 def renumber(fates: np.ndarray, numbers: np.ndarray) -> np.ndarray:
-    """Replace each outcome k ≥ 1 by ``numbers[k]``, (outcomes + 1,), in fates of any shape; other codes stay."""
+    """Return fates of any shape with each outcome k ≥ 1 replaced by ``numbers[k]``, (outcomes + 1,); other codes stay."""
     renumbered: np.ndarray = np.where(fates > 0, numbers[np.maximum(fates, 0)], fates)
     return renumbered
 
@@ -105,7 +103,7 @@ class OrbitResult(RecordedResult):
 
     @property
     def fate_labels(self) -> Sequence[str]:
-        """Labels of the fates from 1 on."""
+        """Labels of the fates 1, 2, …"""
         return [outcome.label for outcome in self.outcomes]
 
     def to_xarray(self) -> xr.Dataset:

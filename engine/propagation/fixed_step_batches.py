@@ -30,8 +30,8 @@ def map_tiles(
     Parameters
     ----------
     work
-        ``work(potential, tile, *arguments)`` returns a (lanes, *shape) array. `tile` is a (columns, lanes) array that `work` may
-        change. `work` must be a module-level function, so that it can be pickled for other processes.
+        ``work(potential, tile, *arguments)`` returns a (lanes, *shape) array. `tile` is a (columns, lanes) array, which may be
+        changed. The function must belong to a module, so that it can be pickled for other processes.
     potential
         The potential.
     states
@@ -43,7 +43,7 @@ def map_tiles(
     execution
         How the computation runs. When it is cancelled, no further tiles are submitted.
     tiles_per_task
-        Largest number of tiles that a worker computes in one call; above 1 if a tile takes less than a millisecond.
+        Largest number of tiles that a worker computes in one call; more than 1 if a tile takes less than a millisecond.
 
     Returns
     -------
@@ -64,40 +64,42 @@ def run_tiles(
     execution: Execution = DEFAULT_EXECUTION,
     tiles_per_task: int = 1,
 ) -> Iterator[tuple[int, Any]]:
-    """Run a function on tiles of states in parallel; yield each tile's first row and its result, without repeated lanes.
+    """Run a function on tiles of states in parallel; yield the first row of each tile, and its result without repeated lanes.
 
-    The parameters are those of `map_tiles`; `work` may return any sequence with one entry per lane.
+    The parameters are those of `map_tiles`, but `work` may return any sequence with one entry per lane.
     """
     workers = execution.workers
     lanes = _lanes_per_tile(len(states), workers)
     # There are two tasks for each worker if there are enough tiles.
-    per_task = lanes * min(tiles_per_task, max(len(states) // (2 * workers * lanes), 1))
+    rows_per_task = lanes * min(tiles_per_task, max(len(states) // (2 * workers * lanes), 1))
     running: deque[tuple[int, Future[list[Any]]]] = deque()
 
-    def completed(left_running: int) -> Iterator[tuple[int, Any]]:
-        while len(running) > left_running:
+    def collect_until(most_running: int) -> Iterator[tuple[int, Any]]:
+        while len(running) > most_running:
             begin, future = running.popleft()
             results: list[Any] | None = execution.collect(future)
+            # None after a cancellation.
             for number, result in enumerate(results or ()):
-                tile = begin + number * lanes
-                yield tile, result[: len(states) - tile]
+                first_row = begin + number * lanes
+                yield first_row, result[: len(states) - first_row]
 
-    for begin in range(0, len(states), per_task):
-        yield from completed(2 * workers - 1)
+    for begin in range(0, len(states), rows_per_task):
+        yield from collect_until(2 * workers - 1)
         if execution.is_cancelled:
             break
-        tiles = [_copy_tile(states, tile, lanes) for tile in range(begin, min(begin + per_task, len(states)), lanes)]
-        running.append((begin, execution.submit(_run_on_each, work, potential, tiles, *arguments)))
-    yield from completed(0)
+        first_rows = range(begin, min(begin + rows_per_task, len(states)), lanes)
+        tiles = [_copy_tile(states, first_row, lanes) for first_row in first_rows]
+        running.append((begin, execution.submit(_run_on_tiles, work, potential, tiles, *arguments)))
+    yield from collect_until(0)
 
 
-def _run_on_each(work: Callable[..., Any], potential: Potential, tiles: list[np.ndarray], *arguments: Any) -> list[Any]:
-    """Return the results of several tiles; runs in a worker."""
+def _run_on_tiles(work: Callable[..., Any], potential: Potential, tiles: list[np.ndarray], *arguments: Any) -> list[Any]:
+    """Return the results of several tiles; called in a worker."""
     return [work(potential, tile, *arguments) for tile in tiles]
 
 
 def _lanes_per_tile(count: int, workers: int) -> int:
-    """Return how many lanes, whole SIMD vectors and at most `LANES`, give each worker equally many tiles of equal duration."""
+    """Return the number of lanes with which all workers have equally many tiles: whole SIMD vectors, at most `LANES`."""
     tiles_per_worker = max(1, math.ceil(count / (workers * LANES)))
     share = max(1, math.ceil(count / (tiles_per_worker * workers)))
     lanes: int = fill_vectors(share)
@@ -105,6 +107,9 @@ def _lanes_per_tile(count: int, workers: int) -> int:
 
 
 def _copy_tile(states: np.ndarray, begin: int, lanes: int) -> np.ndarray:
-    """Return up to `lanes` states from row `begin`, (columns, lanes); the last state is repeated to fill whole SIMD vectors."""
+    """Return up to `lanes` states from row `begin`, of shape (columns, lanes).
+
+    The last state is repeated to fill whole SIMD vectors.
+    """
     lanes = min(lanes, fill_vectors(len(states) - begin))
     return states[np.minimum(np.arange(begin, begin + lanes), len(states) - 1)].T.copy()

@@ -57,11 +57,13 @@ def record_orbit(potential: Potential, start: np.ndarray, curves: np.ndarray, t_
     concurrent.futures.CancelledError
         If cancelled.
     """
-    batch, rows = OrbitBatch.from_starts(start[None], np.zeros(1, np.int64)), curves[None]
-    batch.mark_outside(potential, np.arange(1), rows, execution=execution.in_this_thread())
+    # A batch of one orbit, and exit curves of one energy.
+    batch = OrbitBatch.from_starts(start[None], np.zeros(1, np.int64))
+    curve_rows = curves[None]
+    batch.mark_outside(potential, np.arange(1), curve_rows, execution=execution.in_this_thread())
     pending = (batch.fate == Fate.NOT_COMPUTED).astype(np.uint8)
     orbits = batch.for_kernels(pending)
-    exits = Exits(exit_gates(rows), rows, batch.curve_row)
+    exits = Exits(exit_gates(curve_rows), curve_rows, batch.curve_row)
     pieces = list(trace_orbit(kernels_of(potential), exits, orbits, t_max, execution))
     execution.raise_if_cancelled()
     outcomes = collect_outcomes(potential, potential.energy(start[None]), batch)

@@ -43,9 +43,11 @@ def find_section_points(
 
 
 def trace_section_points(potential: Potential, tile: np.ndarray, count: int, duration: float) -> np.ndarray:
-    """Apply `find_section_points` to a tile (4, lanes) of whole SIMD vectors, which is changed; runs in a worker."""
+    """Apply `find_section_points` to a tile (4, lanes) of whole SIMD vectors, which is changed; called in a worker."""
+    # x, px and time of each point.
     points = np.full((tile.shape[1], count, 3), np.nan)
-    found = np.zeros(tile.shape[1], np.int64)
+    counts = np.zeros(tile.shape[1], np.int64)
     steps = int(np.ceil(duration / fixed_step_size(potential)))
-    kernels_of(potential).find_section_points(fixed_step_size(potential), steps, tile, points, found)
+    # The kernel writes the points of each orbit and their number.
+    kernels_of(potential).find_section_points(fixed_step_size(potential), steps, tile, points, counts)
     return points[..., :2]

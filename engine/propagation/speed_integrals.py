@@ -11,8 +11,9 @@ from engine.propagation.fixed_step_batches import map_tiles
 from engine.systems.compiled import kernels_of
 from engine.systems.potential import Potential
 
-# A tile takes some milliseconds and a task less than 0.1 s, so cancelling a computation takes effect soon.
+# Number of tiles that a worker computes in one call: in less than 0.1 s, so cancelling a computation takes effect soon.
 _TILES_PER_TASK = 8
+# Number of integrator steps of a tile in one call, which takes some milliseconds.
 _STEPS_PER_TILE = 100
 
 
@@ -51,14 +52,15 @@ def integrate_speed(
     -------
     (n,) the integrals; NaN for orbits whose steps become too short.
     """
-    gates, rows = exit_gates(curves), np.asarray(curve_row)[:, None]
-    # For each orbit: its rows for the kernel, and its integral so far.
+    gates = exit_gates(curves)
+    curve_column = np.asarray(curve_row)[:, None]
+    # For each orbit: its rows for the kernel, and its integral so far. The time of an orbit that has ended is infinite.
     orbits = np.column_stack([states, np.zeros((len(states), ROWS + 1 - states.shape[1]))])
     pending = np.arange(len(orbits))
     while pending.size:
-        tiles = np.column_stack([orbits[pending], rows[pending]])
+        pending_orbits = np.column_stack([orbits[pending], curve_column[pending]])
         orbits[pending] = map_tiles(
-            _integrate_tile, potential, tiles, curves, gates, duration, power,
+            _integrate_tile, potential, pending_orbits, curves, gates, duration, power,
             shape=(ROWS + 1,), execution=execution, tiles_per_task=_TILES_PER_TASK,
         )  # fmt: skip
         if execution.is_cancelled:
@@ -71,11 +73,12 @@ def integrate_speed(
 def _integrate_tile(
     potential: Potential, tile: np.ndarray, curves: np.ndarray, gates: np.ndarray, duration: float, power: float
 ) -> np.ndarray:
-    """Return orbits and their integrals after some steps, of shape (lanes, ROWS + 1); runs in a worker.
+    """Return orbits and their integrals after some steps, of shape (lanes, ROWS + 1); called in a worker.
 
     `tile`, (ROWS + 2, lanes), holds the `ROWS` rows of the orbits, their integrals so far, and their rows of `curves`.
     """
     orbits, integral, curve_row = tile[:ROWS].copy(), tile[ROWS].copy(), tile[ROWS + 1].astype(np.int64)
+    # The kernel changes the orbits and their integrals in place.
     with np.errstate(invalid="ignore"):
         kernels_of(potential).integrate_speed(
             TOLERANCE, duration, power, _STEPS_PER_TILE, gates, curves, curve_row, orbits, integral

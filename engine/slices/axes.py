@@ -21,7 +21,7 @@ class Coordinate(Enum):
 
     `THETA` is the angle of the velocity from the +x axis, px = v cos θ, py = v sin θ. `BETA` is the angle of the velocity from
     the outward radial direction, or at the origin from the +y axis: 0 is radially outward, π/2 tangential, counterclockwise.
-    `SPEED` is v, which the energy always determines.
+    `SPEED` is v, which is always determined by the energy.
     """
 
     X = "x"
@@ -60,15 +60,15 @@ class Coordinate(Enum):
 
     @property
     def components(self) -> dict[Coordinate, float]:
-        """Change of each coordinate of a start per unit along the axis."""
+        """Change of each coordinate of a start per unit along the axis, without zeros."""
         return {self: 1.0}
 
     def in_well_units(self, units: WellUnits) -> Coordinate:
-        """Return the axis itself: its values have units, but the axis has none."""
+        """Return the axis itself: the values along it have units, but the axis has none."""
         return self
 
     def move(self, start: MutableMapping[Coordinate, np.ndarray], along: np.ndarray) -> None:
-        """Set this coordinate of n starts to `along`, of shape (n,)."""
+        """Set this coordinate of n starts, in place, to the values `along` the axis, of shape (n,)."""
         start[self] = along
 
 
@@ -77,7 +77,7 @@ MOMENTA = (Coordinate.PX, Coordinate.PY)
 ANGLES = (Coordinate.THETA, Coordinate.BETA)
 STATE = (*POSITIONS, *MOMENTA)
 
-# Values of a parameter below this share of its range are taken as 0: they are rounding errors, too small for a coefficient.
+# Values of a parameter below this share of its range are rounding errors, too small for a coefficient, and count as 0.
 _ROUNDING = 1e-12
 
 
@@ -137,7 +137,8 @@ class Direction:
 
     def unit(self, units: WellUnits) -> float:
         """Return the unit of the axis, a power of 2, in which values inside the well are of order 1."""
-        return 1.0 / nearest_power_of_two(float(np.hypot.reduce([v / c.unit(units) for c, v in self.components.items()])))
+        scaled_components = [value / coordinate.unit(units) for coordinate, value in self.components.items()]
+        return 1.0 / nearest_power_of_two(float(np.hypot.reduce(scaled_components)))
 
     def in_well_units(self, units: WellUnits) -> Direction:
         """Return the direction with both the states and the axis in units of the well."""
@@ -145,7 +146,7 @@ class Direction:
         return Direction(self.key, **{c.value: value * unit / c.unit(units) for c, value in self.components.items()})
 
     def move(self, start: MutableMapping[Coordinate, np.ndarray], along: np.ndarray) -> None:
-        """Move n starts along the axis by the distances `along`, of shape (n,)."""
+        """Move n starts, in place, by the distances `along` the axis, of shape (n,)."""
         for coordinate, component in self.components.items():
             start[coordinate] = start[coordinate] + component * along
 
@@ -198,13 +199,13 @@ class ParameterAxis(_SystemAxis):
     low, high
         Range of the parameter in the default window, dimensionless, low < high, within `System.range_of`.
     system
-        The system, or its potential. Exits have the numbers that they have at this system's own value of the parameter.
+        The system, or its potential. At all values of the parameter, an exit has its number at this system's own value.
 
     Raises
     ------
     ValueError
-        If the system has no such parameter, or the range is empty or not legal. Whether the system has a potential at each value
-        is not checked here, because the check takes seconds for some formulas; `potential` makes it.
+        If the system has no such parameter, or the range is empty or not legal. Only `potential` checks whether the system has a
+        potential at a value, because the check takes seconds for some formulas.
     """
 
     key: str
@@ -222,9 +223,9 @@ class ParameterAxis(_SystemAxis):
             object.__setattr__(self, "system", _system_of(self.system))
         if not isinstance(self.system, System):
             raise ValueError(f"system={short_repr(self.system)}: must be a System, or the potential of one")
-        known = self.system.parameter_names
-        if self.key not in known:
-            legal = f"a parameter of the system: {', '.join(known)}" if known else "a parameter of the system, which has none"
+        names = self.system.parameter_names
+        if self.key not in names:
+            legal = f"a parameter of the system: {', '.join(names)}" if names else "a parameter of the system, which has none"
             raise ValueError(f"parameter {short_repr(self.key)}: must be {legal}")
         low, high = (checked_number(f"parameter {self.key}", value) for value in (self.low, self.high))
         if not low < high:
@@ -262,6 +263,7 @@ class HeldParameter(_SystemAxis):
 
 
 def _system_of(potential: Potential) -> System:
+    """Return the system of a potential; ValueError if it is not known."""
     if potential.system is None:
         raise ValueError(
             f"system={potential.name}: its letters are not known; must be a System, or the potential of one, such as "
@@ -271,7 +273,6 @@ def _system_of(potential: Potential) -> System:
 
 
 Axis = Coordinate | Direction | ParameterAxis | HeldParameter
-
 
 Energy = float | tuple[float, float]
 """The energy of a map: h, or its range (low, high) on a slice with an axis h."""
@@ -288,5 +289,5 @@ def highest_energy(energy: Energy) -> float:
 
 
 def scaled_energy(energy: Energy, factor: float) -> Energy:
-    """Convert the energy of a map to other units."""
+    """Return the energy of a map, multiplied by a factor that converts its unit."""
     return (factor * energy[0], factor * energy[1]) if isinstance(energy, tuple) else factor * energy

@@ -11,13 +11,14 @@ from engine.slices.slice import Slice
 from engine.slices.window import Window
 from engine.systems.potential import Potential
 
+# Number of samples along each side of a window.
 _CONTOUR_SAMPLES = 201
 
 
 def trace_zero_velocity_curve(potential: Potential, plane: Slice, energy: Energy, window: Window) -> list[np.ndarray]:
     """Trace the boundary of the forbidden region of a slice, such as V(x, y) = h, px²/2 + V(x, 0) = h, or V(x, 0) = h.
 
-    `energy` is ignored on a slice with an axis h. Returns the pieces of the curve in a window, each (n, 2).
+    Returns the pieces of the curve in a window, (n, 2) each. `energy` is ignored on a slice with an axis h.
     """
     # On a slice with an axis h, `required_energy` is relative to the h of each point, so the boundary is at 0.
     level = highest_energy(energy) if plane.energy_axis is None else 0.0
@@ -26,7 +27,7 @@ def trace_zero_velocity_curve(potential: Potential, plane: Slice, energy: Energy
 
 
 def trace_equipotentials(potential: Potential, plane: Slice, energies: Sequence[float], window: Window) -> list[list[np.ndarray]]:
-    """Trace the curves on which `Slice.required_energy` has these values. Returns the pieces of each curve, each (n, 2)."""
+    """Trace the curves on which `Slice.required_energy` has these values. Returns the pieces of each curve, (n, 2) each."""
     import contourpy
 
     x, ordinate = (np.linspace(low, high, _CONTOUR_SAMPLES) for low, high in window.ranges)

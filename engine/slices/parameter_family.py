@@ -1,7 +1,7 @@
 """The potentials along a parameter of a system, with exits that keep their numbers.
 
-Finding and classifying critical points takes a tenth of a second, so this is done at a few values of the parameter only, the
-nodes. Between two nodes with the same exits, Newton's method continues the saddles in a millisecond. If the exits of two
+To find and classify critical points takes a tenth of a second. Therefore they are searched only at a few values of the parameter,
+the nodes. Between two nodes with the same exits, Newton's method continues the saddles in a millisecond. If the exits of two
 neighbouring nodes cannot be matched, exits appear or disappear between the nodes, and further nodes are inserted.
 """
 
@@ -20,25 +20,25 @@ from engine.slices.axes import ParameterAxis
 from engine.systems.outcomes import Exit
 from engine.systems.potential import Potential
 
-# Nodes divide the range of the axis into this many parts.
+# Number of parts into which nodes divide the range of the axis.
 _PARTS = 8
-# Nodes divide the distance from the system's own value to the farther end of the range into at most this many parts.
+# Largest number of parts into which nodes divide the distance from the system's own value to the farther end of the range.
 _MOST_PARTS = 24
-# A part whose ends have different exits is halved up to this many times.
+# Largest number of times that a part whose ends have different exits is halved.
 _HALVINGS = 12
+# Largest number of steps of Newton's method.
 _NEWTON_STEPS = 20
 # Number of potentials along the axis that `find_members` finds.
 _SCAN_VALUES = 112
-# Newton's method has converged when its last step is below this share of the distance from the origin.
+# Largest last step of Newton's method that has converged, as a share of the distance from the origin.
 _TOLERANCE = 1e-12
-# Newton's method may move a saddle by this share of the distance to the nearest other saddle.
+# Largest distance by which Newton's method may move a saddle, as a share of the distance to the nearest other saddle.
 _LARGEST_SHARE = 0.5
-# Two saddles are the same if their distance is below this share of their distance from the origin.
+# Largest distance between two saddles that count as the same, as a share of their distance from the origin.
 _SAME = 1e-7
 
-
 MOST_FOUND = 120
-"""Largest number of potentials of a family whose critical points are searched. This many take about 10 s."""
+"""Largest number of potentials of a family whose critical points are searched, which takes about 10 s."""
 
 
 class ManyExitsError(ValueError):
@@ -54,7 +54,7 @@ class Member:
     potential
         The potential.
     numbers
-        Fate in the family of each fate of the potential, int8, of shape (outcomes + 1,); entry 0 is 0.
+        For each fate of the potential, the fate in the family, int8, of shape (outcomes + 1,); entry 0 is 0.
     """
 
     potential: Potential
@@ -75,10 +75,10 @@ class Member:
 
 
 class ParameterFamily:
-    """Finds the potentials along one axis and numbers their outcomes. `parameter_family` returns the one family of an axis.
+    """Finds the potentials along one axis and numbers their outcomes. `parameter_family` returns the family of an axis.
 
-    Outcomes keep the numbers that they have at the system's own value of the parameter. Exits that do not exist there get the
-    next numbers in the order in which they appear, first towards higher and then towards lower values.
+    Outcomes keep the numbers that they have at the system's own value of the parameter. Exits that do not exist at this value get
+    the next numbers in the order in which they appear, first towards higher and then towards lower values.
 
     Parameters
     ----------
@@ -93,15 +93,17 @@ class ParameterFamily:
         self._own_value = axis.system.value_of(axis.key)
         self._reach = max(abs(axis.low - self._own_value), abs(axis.high - self._own_value))
         self._step = max((axis.high - axis.low) / _PARTS, self._reach / _MOST_PARTS)
-        self._found_count = 0
+        # Number of potentials whose critical points have been searched.
+        self._search_count = 0
         # Potentials inside parts whose ends have different exits.
         self._between_nodes: dict[float, Member] = {}
         self._nodes: dict[float, Member] = {}
         self._node_matches: dict[tuple[float, float], list[int] | None] = {}
         self._lock = threading.Lock()
-        first = axis.potential(self._own_value)
-        self._nodes[self._own_value] = Member(first, read_only(np.arange(len(first.outcomes) + 1, dtype=np.int8)))
-        self.outcomes = first.outcomes
+        own_potential = axis.potential(self._own_value)
+        own_numbers = np.arange(len(own_potential.outcomes) + 1, dtype=np.int8)
+        self._nodes[self._own_value] = Member(own_potential, read_only(own_numbers))
+        self.outcomes = own_potential.outcomes
         """The outcomes of all potentials of the family that have been found so far."""
         self._extend_to(axis.high)
         self._extend_to(axis.low)
@@ -121,72 +123,74 @@ class ParameterFamily:
 
     def _member(self, value: float) -> Member:
         self._extend_to(value)
-        for known in (self._nodes, self._between_nodes):
-            if value in known:
-                return known[value]
-        values = sorted(self._nodes)
-        above = next(place for place, node in enumerate(values) if node > value)
-        low, high = values[above - 1], values[above]
-        between = self._between(value, low, high)
-        if between is None:
-            between = self._between_nodes[value] = self._linked(value, min(low, high, key=lambda node: (abs(node - value), node)))
-        return between
+        for members in (self._nodes, self._between_nodes):
+            if value in members:
+                return members[value]
+        nodes = sorted(self._nodes)
+        above = next(index for index, node in enumerate(nodes) if node > value)
+        low, high = nodes[above - 1], nodes[above]
+        member = self._continued(value, low, high)
+        if member is None:
+            nearest_node = min(low, high, key=lambda node: (abs(node - value), node))
+            member = self._between_nodes[value] = self._linked(value, nearest_node)
+        return member
 
     def _extend_to(self, value: float) -> None:
         """Add nodes, away from the system's own value, until they enclose a value."""
         sign = math.copysign(1.0, value - self._own_value)
         while True:
-            ends = sorted(self._nodes)
-            end = ends[-1] if sign > 0 else ends[0]
+            end = max(self._nodes) if sign > 0 else min(self._nodes)
             if (value - end) * sign <= 0.0:
                 return
             self._connect(end, self._node_after(end, value, sign))
 
     def _node_after(self, end: float, value: float, sign: float) -> float:
-        """Return the next node: the next multiple of the step inside the range, and twice the distance outside it.
+        """Return the node after the outermost node `end`, on the way to a value.
 
-        If the system has no potential at the node, return the value to reach.
+        Distances from the system's own value are multiples of the step inside the range, and are doubled outside. If the system
+        has no potential at the node, the value itself is the next node.
         """
         distance = abs(end - self._own_value)
-        further = self._step * (math.floor(distance / self._step * (1.0 + _TOLERANCE)) + 1)
-        node = self._own_value + sign * (further if distance < self._reach else 2.0 * distance)
+        next_multiple = self._step * (math.floor(distance / self._step * (1.0 + _TOLERANCE)) + 1)
+        node = self._own_value + sign * (next_multiple if distance < self._reach else 2.0 * distance)
         try:
             self._axis.potential(node)
         except ValueError:
             return value
         return node
 
-    def _connect(self, known: float, new: float) -> None:
-        """Add a node at `new`, next to the node `known`; if their exits differ, first insert nodes between them."""
-        potential = self._axis.potential(new)
+    def _connect(self, node: float, new_node: float) -> None:
+        """Add a new node next to a node; if their exits differ, add nodes between them, as far as the exits can be matched."""
+        potential = self._axis.potential(new_node)
         for _ in range(_HALVINGS):
-            if _match(self._nodes[known].potential, potential) is not None:
+            if _match(self._nodes[node].potential, potential) is not None:
                 break
-            middle = 0.5 * (known + new)
-            if _match(self._nodes[known].potential, self._axis.potential(middle)) is None:
-                new, potential = middle, self._axis.potential(middle)
+            middle = 0.5 * (node + new_node)
+            if _match(self._nodes[node].potential, self._axis.potential(middle)) is None:
+                new_node, potential = middle, self._axis.potential(middle)
             else:
-                self._nodes[middle] = self._linked(middle, known)
-                known = middle
-        self._nodes[new] = self._linked(new, known)
+                self._nodes[middle] = self._linked(middle, node)
+                node = middle
+        self._nodes[new_node] = self._linked(new_node, node)
 
     def _linked(self, value: float, node: float) -> Member:
-        """Find the potential at a value. Its exits get the numbers of the same exits at a node, and new numbers otherwise."""
-        self._found_count += 1
-        if self._found_count > self._most_found:
+        """Find the potential at a value. Exits that also exist at a node get their numbers there, and other exits new numbers."""
+        self._search_count += 1
+        if self._search_count > self._most_found:
             raise ManyExitsError(
                 f"parameter {self._axis.key}: its exits change too often up to {value:.6g}; choose a smaller range"
             )
         potential, neighbour = self._axis.potential(value), self._nodes[node]
+        # 0 stands for an exit without a number.
         numbers = np.array([*np.zeros(potential.channels + 1), *neighbour.of_others], np.int8)
-        for channel, place in enumerate(_continue(potential, neighbour.potential.saddles), start=1):
-            k = _nearest(potential.saddles, place)
+        for channel, position in enumerate(_continue(potential, neighbour.potential.saddles), start=1):
+            k = _nearest(potential.saddles, position)
             if k is not None and not numbers[k + 1]:
                 numbers[k + 1] = neighbour.numbers[channel]
-        new = np.flatnonzero(numbers[1:] == 0) + 1
-        numbers[new] = len(self.outcomes) + 1 + np.arange(new.size)
-        known = sum(outcome.kind is Exit for outcome in self.outcomes)
-        self.outcomes += tuple(Exit.outcome(known + k) for k in range(1, new.size + 1))
+        new_channels = np.flatnonzero(numbers[1:] == 0) + 1
+        numbers[new_channels] = len(self.outcomes) + 1 + np.arange(new_channels.size)
+        exit_count = sum(outcome.kind is Exit for outcome in self.outcomes)
+        self.outcomes += tuple(Exit.outcome(exit_count + k) for k in range(1, new_channels.size + 1))
         return Member(potential, read_only(numbers))
 
     def _matches(self, low: float, high: float) -> list[int] | None:
@@ -195,38 +199,42 @@ class ParameterFamily:
             self._node_matches[low, high] = _match(self._nodes[low].potential, self._nodes[high].potential)
         return self._node_matches[low, high]
 
-    def _between(self, value: float, low: float, high: float) -> Member | None:
+    def _continued(self, value: float, low: float, high: float) -> Member | None:
         """Continue the saddles of two nodes to a value between them; None if the exits of the nodes differ."""
-        first, last = self._nodes[low], self._nodes[high]
-        matched = self._matches(low, high)
+        low_member, high_member = self._nodes[low], self._nodes[high]
+        low_mergers, high_mergers = (member.potential.well.channel_mergers for member in (low_member, high_member))
+        matches = self._matches(low, high)
         share = (value - low) / (high - low)
-        if matched is None or len(first.potential.well.channel_mergers) != len(last.potential.well.channel_mergers):
+        if matches is None or len(low_mergers) != len(high_mergers):
             return None
-        order = np.array(matched, int)
-        plain = self._axis.potential(value)
-        saddles = _continue(plain, (1.0 - share) * first.potential.saddles + share * last.potential.saddles[order])
-        maxima, channels = np.empty((0, 2)), []
-        for merger in first.potential.well.channel_mergers:
-            around = {int(order[k - 1]) + 1 for k in merger.channels}
-            other = next((each for each in last.potential.well.channel_mergers if set(each.channels) == around), None)
-            if other is None:
+        order = np.array(matches, int)
+        unreviewed = self._axis.potential(value)
+        guesses = (1.0 - share) * low_member.potential.saddles + share * high_member.potential.saddles[order]
+        saddles = _continue(unreviewed, guesses)
+        # The maxima between channels that merge, each with the indices of the saddles around it.
+        maxima, saddle_indices = np.empty((0, 2)), []
+        for merger in low_mergers:
+            high_channels = {int(order[k - 1]) + 1 for k in merger.channels}
+            high_merger = next((other for other in high_mergers if set(other.channels) == high_channels), None)
+            if high_merger is None:
                 return None
-            guess = (1.0 - share) * np.array([[merger.x, merger.y]]) + share * np.array([[other.x, other.y]])
-            maxima = np.concatenate([maxima, _continue(plain, guess)])
-            channels.append([k - 1 for k in merger.channels])
+            guess = (1.0 - share) * np.array([[merger.x, merger.y]]) + share * np.array([[high_merger.x, high_merger.y]])
+            maxima = np.concatenate([maxima, _continue(unreviewed, guess)])
+            saddle_indices.append([k - 1 for k in merger.channels])
         if not (np.isfinite(saddles).all() and np.isfinite(maxima).all()):
             return None
-        potential = plain.continued(repr(self._axis), saddles, maxima, channels)
-        ordered = [_nearest(saddles, place) for place in potential.saddles]
-        if None in ordered or len(set(ordered)) < len(saddles):
+        potential = unreviewed.continued(repr(self._axis), saddles, maxima, saddle_indices)
+        # The potential sorts its saddles anew.
+        indices = [_nearest(saddles, position) for position in potential.saddles]
+        if None in indices or len(set(indices)) < len(saddles):
             return None
-        numbers = np.array([0, *(first.numbers[k + 1] for k in ordered if k is not None), *first.of_others], np.int8)
+        numbers = np.array([0, *(low_member.numbers[k + 1] for k in indices if k is not None), *low_member.of_others], np.int8)
         return Member(potential, read_only(numbers))
 
 
 @functools.lru_cache(maxsize=256)
 def parameter_family(axis: ParameterAxis) -> ParameterFamily:
-    """Return the family of an axis; this takes up to a second, and less if its nodes are stored on disk."""
+    """Return the family of an axis; this takes up to a second, or less if its nodes are stored on disk."""
     return ParameterFamily(axis)
 
 
@@ -243,6 +251,7 @@ def find_members(axis: ParameterAxis) -> None:
         try:
             family.member(value)
         except ManyExitsError:
+            # This is a ValueError too, but concerns the whole axis.
             raise
         except ValueError:
             # The system has no potential there, so the line of the map remains empty.
@@ -250,12 +259,12 @@ def find_members(axis: ParameterAxis) -> None:
 
 
 def _match(first: Potential, last: Potential) -> list[int] | None:
-    """Return the index of the last potential's saddle for each exit saddle of the first; None unless they match one to one."""
+    """Return, for each exit saddle of the first potential, the index of the saddle of the last; None unless all match."""
     if first.channels != last.channels:
         return None
-    found = [_nearest(last.saddles, place) for place in _continue(last, first.saddles)]
-    matched = [k for k in found if k is not None]
-    return matched if len(set(matched)) == first.channels else None
+    nearest = [_nearest(last.saddles, position) for position in _continue(last, first.saddles)]
+    matches = [k for k in nearest if k is not None]
+    return matches if len(set(matches)) == first.channels else None
 
 
 def _continue(potential: Potential, points: np.ndarray) -> np.ndarray:
@@ -271,25 +280,25 @@ def _continue(potential: Potential, points: np.ndarray) -> np.ndarray:
             (gx, gy), (vxx, vxy, vyy) = potential.gradient(*points.T), potential.hessian(*points.T)
             step = np.column_stack([gx * vyy - gy * vxy, gy * vxx - gx * vxy]) / (vxx * vyy - vxy * vxy)[:, None]
             points = points - step
-        near = np.hypot(*step.T) <= _TOLERANCE * np.hypot(*points.T)
-        moved = np.hypot(*(points - start).T) <= _LARGEST_SHARE * _separation(start)
-    result: np.ndarray = np.where((near & moved)[:, None], points, np.nan)
+        has_converged = np.hypot(*step.T) <= _TOLERANCE * np.hypot(*points.T)
+        is_near = np.hypot(*(points - start).T) <= _LARGEST_SHARE * _separation(start)
+    result: np.ndarray = np.where((has_converged & is_near)[:, None], points, np.nan)
     return result
 
 
 def _separation(points: np.ndarray) -> np.ndarray:
     """Return the distance of each point to the nearest other point or to the origin, of shape (n,)."""
-    others = np.concatenate([points, np.zeros((1, 2))])
-    distances = np.hypot(*np.moveaxis(points[:, None] - others, -1, 0))
+    targets = np.concatenate([points, np.zeros((1, 2))])
+    distances = np.hypot(*np.moveaxis(points[:, None] - targets, -1, 0))
     distances[np.arange(len(points)), np.arange(len(points))] = np.inf
     nearest: np.ndarray = distances.min(axis=1)
     return nearest
 
 
-def _nearest(points: Sequence[np.ndarray] | np.ndarray, place: np.ndarray) -> int | None:
-    """Return the index of the point at a place; None if no point is there."""
-    if not len(points) or not np.isfinite(place).all():
+def _nearest(points: Sequence[np.ndarray] | np.ndarray, position: np.ndarray) -> int | None:
+    """Return the index of the point at a position, to `_SAME`; None if no point is there."""
+    if not len(points) or not np.isfinite(position).all():
         return None
-    distances = np.hypot(*(np.asarray(points) - place).T)
+    distances = np.hypot(*(np.asarray(points) - position).T)
     k = int(np.argmin(distances))
-    return k if distances[k] <= _SAME * np.hypot(*place) else None
+    return k if distances[k] <= _SAME * np.hypot(*position) else None

@@ -1,4 +1,4 @@
-"""Named slices."""
+"""The named slices, and the starts at points of a slice."""
 
 from __future__ import annotations
 
@@ -52,8 +52,9 @@ def checked_slice(value: Any) -> Slice:
     raise ValueError(f"plane={short_repr(value)}: must be a Slice or one of {', '.join(plane.key for plane in Plane)}")
 
 
-def _fields(chosen: Slice) -> tuple[Any, ...]:
-    return chosen.abscissa, chosen.ordinate, chosen.solved, chosen.sign, chosen.fixed
+def _fields(plane: Slice) -> tuple[Any, ...]:
+    """Return the fields of a slice, because a `Plane` and a `Slice` with equal fields are not equal."""
+    return plane.abscissa, plane.ordinate, plane.solved, plane.sign, plane.fixed
 
 
 @checks_types(potential=Potential)
@@ -75,8 +76,8 @@ def start_states(
 
     Returns
     -------
-    x, y, px, py of each start, of shape (n, 4), n = 1 for numbers. Where a start is forbidden, the momentum determined by the
-    energy is NaN.
+    x, y, px, py of each start, of shape (n, 4); n = 1 for numbers. The momentum determined by the energy is NaN where a start is
+    forbidden.
 
     Raises
     ------
@@ -91,7 +92,8 @@ def start_states(
     array([[0. , 0. , 0.3, 0.9],
            [0.9, 0. , 0.5, nan]])
     """
-    points = {"x": checked_array("x", x), "ordinate": checked_array("ordinate", ordinate)}
-    if points["x"].shape != points["ordinate"].shape:
-        raise ValueError(f"ordinate of shape {points['ordinate'].shape}: must be shaped like x, {points['x'].shape}")
-    return checked_slice(plane).states(potential, checked_array("energy", energy)[()], points["x"][()], points["ordinate"][()])
+    xs, ordinates = checked_array("x", x), checked_array("ordinate", ordinate)
+    if xs.shape != ordinates.shape:
+        raise ValueError(f"ordinate of shape {ordinates.shape}: must be shaped like x, {xs.shape}")
+    # [()] turns an array without dimensions into a number.
+    return checked_slice(plane).states(potential, checked_array("energy", energy)[()], xs[()], ordinates[()])

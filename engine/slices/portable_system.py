@@ -21,6 +21,7 @@ from engine.systems.forms.polynomial_form import PolynomialForm
 from engine.systems.potential import Potential
 from engine.systems.well_units import WellUnits
 
+# Number of the columns of an exit, and place and values of the shape in them, for JavaScript.
 _EXIT_COLUMNS = {
     "count": exit_geometry.CURVE_COLUMNS,
     "shape": exit_geometry.SHAPE,
@@ -34,14 +35,14 @@ _EXIT_COLUMNS = {
 
 @dataclass(frozen=True, eq=False)
 class PortableSystem:
-    """The data needed to integrate the orbits of a potential, in units of its well.
+    """The data for the integration of the orbits of a potential, in units of its well.
 
     Attributes
     ----------
     potential
         The potential, in its own units.
     module
-        WebAssembly with the functions of its structure, see `engine.integrator.jit.webassembly`.
+        WebAssembly with the functions of the potential's structure, see `engine.integrator.jit.webassembly`.
     table
         (m,) the coefficients, as the functions of `module` take them.
     backward
@@ -58,12 +59,12 @@ class PortableSystem:
 
     @property
     def nbytes(self) -> int:
-        """Approximate size in bytes."""
-        return len(self.module) + 2 * self.table.nbytes + sum(exits.rows.nbytes for exits in self.exits) + 2048
+        """Approximate size in bytes, with 2048 for everything that is not an array."""
+        return len(self.module) + 2 * self.table.nbytes + sum(table.rows.nbytes for table in self.exits) + 2048
 
     def to_dict(self) -> dict[str, object]:
         """Return everything except the module as lists and numbers."""
-        well, units = self.potential.in_well_units, self.potential.units
+        scaled_potential, units = self.potential.in_well_units, self.potential.units
         mirror = self.potential.well.mirror_channels.tolist() if self.potential.well.mirror_in_x else None
         return {
             "layout": {
@@ -79,9 +80,9 @@ class PortableSystem:
             },
             "table": self.table.tolist(),
             "backward": self.backward.tolist() if self.potential.rotation else None,
-            "polynomial": _polynomial_data(well.form),
-            "innerRadius": find_inner_radius(well),
-            "exits": [*self._tables(), *_circles(well)],
+            "polynomial": _polynomial_data(scaled_potential.form),
+            "innerRadius": find_inner_radius(scaled_potential),
+            "exits": [*self._tables(), *_circles(scaled_potential)],
             "mirror": mirror,
             "units": {"length": units.length, "time": units.time, "energy": units.energy},
             "space": SPACE.to_dict(units),
@@ -89,31 +90,37 @@ class PortableSystem:
         }
 
     def _tables(self) -> list[dict[str, object]]:
-        """Return the exits over saddles."""
+        """Return the tables of the exits over saddles, as plain data."""
         shape = {"shape": "line" if self.potential.rotation else "curve"}
         return [
-            {**shape, "saddle": each.saddle, "highest": each.highest, "nodes": each.nodes.tolist(), "rows": each.rows.tolist()}
-            for each in self.exits
+            {
+                **shape,
+                "saddle": table.saddle,
+                "highest": table.highest,
+                "nodes": table.nodes.tolist(),
+                "rows": table.rows.tolist(),
+            }
+            for table in self.exits
         ]
 
 
 def _energy_surface(units: WellUnits) -> dict[str, object]:
     """Return the energy surface as a slice of positions with the angle of the velocity as third axis."""
     launched = ENERGY_SURFACE.to_dict(units)
-    turned = [float(column == slice_starts.ANGLE) for column in range(slice_starts.COORDINATES)]
-    return {**launched, "motion": [*launched["motion"], turned]}
+    angle_motion = [float(column == slice_starts.ANGLE) for column in range(slice_starts.COORDINATES)]
+    return {**launched, "motion": [*launched["motion"], angle_motion]}
 
 
-def _circles(well: Potential) -> list[dict[str, object]]:
-    """Return the rows for the kernels and the gates of the ends that are not over saddles."""
+def _circles(potential: Potential) -> list[dict[str, object]]:
+    """Return the ends that are not over saddles, with their rows for the kernels and their gates."""
     return [
         {"side": end.side, "radius": end.radius, "row": end.row.tolist(), "gate": exit_gates(end.row[None, None])[0].tolist()}
-        for end in well.ends
+        for end in potential.ends
     ]
 
 
 def _polynomial_data(form: Any) -> dict[str, object] | None:
-    """Return a polynomial V as the interior test takes it, with lists for arrays; None for an expression."""
+    """Return a polynomial V as the interior test takes it, with lists in place of arrays; None for an expression."""
     if not isinstance(form, PolynomialForm):
         return None
     return {name: array.tolist() for name, array in tabulate_polynomial(form)._asdict().items()}
@@ -122,11 +129,13 @@ def _polynomial_data(form: Any) -> dict[str, object] | None:
 def make_portable_system(potential: Potential, highest: float) -> PortableSystem:
     """Return a potential as data, with exits for energies up to `highest`, in units of the potential.
 
-    This takes up to a second for the first potential of a structure, and when exits are not cached.
+    This takes up to a second for the first potential of a structure, or if exits are not cached.
     """
-    well = potential.in_well_units
-    definition, setting = well.form.definition, well.well.setting
+    scaled_potential = potential.in_well_units
+    definition, setting = scaled_potential.form.definition, scaled_potential.well.setting
     code = generate_code(definition, setting)
-    table, backward = (code.tabulate(definition, rotation) for rotation in (well.rotation, -well.rotation))
-    exits = tabulate_exits(well, highest / potential.units.energy)
+    # Backward in time, the frame rotates in the opposite direction.
+    rotation = scaled_potential.rotation
+    table, backward = code.tabulate(definition, rotation), code.tabulate(definition, -rotation)
+    exits = tabulate_exits(scaled_potential, highest / potential.units.energy)
     return PortableSystem(potential, webassembly_module(code), table, backward, exits)

@@ -18,10 +18,10 @@ LARGEST_SAMPLE = 10_000_000
 """Largest number of starts of one sample."""
 
 # Largest number of points drawn at once.
-_MOST = 1_000_000
+_MOST_POINTS = 1_000_000
 # Smallest number of points drawn at once.
-_LEAST = 1_000
-# A window with a smaller share of points inside counts as without interior.
+_LEAST_POINTS = 1_000
+# Smallest share of points inside at which a window has an interior.
 _SMALLEST_SHARE = 1e-4
 
 
@@ -51,13 +51,13 @@ def sample_starts(
     plane
         The slice, such as a `Plane`, of one energy and one potential; None for the energy surface.
     window
-        Part of the slice, or of (x, y) on the energy surface, by default the whole interior. Given as in `MapSpec`.
+        Part of the slice, or of (x, y) on the energy surface, given as in `MapSpec`; None for the whole interior.
     seed
         0 to 2⁶³ − 1; equal seeds give equal starts.
 
     Returns
     -------
-    x, y, px, py of each start, of shape (count, 4), with this energy to rounding.
+    x, y, px, py of each start, of shape (count, 4). Their energies are equal to `energy` up to rounding.
 
     Raises
     ------
@@ -75,20 +75,23 @@ def sample_starts(
     h = checked_number("energy", energy)
     count = checked_count("count", count, 1, LARGEST_SAMPLE)
     random = np.random.default_rng(checked_count("seed", seed, 0, 2**63 - 1))
-    chosen = SPACE if plane is None else checked_slice(plane)
-    chosen.check_one_potential("plane")
-    if chosen.energy_axis is not None:
-        raise ValueError(f"plane={chosen.title}: must have no axis h, as all starts have one energy")
-    part = default_window(potential, chosen, h) if window is None else checked_window(window)
-    found = [np.empty((0, 4))]
-    drawn = inside = 0
-    while inside < count:
-        size = int(np.clip(1.2 * (count - inside) * (drawn + 1) / (inside + 1), _LEAST, _MOST))
-        found.append(_draw(potential, h, None if plane is None else chosen, part, size, random))
-        drawn, inside = drawn + size, inside + len(found[-1])
-        if inside < _SMALLEST_SHARE * drawn:
-            raise ValueError(f"window={part}: nothing of it is inside at h={h}; must contain starts inside all exits")
-    return np.concatenate(found)[:count]
+    window_plane = SPACE if plane is None else checked_slice(plane)
+    window_plane.check_one_potential("plane")
+    if window_plane.energy_axis is not None:
+        raise ValueError(f"plane={window_plane.title}: must have no axis h, as all starts have one energy")
+    edges = default_window(potential, window_plane, h) if window is None else checked_window(window)
+    batches = [np.empty((0, 4))]
+    drawn_count = inside_count = 0
+    while inside_count < count:
+        # A little more than the number of points that are expected to contain enough starts inside.
+        expected_size = 1.2 * (count - inside_count) * (drawn_count + 1) / (inside_count + 1)
+        size = int(np.clip(expected_size, _LEAST_POINTS, _MOST_POINTS))
+        batches.append(_draw(potential, h, None if plane is None else window_plane, edges, size, random))
+        drawn_count += size
+        inside_count += len(batches[-1])
+        if inside_count < _SMALLEST_SHARE * drawn_count:
+            raise ValueError(f"window={edges}: nothing of it is inside at h={h}; must contain starts inside all exits")
+    return np.concatenate(batches)[:count]
 
 
 def _draw(

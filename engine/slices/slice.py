@@ -1,8 +1,8 @@
 """Slices of phase space, which assign a start to each point of a picture.
 
-A slice has two axes, which are coordinates, oblique directions, h, or a parameter of the system, and fixed values of the other
-coordinates. The energy determines one momentum, whose sign the slice fixes, or the speed if an angle is given. With an axis h,
-every start has its own energy and exits; along a parameter, it also has its own potential.
+A slice has two axes, and fixed values of the coordinates that are not axes. An axis is a coordinate, an oblique direction, h, or
+a parameter of the system. The energy determines one momentum, whose sign is fixed, or the speed if an angle is given. With an
+axis h, every start has its own energy and exits; along a parameter, every start has its own potential.
 """
 
 from __future__ import annotations
@@ -33,10 +33,10 @@ class Slice:
     abscissa, ordinate
         The two axes, which must differ: coordinates, `Direction`s, and at most one `ParameterAxis`.
     solved
-        The coordinate that the energy determines: a momentum, or the speed if an angle is used. None, the default, stands for the
-        speed if an angle is used, px if py is used, and otherwise py.
+        The coordinate that the energy determines: a momentum, or the speed if an angle is used. None stands for the speed if an
+        angle is used, px if py is used, and otherwise py.
     sign
-        Sign of this momentum, 1 or −1; 1 for the speed.
+        Sign of the determined momentum, 1 or −1; 1 for the speed.
     fixed
         ((coordinate, value), …): values of the other coordinates of the state, dimensionless; 0 for coordinates that are not
         given.
@@ -87,15 +87,14 @@ class Slice:
         values = {coordinate: checked_number(f"fixed {coordinate.key}", value) for coordinate, value in self.fixed}
         if self.decided is Coordinate.SPEED and not any(angle in used for angle in ANGLES):
             values[Coordinate.THETA] = 0.0
-        # Zeros are left out, so that equal slices compare equal; the zero of an angle stays, because it shows which angle is
-        # fixed.
-        kept = sorted(((c, value) for c, value in values.items() if value or c in ANGLES), key=lambda pair: pair[0].key)
-        object.__setattr__(self, "fixed", tuple(kept))
+        # Zeros are left out, so that equal slices compare equal. An angle of 0 stays, because it shows which angle is fixed.
+        pairs = sorted(((c, value) for c, value in values.items() if value or c in ANGLES), key=lambda pair: pair[0].key)
+        object.__setattr__(self, "fixed", tuple(pairs))
 
     def __repr__(self) -> str:
-        held = "".join(f"({coordinate}, {value!r}), " for coordinate, value in self.fixed)
+        fixed = "".join(f"({coordinate}, {value!r}), " for coordinate, value in self.fixed)
         abscissa, ordinate = (str(axis) if isinstance(axis, Coordinate) else repr(axis) for axis in self.axes)
-        return f"Slice({abscissa}, {ordinate}, {self.solved}, {self.sign}, ({held.rstrip()}))"
+        return f"Slice({abscissa}, {ordinate}, {self.solved}, {self.sign}, ({fixed.rstrip()}))"
 
     @property
     def axes(self) -> tuple[Axis, Axis]:
@@ -104,7 +103,7 @@ class Slice:
 
     @property
     def decided(self) -> Coordinate:
-        """The coordinate that the energy determines: px, py or the speed."""
+        """The coordinate that the energy determines: px, py or the speed; `solved`, which `__post_init__` always sets."""
         assert self.solved is not None
         return self.solved
 
@@ -121,17 +120,17 @@ class Slice:
     @property
     def key(self) -> str:
         """A name for files, such as ``x_px`` or ``x_theta-y0.1``, with 6 digits of the fixed values."""
-        held = "".join(f"-{coordinate.key}{value:.6g}" for coordinate, value in self.fixed)
-        return "_".join(self.axis_names) + held + ("" if self.sign > 0 else "-negative")
+        fixed = "".join(f"-{coordinate.key}{value:.6g}" for coordinate, value in self.fixed)
+        return "_".join(self.axis_names) + fixed + ("" if self.sign > 0 else "-negative")
 
     @property
     def title(self) -> str:
         """The name in texts, such as "(x, px)": axes, fixed values, and the determined momentum if it is not the usual one."""
-        held = [f"{coordinate.symbol} = {value:.6g}" for coordinate, value in self.fixed]
+        conditions = [f"{coordinate.symbol} = {value:.6g}" for coordinate, value in self.fixed]
         usual = momentum_left(self.axes, [axis for axis in self.axes if isinstance(axis, Coordinate)])
         if self.sign < 0 or (self.decided is not usual and self.decided is not Coordinate.SPEED):
-            held.append(f"{self.decided.symbol} {'>' if self.sign > 0 else '<'} 0")
-        return ", ".join([f"({', '.join(self.axis_symbols)})", *held])
+            conditions.append(f"{self.decided.symbol} {'>' if self.sign > 0 else '<'} 0")
+        return ", ".join([f"({', '.join(self.axis_symbols)})", *conditions])
 
     @property
     def energy_axis(self) -> int | None:
@@ -141,7 +140,7 @@ class Slice:
     @property
     def parameter_axis(self) -> int | None:
         """0 if the abscissa is a parameter, 1 if the ordinate is; None if all starts have one potential."""
-        return next((place for place, axis in enumerate(self.axes) if isinstance(axis, ParameterAxis)), None)
+        return next((index for index, axis in enumerate(self.axes) if isinstance(axis, ParameterAxis)), None)
 
     @property
     def parameter(self) -> ParameterAxis | None:
@@ -160,16 +159,16 @@ class Slice:
 
     def limiting_curve(self, mass: float) -> str:
         """Return the equation of the boundary of the forbidden region for a mass, such as "½px² + V(x, 0) = h" for 1."""
-        half = "½" if mass == 1.0 else f"{0.5 / mass:.6g} "
-        moved = {c for axis in self.axes for c in (axis.components if isinstance(axis, Direction) else {axis})}
-        symbols = {**{c: f"{value:.6g}" for c, value in self.fixed}, **{c: c.symbol for c in moved if c in STATE}}
+        factor = "½" if mass == 1.0 else f"{0.5 / mass:.6g} "
+        variables = {c for axis in self.axes for c in (axis.components if isinstance(axis, Direction) else {axis})}
+        symbols = {**{c: f"{value:.6g}" for c, value in self.fixed}, **{c: c.symbol for c in variables if c in STATE}}
         kinetic = "".join(
-            f"{half}{symbols[momentum] if momentum in moved else f'({symbols[momentum]})'}² + "
+            f"{factor}{symbols[momentum] if momentum in variables else f'({symbols[momentum]})'}² + "
             for momentum in MOMENTA
             if momentum in symbols and momentum is not self.decided
         )
-        place = "" if self.shows_positions else f"({', '.join(symbols.get(position, '0') for position in POSITIONS)})"
-        return f"{kinetic}V{place} = h"
+        arguments = "" if self.shows_positions else f"({', '.join(symbols.get(position, '0') for position in POSITIONS)})"
+        return f"{kinetic}V{arguments} = h"
 
     def to_dict(self, units: WellUnits) -> dict[str, Any]:
         """Return the slice as plain data in units of a well, see `Slice` in modules/engine/system.js of the page."""
@@ -177,18 +176,18 @@ class Slice:
         return {
             "axes": list(self.axis_names),
             "units": list(self.axis_units(units)),
-            "motion": [_coordinates(dict(scaled.fixed)), *(_coordinates(axis.components) for axis in scaled.axes)],
-            "decided": _decided(self),
+            "motion": [_to_columns(dict(scaled.fixed)), *(_to_columns(axis.components) for axis in scaled.axes)],
+            "decided": _decided_code(self),
             "sign": self.sign,
             "mirrored": self.mirrored_axes,
         }
 
     def axis_units(self, units: WellUnits) -> tuple[float, float]:
-        """Return the unit of each axis, in which coordinates inside the well are of order 1."""
+        """Return the unit of each axis, in which values inside the well are of order 1."""
         return self.abscissa.unit(units), self.ordinate.unit(units)
 
     def restore[Computed](self, result: Computed, units: WellUnits) -> Computed:
-        """Convert a result from units of the well. Its `x` and `ordinate`, numbers or arrays, are positions on this slice."""
+        """Convert a result from units of the well; `result.x` and `result.ordinate` are positions on this slice."""
         x_unit, ordinate_unit = self.axis_units(units)
         x, ordinate = x_unit * result.x, ordinate_unit * result.ordinate  # type: ignore[attr-defined]
         for coordinate in (x, ordinate):
@@ -224,14 +223,14 @@ class Slice:
         return compute_states(self, potential, energy, x, ordinate)
 
     def required_energy(self, potential: Potential, x: np.ndarray, ordinate: np.ndarray) -> np.ndarray:
-        """Return the lowest energy of a start; with an axis h, relative to the h of its point: positive if forbidden."""
+        """Return the lowest energy of a start at each point; with an axis h, minus the h of the point: positive if forbidden."""
         return compute_required_energy(self, potential, x, ordinate)
 
     def of_system(self, system: System) -> Slice:
-        """Return the slice with its parameter in another system; ValueError if that system lacks the parameter or the range."""
+        """Return the slice with its parameter in another system; ValueError if that system lacks the parameter or its range."""
         if self.parameter is None or self.parameter.system == system:
             return self
-        abscissa, ordinate = (replace(a, system=system) if isinstance(a, ParameterAxis) else a for a in self.axes)
+        abscissa, ordinate = (replace(axis, system=system) if isinstance(axis, ParameterAxis) else axis for axis in self.axes)
         return Slice(abscissa, ordinate, self.solved, self.sign, self.fixed)
 
     def check_one_potential(self, name: str) -> None:
@@ -250,11 +249,14 @@ class Slice:
         return system if axis is None else system.with_parameter(axis.key, (x, ordinate)[self.parameter_axis or 0])
 
     def potential_at(self, potential: Potential, x: float, ordinate: float) -> Potential:
-        """Return the potential of a point: `potential`, or that at the point's value of a parameter; ValueError without one."""
+        """Return the potential of a point: `potential`, or the potential at the point's value of a parameter.
+
+        Raises ValueError if the system has no potential at this value.
+        """
         return potential if self.parameter is None else self.system_at(self.parameter.system, x, ordinate).potential
 
     def energy_groups(self, rows: int, columns: int) -> np.ndarray:
-        """Return the number of the energy of each pixel, (rows · columns,): its place along an axis h, otherwise 0."""
+        """Return the number of the energy of each pixel, (rows · columns,): the pixel's index along an axis h, otherwise 0."""
         groups = np.zeros((rows, columns), np.int64)
         if self.energy_axis == 0:
             groups += np.arange(columns)
@@ -266,9 +268,9 @@ class Slice:
     def mirrored_axes(self) -> tuple[bool, bool] | None:
         """For each axis, whether its sign changes under x → −x; None if the mirror image is a different slice."""
         parities = [axis.parity for axis in self.axes]
-        # A coordinate whose sign x → −x changes is its own mirror image if it is 0.
-        held = [coordinate.parity for coordinate, value in self.fixed if value or coordinate.parity != -1]
-        if None in parities or any(parity != 1 for parity in (self.decided.parity, *held)):
+        # A fixed 0 is its own mirror image even if x → −x changes the sign of the coordinate.
+        fixed_parities = [coordinate.parity for coordinate, value in self.fixed if value or coordinate.parity != -1]
+        if None in parities or any(parity != 1 for parity in (self.decided.parity, *fixed_parities)):
             return None
         return parities[0] == -1, parities[1] == -1
 
@@ -296,13 +298,13 @@ class Slice:
         return images.ravel()
 
 
-def _coordinates(values: Mapping[Coordinate, float]) -> list[float]:
+def _to_columns(values: Mapping[Coordinate, float]) -> list[float]:
     """Return coordinates in the columns of `engine.integrator.kernels.slice_starts`; missing coordinates are 0."""
-    held = {"angle" if coordinate in ANGLES else coordinate.key: value for coordinate, value in values.items()}
-    return [held.get(name, 0.0) for name in ("x", "y", "px", "py", "angle", "h")]
+    values_by_column = {"angle" if coordinate in ANGLES else coordinate.key: value for coordinate, value in values.items()}
+    return [values_by_column.get(name, 0.0) for name in ("x", "y", "px", "py", "angle", "h")]
 
 
-def _decided(plane: Slice) -> int:
+def _decided_code(plane: Slice) -> int:
     """Return what the energy determines, as a code of `engine.integrator.kernels.slice_starts`."""
     if plane.decided is not Coordinate.SPEED:
         return slice_starts.PX if plane.decided is Coordinate.PX else slice_starts.PY

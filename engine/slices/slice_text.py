@@ -13,6 +13,7 @@ AXIS_NAMES = tuple(coordinate.key for coordinate in Coordinate if coordinate is 
 """Names of the coordinates that can be axes."""
 
 _COORDINATES = {coordinate.key: coordinate for coordinate in Coordinate}
+# Keys by other names of coordinates and parameters that are accepted.
 _ALIASES = {
     **{coordinate.symbol: coordinate.key for coordinate in Coordinate},
     **{parameter.symbol: key for key, parameter in WELL_PARAMETERS.items()},
@@ -20,27 +21,28 @@ _ALIASES = {
 }
 _SIGNS = {"+": 1, "-": -1}
 # Number of values in the text of a parameter.
-_RANGE = 2
+_RANGE_SIZE = 2
 # Number of values in the text of a direction.
-_COMPONENTS = len(STATE)
+_COMPONENT_COUNT = len(STATE)
 
 
-def write_slice(chosen: Slice) -> tuple[str, str]:
+def write_slice(plane: Slice) -> tuple[str, str]:
     """Return the texts of a slice at full precision, from which `read_slice` restores it.
 
     Returns
     -------
-    The axes, or the key of a named slice, and the fixed values. The second text is empty if all values are the defaults.
+    The axes, or the key of a named slice, and the fixed values. The second text is empty if all fixed values, the determined
+    momentum and its sign are the defaults.
     """
-    if isinstance(chosen, Plane):
-        return chosen.key, ""
-    held = [f"{coordinate.key}={value!r}" for coordinate, value in chosen.fixed]
-    if chosen != Slice(chosen.abscissa, chosen.ordinate, fixed=chosen.fixed):
-        held.append(f"{chosen.decided.key}={'+' if chosen.sign > 0 else '-'}")
-    return ",".join(map(_write_axis, chosen.axes)), ",".join(held)
+    if isinstance(plane, Plane):
+        return plane.key, ""
+    parts = [f"{coordinate.key}={value!r}" for coordinate, value in plane.fixed]
+    if plane != Slice(plane.abscissa, plane.ordinate, fixed=plane.fixed):
+        parts.append(f"{plane.decided.key}={'+' if plane.sign > 0 else '-'}")
+    return ",".join(map(_write_axis, plane.axes)), ",".join(parts)
 
 
-def read_slice(axes: str, held: str, system: System) -> Slice:
+def read_slice(axes: str, fixed_values: str, system: System) -> Slice:
     """Return the slice given by two texts, in which parameters of `system` can be axes.
 
     Parameters
@@ -48,7 +50,7 @@ def read_slice(axes: str, held: str, system: System) -> Slice:
     axes
         The key of a named slice, "x_px", or abscissa and ordinate, "x,theta": x, y, px, py, theta, beta, h, a parameter of the
         system with its range, "epsilon=0.5:2", or a direction with its components along x, y, px and py, "u=1:0.3:0:0".
-    held
+    fixed_values
         Values of the other coordinates, "y=0.1,px=0", by default 0; "py=-" if the energy determines py, with a negative sign.
     system
         The system of the picture.
@@ -56,9 +58,9 @@ def read_slice(axes: str, held: str, system: System) -> Slice:
     Raises
     ------
     ValueError
-        The message names the part, its value and the legal values.
+        If a text is not legal; the message names the part, its value and the legal values.
     """
-    if axes in {plane.key for plane in Plane} and not held:
+    if axes in {plane.key for plane in Plane} and not fixed_values:
         return checked_slice(axes)
     names = axes.split(",")
     if len(names) != len(("abscissa", "ordinate")):
@@ -67,7 +69,7 @@ def read_slice(axes: str, held: str, system: System) -> Slice:
     abscissa, ordinate = (_read_axis(name, system) for name in names)
     fixed: list[tuple[Coordinate, float]] = []
     solved, sign = None, 1
-    for part in held.split(",") if held else ():
+    for part in fixed_values.split(",") if fixed_values else ():
         name, _, value = part.partition("=")
         coordinate = _COORDINATES.get(_without_alias(name))
         if coordinate is None:
@@ -80,7 +82,7 @@ def read_slice(axes: str, held: str, system: System) -> Slice:
 
 
 def default_range(system: System, name: str) -> tuple[float, float]:
-    """Return a legal range of a parameter: from half to twice its value in a system, or from −1 to 1 if this value is 0."""
+    """Return a legal range of a parameter: from half to twice its value in the system, or from −1 to 1 if this value is 0."""
     value = system.value_of(name)
     low, high = sorted((0.5 * value, 2.0 * value)) if value else (-1.0, 1.0)
     lowest, highest = system.range_of(name)
@@ -101,10 +103,10 @@ def _read_axis(text: str, system: System) -> Axis:
     if key in AXIS_NAMES and not numbers:
         return _COORDINATES[key]
     values = [_number("axes", text, number) for number in numbers.split(":")] if numbers else []
-    if key in system.parameter_names and len(values) in (0, _RANGE):
+    if key in system.parameter_names and len(values) in (0, _RANGE_SIZE):
         low, high = values or default_range(system, key)
         return ParameterAxis(key, low, high, system)
-    if len(values) == _COMPONENTS:
+    if len(values) == _COMPONENT_COUNT:
         return Direction(key, *values)
     legal = ", ".join([*AXIS_NAMES, *system.parameter_names])
     raise ValueError(f"axes={short_repr(text)}: must be one of {legal}, or a name with a range or with four components")
@@ -115,8 +117,9 @@ def _without_alias(name: str) -> str:
     return _ALIASES.get(stripped, stripped)
 
 
-def _number(part: str, text: str, number: str) -> float:
+def _number(parameter: str, text: str, number: str) -> float:
+    """Return a number that is part of a text; `parameter` is the name of the parameter, for messages."""
     try:
         return float(number)
     except ValueError:
-        raise ValueError(f"{part}={short_repr(text)}: {short_repr(number)} must be a number") from None
+        raise ValueError(f"{parameter}={short_repr(text)}: {short_repr(number)} must be a number") from None

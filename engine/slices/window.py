@@ -15,7 +15,7 @@ from engine.integrator.kernels.slice_starts import interval_centre
 class Window:
     """A rectangle of a slice, including its edges, dimensionless.
 
-    Raises ValueError if an edge is not finite or lies beyond ±1e9, or a lower edge is not below the upper edge.
+    Raises ValueError if an edge is not finite or lies beyond ±1e9, or if a lower edge is not below the upper edge.
     """
 
     x_low: float
@@ -55,7 +55,7 @@ class Window:
         return Window(*(x_factor * edge for edge in x), *(ordinate_factor * edge for edge in ordinate))
 
     def pixel_centres(self, columns: int, rows: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return x and ordinate of the pixel centres, (columns,) and (rows,), exactly symmetric if the window is symmetric."""
+        """Return x, (columns,), and ordinate, (rows,), of the pixel centres, exactly symmetric if the window is symmetric."""
         x = interval_centre(self.x_low, self.x_high, np.arange(columns), columns)
         return x, interval_centre(self.ordinate_low, self.ordinate_high, np.arange(rows), rows)
 

@@ -47,19 +47,19 @@ def run_sweep(spec: SweepSpec, store: Any, **options: Any) -> xr.Dataset:
 
 @checks_types(potential=Potential, orbit=LyapunovOrbit)
 def find_multipliers(potential: Potential, orbit: LyapunovOrbit) -> np.ndarray:
-    """Return the multipliers of an orbit; ValueError if the potential is not that of the orbit."""
+    """Return the multipliers of an orbit; ValueError if the orbit belongs to another potential."""
     _check_same_motion(potential, orbit.potential)
     return orbit.find_multipliers()
 
 
 @checks_types(potential=Potential, orbit=Orbit)
 def find_section_crossings(potential: Potential, orbit: Orbit) -> np.ndarray:
-    """Return the crossings of y = 0 of an orbit; ValueError if the potential is not that of the orbit."""
+    """Return the crossings of y = 0 of an orbit; ValueError if the orbit belongs to another potential."""
     if orbit.potential is not None:
         _check_same_motion(potential, orbit.potential)
     return replace(orbit, potential=potential).find_section_crossings()
 
 
-def _check_same_motion(potential: Potential, of_orbit: Potential) -> None:
-    if (potential.form, potential.rotation) != (of_orbit.form, of_orbit.rotation):
-        raise ValueError(f"potential={potential.name}: must be that of the orbit, {of_orbit.name}")
+def _check_same_motion(potential: Potential, orbit_potential: Potential) -> None:
+    if (potential.form, potential.rotation) != (orbit_potential.form, orbit_potential.rotation):
+        raise ValueError(f"potential={potential.name}: must be that of the orbit, {orbit_potential.name}")

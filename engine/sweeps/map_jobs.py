@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 def map_job(spec: MapSpec) -> Job[EscapeMap]:
-    """Return the job of a map; it continues an interrupted map, or a map with a smaller t_max."""
+    """Return the job of a map; the job continues a cached map that was interrupted or has a smaller t_max."""
     columns, rows = spec.resolution
     orbits = min(columns * rows, LARGEST_RUN)
     return Job(compute_map, (spec,), queue=Queue.FIRST_FRAME, orbits=orbits, find_earlier=_find_shorter_map)
@@ -41,7 +41,8 @@ def members_job(axis: ParameterAxis | None) -> Job[None] | None:
 
 
 def measure_job(spec: MapSpec, name: str, box: Window | None = None) -> Job[Any]:
-    """Return the job of a measure of a map, or of the starts in a box; slow measures make many short calls."""
+    """Return the job of a measure of a map, or of the starts in a box; a measure of a `place` ignores the box."""
+    # Slow measures make many short calls.
     queue = Queue.BACKGROUND if MEASURES[name].slow else Queue.LONG_CALL
     return Job(measure_map, (map_job(spec), name, None if MEASURES[name].place else box), queue=queue)
 
@@ -54,18 +55,22 @@ def sweep_job(spec: SweepSpec) -> Job[Sweep]:
 def _find_shorter_map(job: Job[EscapeMap], cache: ResultCache) -> EscapeMap | None:
     """Return the cached map with the largest t_max up to that of the job; None unless it can be resumed."""
     (spec,) = job.arguments
-    maps = (key.arguments[0] for key in cache if isinstance(key, Job) and key.function is compute_map)
+    cached_specs = (key.arguments[0] for key in cache if isinstance(key, Job) and key.function is compute_map)
     # Energies are compared first, because this is cheap and there may be thousands of maps.
-    same_energy = (key for key in maps if key.energy == spec.energy)
-    shorter = [key for key in same_energy if key.t_max <= spec.t_max and replace(key, t_max=spec.t_max) == spec]
-    found: EscapeMap | None = cache.get(map_job(max(shorter, key=lambda key: key.t_max))) if shorter else None
-    return found if found is not None and found.batch is not None else None
+    same_energy = (cached for cached in cached_specs if cached.energy == spec.energy)
+    shorter = [cached for cached in same_energy if cached.t_max <= spec.t_max and replace(cached, t_max=spec.t_max) == spec]
+    if not shorter:
+        return None
+    # The map may have been evicted since.
+    longest: EscapeMap | None = cache.get(map_job(max(shorter, key=lambda cached: cached.t_max)))
+    return longest if longest is not None and longest.batch is not None else None
 
 
 def _measure_point(point: SweepPoint, escape_map: EscapeMap, *, execution: Execution) -> xr.Dataset:
     return compute_point(point, escape_map=escape_map, execution=execution)
 
 
+# The manager passes the options; `find_result` returns the results of other jobs.
 def _compute_sweep(
     spec: SweepSpec,
     *,
@@ -75,10 +80,11 @@ def _compute_sweep(
 ) -> Sweep:
     members = members_job(spec.along)
     if members is not None:
+        # The potentials of a typed formula are found within limits before they are used here.
         find_result(members)
 
     def measure(point: SweepPoint) -> xr.Dataset:
-        measured: xr.Dataset = find_result(Job(_measure_point, (point, map_job(point.map_spec))))
-        return measured
+        dataset: xr.Dataset = find_result(Job(_measure_point, (point, map_job(point.map_spec))))
+        return dataset
 
     return compute_sweep(spec, on_frame=on_frame, execution=execution, measure=measure)

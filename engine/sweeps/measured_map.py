@@ -19,10 +19,7 @@ from engine.slices.window import Window
 from engine.systems.outcomes import Outcome
 
 MOST_JUDGED = 2000
-"""Largest number of bounded starts, drawn at random, that are judged as regular or chaotic.
-
-This number gives a 95 % interval of ± 2 %.
-"""
+"""Largest number of bounded starts, drawn at random, that are judged as regular or chaotic; it gives a 95 % interval of ± 2 %."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,11 +31,11 @@ class MeasuredMap:
     escape_map
         The map.
     box
-        Only the starts in this box count; None for all starts.
+        Window of the starts that count; None for all starts.
     execution
         How additional orbits are computed.
     effort
-        Share of the usual number of additional orbits; a tenth makes intervals up to three times as wide.
+        Number of additional orbits as a share of the usual number; a tenth makes intervals up to three times as wide.
     """
 
     escape_map: EscapeMap
@@ -63,32 +60,35 @@ class MeasuredMap:
         return compute_statistics(self.starts)
 
     def find_characters(self) -> np.ndarray:
-        """Return the `Regularity` codes, (n,), of as many bounded starts that count as `effort` allows, from new orbits."""
-        place = np.s_[:, :] if self.box is None else read_starts("escape_map", self.escape_map).place(self.box)
-        counts = np.zeros(self.escape_map.fate.shape, bool)
-        counts[place] = self.starts.fate == Fate.BOUNDED
-        pixels = np.flatnonzero(counts)
-        most = round(self.effort * MOST_JUDGED)
-        # Along a parameter, each line of pixels has its own mirror images.
-        if pixels.size > most and self.spec.plane.parameter is None:
-            pixels = np.random.default_rng(0).choice(pixels, most, replace=False)
-        regularity = compute_regularity(self._keep(pixels), execution=self.execution)
+        """Return the `Regularity` codes of bounded starts that count, (n,), from new orbits.
+
+        If there are more starts than `effort` allows, some are drawn at random.
+        """
+        index = np.s_[:, :] if self.box is None else read_starts("escape_map", self.escape_map).place(self.box)
+        is_bounded = np.zeros(self.escape_map.fate.shape, bool)
+        is_bounded[index] = self.starts.fate == Fate.BOUNDED
+        pixels = np.flatnonzero(is_bounded)
+        most_pixels = round(self.effort * MOST_JUDGED)
+        # Along a parameter all starts are judged, because each line of pixels has its own mirror images.
+        if pixels.size > most_pixels and self.spec.plane.parameter is None:
+            pixels = np.random.default_rng(0).choice(pixels, most_pixels, replace=False)
+        regularity = compute_regularity(self._map_of(pixels), execution=self.execution)
         self.execution.raise_if_cancelled()
         characters: np.ndarray = regularity.character.ravel()[pixels]
         return characters
 
-    def _keep(self, pixels: np.ndarray) -> EscapeMap:
-        """Return the map with fates only for n pixels and their mirror images, whose orbits are not computed again."""
-        spec, fate = self.spec, self.escape_map.fate
-        kept = np.zeros(fate.size, bool)
-        kept[pixels] = True
-        kept[MirrorPixels(spec, self.escape_map.x, self.escape_map.ordinate).partner[pixels]] = True
-        return replace(self.escape_map, fate=np.where(kept.reshape(fate.shape), fate, Fate.OUTSIDE))
+    def _map_of(self, pixels: np.ndarray) -> EscapeMap:
+        """Return the map with the fates of n pixels and of their mirror images; all other starts are outside."""
+        escape_map = self.escape_map
+        is_kept = np.zeros(escape_map.fate.size, bool)
+        is_kept[pixels] = True
+        is_kept[MirrorPixels(escape_map.spec, escape_map.x, escape_map.ordinate).partner[pixels]] = True
+        return replace(escape_map, fate=np.where(is_kept.reshape(escape_map.fate.shape), escape_map.fate, Fate.OUTSIDE))
 
 
 @dataclass(frozen=True)
 class SweepPoint:
-    """The measurement at one value of a sweep.
+    """The request for the measurement at one value of a sweep.
 
     Attributes
     ----------
@@ -99,7 +99,7 @@ class SweepPoint:
     measures
         Names of `MEASURES`.
     numbers
-        The fate in the sweep for each fate of the map, from 0 on, see `Member.numbers`.
+        The fate in the sweep for each fate 0, 1, … of the map, see `Member.numbers`.
     outcomes
         The outcomes of the sweep.
     """

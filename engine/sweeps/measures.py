@@ -37,11 +37,15 @@ def _describe_shares(point: SweepPoint, statistics: EscapeStatistics) -> Variabl
     for fate, number in enumerate(point.numbers):
         shares[number] = statistics.shares[fate]
         low[number], high[number] = statistics.share_intervals[fate]
-    words = {"share": "share of the interior starts", "share_low": LOW.format("share"), "share_high": HIGH.format("share")}
+    descriptions = {
+        "share": "share of the interior starts",
+        "share_low": LOW.format("share"),
+        "share_high": HIGH.format("share"),
+    }
     return {
         "outcome": ("outcome", np.arange(shares.size), _describe_fates(point)),
         **{
-            name: ("outcome", values, {"long_name": words[name], "units": "1"})
+            name: ("outcome", values, {"long_name": descriptions[name], "units": "1"})
             for name, values in (("share", shares), ("share_low", low), ("share_high", high))
         },
     }
@@ -49,14 +53,15 @@ def _describe_shares(point: SweepPoint, statistics: EscapeStatistics) -> Variabl
 
 def _describe_map(point: SweepPoint, escape_map: EscapeMap) -> Variables:
     """Return all arrays of the map, as in `EscapeMap.to_xarray`; fates have the numbers of the sweep."""
-    dataset, fate = escape_map.to_xarray(), escape_map.fate
-    renumbered = renumber(fate, np.array(point.numbers, fate.dtype))
+    dataset = escape_map.to_xarray()
+    sweep_fate = renumber(escape_map.fate, np.array(point.numbers, escape_map.fate.dtype))
     attributes = {**dataset["fate"].attrs, **_describe_fates(point)}
-    kept = {str(name): variable for name, variable in dataset.variables.items()}
-    return kept | {"fate": (dataset["fate"].dims, renumbered, attributes)}
+    variables = {str(name): variable for name, variable in dataset.variables.items()}
+    return variables | {"fate": (dataset["fate"].dims, sweep_fate, attributes)}
 
 
 def _describe_fates(point: SweepPoint) -> dict[str, str]:
+    """Return the attributes that explain the numbers of fates in the sweep."""
     return describe_codes(Fate, [outcome.label for outcome in point.outcomes])
 
 
@@ -75,7 +80,7 @@ def _find_exponent(measured: MeasuredMap) -> UncertaintyExponent | None:
 
 
 def _find_chaotic_share(measured: MeasuredMap) -> ChaoticShare | None:
-    """Return the share; None with gaps such as the discs of centres, near which deviation vectors are not computed."""
+    """Return the share; None with gaps such as the discs of bodies, near which deviation vectors are not computed."""
     return None if measured.spec.potential.gaps else compute_chaotic_share(measured.find_characters())
 
 

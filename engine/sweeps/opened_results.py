@@ -24,20 +24,20 @@ from engine.trajectories.sampled_orbits import SampledOrbits
 if TYPE_CHECKING:
     import xarray as xr
 
-# Readers of results whose files do not contain the fields of a dataclass.
+# Readers of results whose files do not contain the fields of a dataclass, by class.
 _READERS: dict[Any, Callable[[xr.Dataset], Result]] = {
     EscapeMap: read_map,
     Sweep: Sweep,
     Potential: lambda dataset: read_potential(dataset.attrs),
 }
-# Variable of stores of earlier versions that marks finished energies. Such stores are opened as plain datasets.
+# Variable that marks finished energies in stores of earlier versions, which are opened as plain datasets.
 _FORMER_FLAGS = "done"
-# Former kind of result. Its files are opened as plain datasets.
+# Kind of a result of earlier versions, whose files are opened as plain datasets.
 _FORMER_CURVES = "Curves"
-# File by which the folder of a Zarr store is recognised.
-_ZARR = "zarr.json"
+# Name of a file that every Zarr store contains.
+_ZARR_FILE = "zarr.json"
 # First bytes of HDF5 files, and thus of NetCDF 4 files.
-_HDF5 = b"\x89HDF"
+_HDF5_START = b"\x89HDF"
 
 
 @overload
@@ -54,12 +54,12 @@ def open_result(path: str | os.PathLike[str], kind: type[Any] = Result) -> Any:
         A NetCDF file that `Result.save` wrote, the folder of a Zarr store to which ``result.to_xarray()`` was written, or the
         store of a sweep.
     kind
-        The class of the result, such as `EscapeMap`, which also informs type checkers; by default any class.
+        The class of the result, such as `EscapeMap`, by default any class; type checkers use it too.
 
     Returns
     -------
-    An equal result, of any kind. A map has no integration state and cannot be resumed. `compute_sweep` accepts a `Sweep` as
-    `earlier`. The dataset of a sweep in a store is read on access; measures and analyses accept one of its maps,
+    A result equal to the written result. A map has no integration state and cannot be resumed. `compute_sweep` accepts a
+    `Sweep` as `earlier`. The dataset of a sweep in a store is read on access; measures and analyses accept a map of the sweep,
     ``sweep.dataset.sel(h=0.3)``. Sweeps and curves of earlier versions are opened as datasets.
 
     Raises
@@ -67,7 +67,7 @@ def open_result(path: str | os.PathLike[str], kind: type[Any] = Result) -> Any:
     OSError
         If the file does not exist or cannot be read.
     ValueError
-        If the file or folder contains no result, or another kind of result; xarray can open such a file.
+        If the file or folder contains no result, or a result of another class; xarray can open such a file.
 
     Examples
     --------
@@ -92,7 +92,7 @@ def _open(path: str | os.PathLike[str]) -> Any:
 
     if not Path(path).exists():
         raise FileNotFoundError(f"path={os.fspath(path)}: there is no such file or folder")
-    if (Path(path) / _ZARR).exists():
+    if (Path(path) / _ZARR_FILE).exists():
         require_package("zarr", "files")
         stored: xr.Dataset = xr.open_zarr(path, chunks=None, consolidated=False)
         if _FORMER_FLAGS in stored:
@@ -100,10 +100,10 @@ def _open(path: str | os.PathLike[str]) -> Any:
         return _read(path, stored)
     if Path(path).is_dir():
         raise ValueError(
-            f"path={os.fspath(path)}: is a folder without {_ZARR}; must be a NetCDF file or a Zarr store of format 3"
+            f"path={os.fspath(path)}: is a folder without {_ZARR_FILE}; must be a NetCDF file or a Zarr store of format 3"
         )
     with open(path, "rb") as file:
-        if file.read(len(_HDF5)) == _HDF5:
+        if file.read(len(_HDF5_START)) == _HDF5_START:
             require_package("h5netcdf", "files")
     try:
         dataset = xr.open_dataset(path)
@@ -117,47 +117,49 @@ def _open(path: str | os.PathLike[str]) -> Any:
 
 
 def _read(path: str | os.PathLike[str], dataset: xr.Dataset) -> Any:
+    """Return the result of a dataset; a ValueError names the path."""
     if dataset.attrs.get("result") == _FORMER_CURVES:
         return dataset
     kind = Result.kinds().get(str(dataset.attrs.get("result")))
     if kind is None:
-        held = dataset.attrs.get("result", "no result")
-        raise ValueError(f"path={os.fspath(path)}: holds {held}; must hold a result of this library. xarray opens it")
+        content = dataset.attrs.get("result", "no result")
+        raise ValueError(f"path={os.fspath(path)}: holds {content}; must hold a result of this library. xarray opens it")
     dataset = with_present_names(dataset)
     return _READERS[kind](dataset) if kind in _READERS else _read_fields(kind, dataset)
 
 
 def _read_fields(kind: Any, dataset: xr.Dataset) -> Any:
     """Return a result from its fields; fields that the file does not contain have their default values, or are None."""
-    hints, values = get_type_hints(kind), kind.read_parts(dataset)
+    hints = get_type_hints(kind)
+    values = kind.read_parts(dataset)
     if kind is SampledOrbits:
         dataset = _with_times_of_each(dataset)
     elif issubclass(kind, PixelAnalysis):
         dataset = _with_names_of_axes(dataset)
-    for each in fields(kind):
-        name = kind.held_as.get(each.name, each.name)
-        if each.name in values:
+    for field in fields(kind):
+        stored_name = kind.held_as.get(field.name, field.name)
+        if field.name in values:
             continue
-        if each.name in _FIELD_READERS:
-            values[each.name] = _FIELD_READERS[each.name](dataset)
-        elif name in dataset.variables:
-            values[each.name] = read_field(hints[each.name], dataset[name].values)
-        elif name in dataset.attrs:
-            values[each.name] = read_field(hints[each.name], dataset.attrs[name])
-        elif each.default is MISSING and each.default_factory is MISSING:
-            values[each.name] = None
+        if field.name in _FIELD_READERS:
+            values[field.name] = _FIELD_READERS[field.name](dataset)
+        elif stored_name in dataset.variables:
+            values[field.name] = read_field(hints[field.name], dataset[stored_name].values)
+        elif stored_name in dataset.attrs:
+            values[field.name] = read_field(hints[field.name], dataset.attrs[stored_name])
+        elif field.default is MISSING and field.default_factory is MISSING:
+            values[field.name] = None
     result = kind(**values)
     return replace(result, made_by=_read_made_by(result, dataset)) if isinstance(result, RecordedResult) else result
 
 
 def _read_made_by(result: RecordedResult, dataset: xr.Dataset) -> dict[str, Any]:
     """Return the attributes that say how a result was made, without its numbers."""
-    computed = {"result", "outcomes", *result.numbers(), *(each.name for each in fields(result))} - _REQUEST_NUMBERS
-    return {name: value for name, value in plain_attributes(dataset.attrs).items() if name not in computed}
+    result_names = {"result", "outcomes", *result.numbers(), *(field.name for field in fields(result))} - _REQUEST_NUMBERS
+    return {name: value for name, value in plain_attributes(dataset.attrs).items() if name not in result_names}
 
 
 def _with_times_of_each(dataset: xr.Dataset) -> xr.Dataset:
-    """Return the dataset of sampled orbits with the times of each orbit."""
+    """Return the dataset of sampled orbits, in which common times become the times of each orbit."""
     if "t" not in dataset.dims:
         return dataset
     dataset = dataset.rename_dims(t="sample")
@@ -165,7 +167,7 @@ def _with_times_of_each(dataset: xr.Dataset) -> xr.Dataset:
 
 
 def _with_names_of_axes(dataset: xr.Dataset) -> xr.Dataset:
-    """Return the dataset of an analysis of a map with the axes x and ordinate."""
+    """Return the dataset of an analysis of a map, in which the axes have the names x and ordinate."""
     ordinate, abscissa = next(variable.dims for variable in dataset.data_vars.values() if variable.ndim == 2)
     return dataset.rename({abscissa: "x", ordinate: "ordinate"})
 
@@ -177,5 +179,5 @@ _FIELD_READERS: Mapping[str, Callable[[xr.Dataset], Any]] = {
     "outcomes": lambda dataset: read_outcomes(dataset.attrs.get("outcomes", "[]")),
     "made_by": lambda dataset: {},
 }
-# Facts about the request that are also numbers of the result; files contain them only once.
+# Names of numbers of results that also belong to the request; files contain them only once.
 _REQUEST_NUMBERS = {"potential", "energy", "t_max"}

@@ -17,9 +17,9 @@ from engine.maps.spec import MapSpec
 from engine.sweeps.spec import SweepSpec
 from engine.sweeps.warmup import prepare_for_evidence, prepare_for_maps
 
-# Sides in pixels of the maps on which plans are based. The smaller maps show the cost that is independent of the size.
+# Sides in pixels of the coarse maps on which plans are based; two sizes show the cost that is independent of the size.
 _COARSE_SIDES = (48, 96)
-# Number of values at which these maps are computed.
+# Largest number of values at which these maps are computed.
 _PLANNED_VALUES = 12
 
 MOST_CORES = 1_000_000
@@ -50,10 +50,10 @@ class SweepPlan:
     def describe(self) -> str:
         """Return the plan in a sentence."""
         hours = self.seconds / 3600.0
-        took = f"{hours:.3g} hours" if hours >= 1.0 else f"{self.seconds:.3g} s"
-        spent = f"{hours * self.cores:.3g} core hours"
+        wall_time = f"{hours:.3g} hours" if hours >= 1.0 else f"{self.seconds:.3g} s"
+        core_time = f"{hours * self.cores:.3g} core hours"
         cores = format_count(self.cores, "core")
-        return f"{self.orbits:.3g} orbits: about {took} on {cores} ({spent}), at most {self.bytes / 1e9:.3g} GB"
+        return f"{self.orbits:.3g} orbits: about {wall_time} on {cores} ({core_time}), at most {self.bytes / 1e9:.3g} GB"
 
 
 @checks_types(spec=SweepSpec, execution=Execution)
@@ -107,19 +107,19 @@ def plan_sweep(spec: SweepSpec, *, cores: int | None = None, execution: Executio
 
 def _predict_seconds(spec: MapSpec, execution: Execution) -> float:
     """Return the processor time of one map in seconds, extrapolated linearly from two coarse maps."""
-    pixels = np.prod(spec.resolution)
-    small, large = (side * side for side in _COARSE_SIDES)
-    first, second = (measure_seconds(replace(spec, resolution=(side, side)), execution) for side in _COARSE_SIDES)
-    slope = (second - first) / (large - small)
+    pixel_count = np.prod(spec.resolution)
+    small_count, large_count = (side * side for side in _COARSE_SIDES)
+    small_seconds, large_seconds = (measure_seconds(replace(spec, resolution=(side, side)), execution) for side in _COARSE_SIDES)
+    slope = (large_seconds - small_seconds) / (large_count - small_count)
     # A slope of 0 or less is measurement noise.
-    rate = min(slope, second / large) if slope > 0.0 else second / large
-    return second + rate * max(float(pixels) - large, 0.0)
+    seconds_per_pixel = min(slope, large_seconds / large_count) if slope > 0.0 else large_seconds / large_count
+    return large_seconds + seconds_per_pixel * max(float(pixel_count) - large_count, 0.0)
 
 
 def measure_seconds(spec: MapSpec, execution: Execution) -> float:
-    """Return the processor time of a map."""
-    begun = time.thread_time()
+    """Return the processor time of a map in seconds; CancelledError if it is cancelled."""
+    begin = time.thread_time()
     # The map is computed in this thread, because its processor time is measured.
     if not compute_map(spec, execution=execution.in_this_thread()).complete:
         raise CancelledError
-    return time.thread_time() - begun
+    return time.thread_time() - begin

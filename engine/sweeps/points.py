@@ -15,7 +15,7 @@ from engine.sweeps.measures import MEASURES
 if TYPE_CHECKING:
     import xarray as xr
 
-# Share of the usual number of additional orbits. A sweep measures many maps.
+# Number of additional orbits of a measure, as a share of the usual number, because a sweep measures many maps.
 _EFFORT = 0.1
 
 
@@ -40,7 +40,7 @@ def compute_point(
 
     Returns
     -------
-    Dataset of the measures; its first dimension, of size 1, is that of the values.
+    The dataset of the measures. Its first dimension, of size 1, has the name of the varied quantity.
 
     Raises
     ------

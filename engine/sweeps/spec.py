@@ -32,7 +32,7 @@ MOST_REFINED = 1000
 """Largest number of refining values of a sweep."""
 
 EXTENT = ("requested", "refine", "count")
-"""Attributes of a sweep that only describe its values and their number."""
+"""Names of attributes of a sweep that only describe its values and their number."""
 
 
 @with_former_fields
@@ -51,9 +51,9 @@ class SweepSpec:
     resolution
         Columns and rows of the map at each value, each 1 to 4096.
     window
-        The window of all maps, see `MapSpec`. None for the default window of each map, which contains the whole interior. For the
-        measure "maps", whose arrays have common axes, None means the default window of the highest energy. In the three cases the
-        interior grows with h on both planes, so this window contains the windows of all other energies.
+        The window of all maps, see `MapSpec`. None for the default window of each map, which contains the whole interior. With
+        the measure "maps", whose arrays have common axes, None stands for the default window of the highest energy. In the three
+        cases the interior grows with h on both planes, so this window contains the windows of all other energies.
     t_max
         Integration time, dimensionless, 0 < t_max ≤ 1e8; by default as in `MapSpec`.
     use_evidence
@@ -61,12 +61,12 @@ class SweepSpec:
     measures
         Names of `MEASURES` to compute for each map; "maps" stores the arrays of the map itself.
     along
-        The parameter; None for the energy. Outcomes have the numbers defined by `ParameterAxis`.
+        The parameter; None for a sweep over energies. Outcomes have the numbers defined by `ParameterAxis`.
     energy
         h of all maps along a parameter; None otherwise.
     refine
-        Number of additional values, 0 to 1000, chosen while the sweep runs: each is the middle of the two neighbours between
-        which the share of an exit, or of bounded starts, changes most. The measure "shares" is required.
+        Number of additional values, 0 to 1000, chosen while the sweep runs. Each is the middle of the two neighbouring values
+        between which the share of an exit, or of bounded starts, changes most. The measure "shares" is required.
 
     Raises
     ------
@@ -116,6 +116,7 @@ class SweepSpec:
             raise ValueError(f"refine={self.refine}: must be 0 without the measure 'shares', which decides where to refine")
         if "maps" in measures and self.along is not None and self.window is None:
             raise ValueError("window=None: must be given for maps along a parameter, which have common axes")
+        # The map at the highest value checks the other fields and converts them.
         highest = MapSpec(
             self.potential, plane, self._energy_at(values[-1]), self.resolution, self.window, self.t_max, self.use_evidence
         )
@@ -143,8 +144,10 @@ class SweepSpec:
 
     def point(self, value: float) -> SweepPoint:
         """Return the measurement at one value; ValueError if the system has no potential there."""
-        potential, numbers, energy = self.potential, tuple(range(len(self.potential.outcomes) + 1)), self._energy_at(value)
-        if self.along is not None:
+        energy = self._energy_at(value)
+        if self.along is None:
+            potential, numbers = self.potential, tuple(range(len(self.potential.outcomes) + 1))
+        else:
             member = parameter_family(self.along).member(value)
             potential, numbers = member.potential, tuple(member.numbers_at(energy).tolist())
         window = self._common_window()
@@ -154,6 +157,7 @@ class SweepSpec:
     def attributes(self) -> dict[str, Any]:
         """Return the request in plain values, with the integrator and the package version, as attributes of the dataset."""
         made_by = self.point(self.values[-1]).map_spec.provenance() | describe_potential(self.potential)
+        # Names of attributes that differ from map to map.
         differing = {"energy"} if self.along is None else {"terms"}
         if self._common_window() is None:
             differing |= {"window", "default_window"}
@@ -175,6 +179,7 @@ class SweepSpec:
         }
 
     def _energy_at(self, value: float) -> float:
+        """Return h of the map at a value."""
         return value if self.energy is None else self.energy
 
     def _common_window(self) -> GivenWindow | None:
@@ -206,9 +211,10 @@ def _checked_values(values: Any) -> tuple[float, ...]:
 def _checked_measures(measures: Any) -> tuple[str, ...]:
     """Return the names, in the order of `MEASURES`."""
     try:
-        given = {measures} if isinstance(measures, str) else set(measures)
+        names = {measures} if isinstance(measures, str) else set(measures)
     except TypeError:
-        given = set()
-    if not given or not given <= set(MEASURES):
+        # No sequence, or items without a hash.
+        names = set()
+    if not names or not names <= set(MEASURES):
         raise ValueError(f"measures={short_repr(measures)}: must be one or more of {', '.join(MEASURES)}")
-    return tuple(name for name in MEASURES if name in given)
+    return tuple(name for name in MEASURES if name in names)

@@ -18,18 +18,19 @@ from engine.foundations.output_lock import hold_lock
 if TYPE_CHECKING:
     import xarray as xr
 
-# Attribute of the group with the number of values on the disk.
+# Name of the attribute of the group with the number of values on the disk.
 _COUNT_ATTRIBUTE = "finished"
-# Name of the temporary files of Zarr.
+# Pattern of the names of the temporary files of Zarr.
 _PARTIAL_FILES = "*.partial"
-# Attributes that follow from the potential, in words that may change from version to version.
+# Names of attributes that follow from the potential, in words that may change from version to version.
 _WORDS = ("outcomes", "exit_names")
+# Options of xarray for the format of the group.
 _OPTIONS: Mapping[str, Any] = {"consolidated": False, "zarr_format": 3}
 
 
 @contextmanager
 def open_store(path: Path, attributes: Mapping[str, Any]) -> Iterator[SweepStore]:
-    """Open the store of a request, new or with some of its values, and lock this store for this process.
+    """Open the store of a request, new or with some of its values, locked for this process.
 
     Raises
     ------
@@ -55,7 +56,9 @@ class SweepStore:
     """
 
     def __init__(self, path: Path, attributes: Mapping[str, Any]) -> None:
-        self._path, self._attributes, self._finished = path, dict(attributes), 0
+        self._path, self._attributes = path, dict(attributes)
+        # Number of values on the disk.
+        self._finished = 0
         if path.exists() and any(path.iterdir()):
             self._open()
 
@@ -72,12 +75,12 @@ class SweepStore:
         return dataset if np.all(np.diff(values) > 0.0) else dataset.sortby(axis)
 
     def append(self, point: xr.Dataset) -> None:
-        """Add a value. Its arrays are on the disk before the value counts, in case of power failure or a full disk."""
+        """Add a value. It counts only when its arrays are on the disk, in case of power failure or a full disk."""
         import zarr
 
-        how: dict[str, Any] = {"append_dim": self._attributes["axis"]} if self._finished else {"mode": "w"}
+        mode: dict[str, Any] = {"append_dim": self._attributes["axis"]} if self._finished else {"mode": "w"}
         with _naming(self._path):
-            point.assign_attrs(self._attributes | {_COUNT_ATTRIBUTE: self._finished}).to_zarr(self._path, **how, **_OPTIONS)
+            point.assign_attrs(self._attributes | {_COUNT_ATTRIBUTE: self._finished}).to_zarr(self._path, **mode, **_OPTIONS)
             for pattern in ("*/zarr.json", f"*/c/{self._finished}", f"*/c/{self._finished}/**/*"):
                 for file in self._path.glob(pattern):
                     _sync_to_disk(file)
@@ -101,8 +104,9 @@ class SweepStore:
         # If the store is not writable, this fails before anything is computed.
         with tempfile.TemporaryFile(dir=self._path):
             pass
-        for unfinished in self._path.rglob(_PARTIAL_FILES):
-            unfinished.unlink()
+        for file in self._path.rglob(_PARTIAL_FILES):
+            file.unlink()
+        # Arrays may contain a value that does not count.
         for _, array in group.arrays():
             dimensions = getattr(array.metadata, "dimension_names", None) or ()
             if self._attributes["axis"] in dimensions and array.shape[0] > self._finished:

@@ -28,13 +28,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Sweep(Result):
-    """The values of a sweep measured so far, in ascending order.
+    """The measures of a sweep at the values so far, in ascending order.
 
     Attributes
     ----------
     dataset
-        The measures along the first dimension, which is named "h" or after the parameter. Shares also have the dimension
-        "outcome", 0 for bounded orbits, and maps have those of their axes. The attributes are the request.
+        The measures along the first dimension, which has the name "h" or that of the parameter. Shares also have the dimension
+        "outcome", 0 for bounded orbits, and maps have the dimensions of their axes. The attributes are the request.
     """
 
     dataset: xr.Dataset = field(repr=False)
@@ -69,22 +69,25 @@ class Sweep(Result):
         return np.asarray(self.dataset[name].values)
 
     def interval(self, name: str) -> tuple[np.ndarray, np.ndarray]:
-        """Return the ends of the 95 % interval of a measure, or of its standard error; without errors, the measure twice."""
+        """Return the ends of the 95 % interval of a measure, or the measure minus and plus its error, 0 if it has none."""
         if f"{name}_low" in self.dataset:
             return self[f"{name}_low"], self[f"{name}_high"]
         error = self[f"{name}_error"] if f"{name}_error" in self.dataset else 0.0
         return self[name] - error, self[name] + error
 
     def columns(self) -> Mapping[str, np.ndarray]:
-        """Return all numbers by name, the energy or parameter first; shares by outcome: ``share_bounded``, ``share_exit_1``."""
+        """Return all numbers by name, the energy or parameter first.
+
+        A share gives a column for each outcome: ``share_bounded``, ``share_exit_1``.
+        """
         labels = ["bounded", *(re.sub(r"\W+", "_", outcome.label) for outcome in self.outcomes)]
-        found = {self.name: self.values}
+        columns = {self.name: self.values}
         for name in map(str, self.dataset.data_vars):
             if self.dataset[name].dims == (self.name,):
-                found[name] = self[name]
+                columns[name] = self[name]
             elif self.dataset[name].dims == (self.name, "outcome"):
-                found |= {f"{name}_{label}": share for label, share in zip(labels, self[name].T, strict=True)}
-        return found
+                columns |= {f"{name}_{label}": share for label, share in zip(labels, self[name].T, strict=True)}
+        return columns
 
     def to_xarray(self) -> xr.Dataset:
         """Return the dataset, which can be written as NetCDF and Zarr."""
@@ -97,7 +100,7 @@ class Sweep(Result):
 
 
 class PointStorage(Protocol):
-    """Keeps the measured values, in memory or in a store."""
+    """Keeps the measures at each value, in memory or in a store."""
 
     def read(self) -> xr.Dataset:
         """Return all values, in ascending order."""
@@ -126,7 +129,7 @@ def compute_sweep(
 ) -> Sweep:
     """Compute the maps of a sweep one after the other, each on all workers, and their measures.
 
-    Values are measured from coarse to fine, so that curves take shape early, but in ascending order into a store.
+    In memory, values are measured from coarse to fine, so that curves take shape early; in a store, in ascending order.
 
     Parameters
     ----------
@@ -134,10 +137,10 @@ def compute_sweep(
         The request.
     store
         Folder of a Zarr group (format 3): new, empty, or of an earlier call with the same request, which is resumed. Each value
-        is on the disk before the next one is computed, and only the map of one value is in memory. None for a sweep in memory.
+        is on the disk before the next value is computed, and only the map of one value is in memory. None for a sweep in memory.
     earlier
-        A sweep in memory whose values are not measured again: that of an interrupted call, which `on_frame` received, or of a
-        file (`open_result`). Its request must be the same except for `values` and `refine`.
+        A sweep in memory whose values are not measured again: the last sweep that `on_frame` received in an interrupted call, or
+        the sweep of a file (`open_result`). Its request must be the same except for `values` and `refine`.
     on_frame
         Called in this thread after each value with the values so far.
     measure
@@ -147,14 +150,14 @@ def compute_sweep(
 
     Returns
     -------
-    The `Sweep`, whose maps are bit-identical to those of `compute_map`. With a store, it is read from the disk on access.
+    The `Sweep`; its maps are bit-identical to those of `compute_map`. With a store, its dataset is read from the disk on access.
 
     Raises
     ------
     concurrent.futures.CancelledError
         When cancelled; a store keeps the finished values.
     ValueError
-        When no exit is defined at one of the values, `earlier` is of another request, or the store holds another sweep or other
+        When no exit is defined at one of the values, `earlier` has another request, or the store holds another sweep or other
         files.
     OSError
         When the store cannot be written to; finished values stay valid. BlockingIOError when another process computes into the
@@ -174,38 +177,38 @@ def compute_sweep(
         for energy in (spec.values[0], spec.values[-1]):
             # Undefined exits are an error before anything is computed.
             find_lyapunov_orbits(spec.potential, energy)
-    run = partial(_measure_all, spec, on_frame=on_frame, measure=measure, execution=execution)
+    measure_all = partial(_measure_all, spec, on_frame=on_frame, measure=measure, execution=execution)
     if store is None:
-        return run(_InMemory(spec, earlier), _coarse_to_fine(list(spec.values)))
-    with open_store(Path(store), spec.attributes()) as kept:
-        return run(kept, list(spec.values))
+        return measure_all(_MemoryStorage(spec, earlier), _coarse_to_fine(list(spec.values)))
+    with open_store(Path(store), spec.attributes()) as sweep_store:
+        return measure_all(sweep_store, list(spec.values))
 
 
 def _measure_all(
     spec: SweepSpec,
-    kept: PointStorage,
+    storage: PointStorage,
     order: Sequence[float],
     *,
     on_frame: Callable[[Sweep], None] | None,
     measure: Callable[[SweepPoint], xr.Dataset] | None,
     execution: Execution,
 ) -> Sweep:
-    """Measure the missing values, those of the request in the given order, and keep them."""
-    found = kept.read()
-    while (value := _next_value(spec, found, order)) is not None:
-        part = execution.part(found.sizes[spec.name], spec.count)
+    """Measure the values that the storage lacks: values of the request in the given order, then values that refine it."""
+    dataset = storage.read()
+    while (value := _next_value(spec, dataset, order)) is not None:
+        part = execution.part(dataset.sizes[spec.name], spec.count)
         part.report(lambda: 0.0)
         point = spec.point(value)
-        kept.append(measure(point) if measure is not None else compute_point(point, execution=part))
-        found = kept.read()
+        storage.append(measure(point) if measure is not None else compute_point(point, execution=part))
+        dataset = storage.read()
         if on_frame is not None:
-            on_frame(Sweep(found))
+            on_frame(Sweep(dataset))
     execution.report(lambda: 1.0)
-    return Sweep(found)
+    return Sweep(dataset)
 
 
-class _InMemory:
-    """Keeps measured values in memory."""
+class _MemoryStorage:
+    """Keeps the measures at each value in memory, see `PointStorage`."""
 
     def __init__(self, spec: SweepSpec, earlier: Sweep | None) -> None:
         self._name, self._attributes = spec.name, spec.attributes()
@@ -228,32 +231,36 @@ class _InMemory:
 
 
 def _known_points(spec: SweepSpec, earlier: Sweep, attributes: Mapping[str, object]) -> list[xr.Dataset]:
-    """Return the points of an earlier sweep at the values of the request, and as many further points as refine this sweep."""
+    """Return the points of an earlier sweep at the values of the request, and at as many other values as refine the request."""
     check_same_sweep("earlier", earlier.dataset.attrs, attributes, but=EXTENT)
-    values = earlier.values.tolist()
-    inside = [value for value in values if value not in spec.values]
-    chosen = {*spec.values, *inside[: spec.count - len(spec.values)]}
-    return [earlier.dataset.isel({spec.name: [place]}) for place, value in enumerate(values) if value in chosen]
+    earlier_values = earlier.values.tolist()
+    other_values = [value for value in earlier_values if value not in spec.values]
+    used_values = {*spec.values, *other_values[: spec.count - len(spec.values)]}
+    return [earlier.dataset.isel({spec.name: [k]}) for k, value in enumerate(earlier_values) if value in used_values]
 
 
-def _next_value(spec: SweepSpec, found: xr.Dataset, order: Sequence[float]) -> float | None:
-    """Return the next value: of the request, then in the middle of where shares change most; None at the end."""
-    values = found[spec.name].values
+def _next_value(spec: SweepSpec, dataset: xr.Dataset, order: Sequence[float]) -> float | None:
+    """Return the next value to measure; None at the end.
+
+    The values of the request come first, then the middle of the two neighbours between which shares change most.
+    """
+    values = dataset[spec.name].values
     missing = (value for value in order if value not in values)
     if (first := next(missing, None)) is not None:
         return first
     if values.size >= spec.count:
         return None
-    changes = np.abs(np.diff(found["share"].values, axis=0)).max(axis=1)
+    changes = np.abs(np.diff(dataset["share"].values, axis=0)).max(axis=1)
     steepest = int(np.argmax(changes))
     return float(0.5 * (values[steepest] + values[steepest + 1]))
 
 
 def _coarse_to_fine(values: Sequence[float]) -> list[float]:
-    """Return the ends first and then repeatedly the midpoints, so that the curves take shape early."""
+    """Return the values in another order: the ends first, and then repeatedly the midpoints."""
     count = len(values)
     order, step = [0, count - 1], 1 << (count - 1).bit_length()
     while step > 1:
         step //= 2
         order += range(step, count, 2 * step)
+    # `dict.fromkeys` drops repeated indices.
     return [values[index] for index in dict.fromkeys(order)]

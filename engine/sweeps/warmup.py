@@ -31,22 +31,22 @@ from engine.systems.potential import Potential
 # Integration time, in units of the well, of the calls that trigger compilation.
 _T_MAX = 10.0
 
-# The calling thread compiles, because the threads of pools have low priority.
+# Execution of these calls: in the calling thread, because the threads of pools have low priority.
 _EXECUTION = DEFAULT_EXECUTION.in_this_thread()
 
+# Names of the kernels of the first frame of a map and of its Lyapunov orbits.
 _MAP_KERNELS = ("step", "jets", "potential_value", "shoot", "propagate")
-"""Kernels of the first frame of a map and of its Lyapunov orbits."""
 
 
 class Compilations:
-    """Counts the running compilations of kernels for maps."""
+    """Counts the running compilations of kernels for maps, for which other compilations wait."""
 
     def __init__(self) -> None:
-        self._running = 0
+        self._running_count = 0
         self._changed = threading.Condition()
 
     def run(self, *calls: Callable[[], object]) -> None:
-        """Make the calls that compile the kernels for maps; meanwhile, compilation in the background waits."""
+        """Make calls that compile kernels for maps, one after the other."""
         self._count(1)
         try:
             for call in calls:
@@ -56,13 +56,13 @@ class Compilations:
 
     def _count(self, change: int) -> None:
         with self._changed:
-            self._running += change
+            self._running_count += change
             self._changed.notify_all()
 
     def wait(self) -> None:
         """Wait until no compilation for maps is running."""
         with self._changed:
-            self._changed.wait_for(lambda: not self._running)
+            self._changed.wait_for(lambda: not self._running_count)
 
 
 _for_maps = Compilations()
@@ -70,11 +70,11 @@ _for_maps = Compilations()
 
 def _known_kernels(potential: Potential) -> ModuleType | None:
     """Return the kernels of a potential; None if they are not generated yet, or can no longer be compiled."""
-    well = potential.in_well_units
-    if not is_generated(well.form.definition, well.well.setting):
+    scaled_potential = potential.in_well_units
+    if not is_generated(scaled_potential.form.definition, scaled_potential.well.setting):
         return None
     try:
-        return kernels_of(well)
+        return kernels_of(scaled_potential)
     except CompiledCodeLimitError:
         return None
 
@@ -110,10 +110,10 @@ def prepare_for_evidence(potential: Potential) -> None:
     """
     if not potential.tori_are_evidence:
         return
-    well, start = potential.in_well_units, _start(potential) / potential.units.state
+    scaled_potential, start = potential.in_well_units, _start(potential) / potential.units.state
     call_after_maps(
-        lambda: count_agreeing_digits(well, start, _T_MAX, execution=_EXECUTION),
-        lambda: find_section_points(well, start, 1, _T_MAX, execution=_EXECUTION),
+        lambda: count_agreeing_digits(scaled_potential, start, _T_MAX, execution=_EXECUTION),
+        lambda: find_section_points(scaled_potential, start, 1, _T_MAX, execution=_EXECUTION),
         lambda: find_invariant_curve(np.zeros((LEAST_POINTS, 2))),
     )
 
@@ -126,8 +126,8 @@ def reserve_catalogue(operations: CompiledOperations = compiled_operations) -> N
     operations
         The count of compiled code; by default that of this process.
     """
-    wells = [potential.in_well_units for potential in POTENTIALS.values()]
-    operations.reserve(code_digest(well.form.definition, well.well.setting) for well in wells)
+    potentials = [potential.in_well_units for potential in POTENTIALS.values()]
+    operations.reserve(code_digest(potential.form.definition, potential.well.setting) for potential in potentials)
 
 
 def small_map(potential: Potential, energy: float) -> MapSpec:

@@ -26,7 +26,7 @@ CASES: Mapping[str, Potential] = ByName("case", PAPER_ENERGIES, _potential)
 POTENTIALS: Mapping[str, Potential] = ByName(
     "potential", CATALOGUE, _potential, {name: entry.title for name, entry in CATALOGUE.items()}
 )
-"""All potentials included in the engine, by name: ``POTENTIALS["HH"]``; the three cases of Zotos (2014) come first."""
+"""All potentials included in the engine, by name: ``POTENTIALS["HH"]``. The three cases of Zotos (2014) come first."""
 
 
 def channel_family(n: int) -> Potential:

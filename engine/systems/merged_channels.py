@@ -1,6 +1,6 @@
-"""Exits of several channels: above a maximum of V between channels there is no wall between them, and they form one exit.
+"""Exits of several channels. Above a maximum of V between channels, there is no wall between the channels: they form one exit.
 
-The number of such an exit is the lowest number of its channels. Its name contains all numbers: "1+3".
+The number of such an exit is the lowest number of its channels. The name of the exit contains all numbers: "1+3".
 """
 
 from __future__ import annotations
@@ -39,13 +39,13 @@ def name_channels(channels: Sequence[int], names: Sequence[str] = ()) -> str:
 
 def merged_exits(mergers: Sequence[ChannelMerger], energy: float) -> tuple[MergedExit, ...]:
     """Return the exits of several channels at an energy, the lowest number first."""
-    merged = [merger.channels for merger in mergers if energy > merger.energy]
+    connected_channels = [merger.channels for merger in mergers if energy > merger.energy]
     groups: list[set[int]] = []
-    for channels in merged:
-        joined = [group for group in groups if not group.isdisjoint(channels)]
-        groups = [group for group in groups if group not in joined] + [set(channels).union(*joined)]
+    for channels in connected_channels:
+        joined_groups = [group for group in groups if not group.isdisjoint(channels)]
+        groups = [group for group in groups if group not in joined_groups] + [set(channels).union(*joined_groups)]
     # The channels close a ring around the well if maxima connect them at least as often as there are channels.
-    connections = [sum(len(channels) - 1 for channels in merged if group.issuperset(channels)) for group in groups]
+    connections = [sum(len(channels) - 1 for channels in connected_channels if group.issuperset(channels)) for group in groups]
     return tuple(
         sorted(MergedExit(tuple(sorted(group)), count >= len(group)) for group, count in zip(groups, connections, strict=True))
     )
@@ -66,8 +66,8 @@ def exit_numbers(mergers: Sequence[ChannelMerger], outcomes: int) -> np.ndarray:
 def describe_channel(channel: int, mergers: Sequence[ChannelMerger], low: float, high: float, names: Sequence[str] = ()) -> str:
     """Return the name of the exit to which a channel belongs at the energies from `low` to `high`.
 
-    With numbers as names, a separate channel is "1". Of an exit of several channels, the lowest is "1+3" and another "3 in 1+3".
-    For a range of energies: "1, 1+3 above h = 0.3".
+    A separate channel is "1". In an exit of several channels, the lowest channel is "1+3", and another is "3 in 1+3". For a range
+    of energies, the name can be "1, 1+3 above h = 0.3". Without `names`, channels have numbers as names.
     """
     changes = [(low, _name_at(channel, mergers, low, names))]
     for energy in sorted(merger.energy for merger in mergers if low <= merger.energy < high):
@@ -78,9 +78,9 @@ def describe_channel(channel: int, mergers: Sequence[ChannelMerger], low: float,
 
 
 def _name_at(channel: int, mergers: Sequence[ChannelMerger], energy: float, names: Sequence[str]) -> str:
-    own = name_channels([channel], names)
+    channel_name = name_channels([channel], names)
     for merged in merged_exits(mergers, energy):
         if channel in merged.channels:
-            together = name_channels(merged.channels, names)
-            return together if channel == merged.channels[0] else f"{own} in {together}"
-    return own
+            exit_name = name_channels(merged.channels, names)
+            return exit_name if channel == merged.channels[0] else f"{channel_name} in {exit_name}"
+    return channel_name

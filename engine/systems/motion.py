@@ -1,4 +1,4 @@
-"""Motions, which V and the rotation of the frame determine without the ends of orbits: H, Jacobi constant, related motions."""
+"""Motions: what V and the rotation of the frame determine without the ends of orbits, such as H and the Jacobi constant."""
 
 from __future__ import annotations
 
@@ -16,7 +16,9 @@ from engine.systems.forms.form import Form, hessian_matrix
 from engine.systems.forms.polynomial_form import PolynomialForm
 from engine.systems.parameters import WELL_PARAMETERS, symbol_of
 
+# x² and y².
 _SQUARES = tuple(multiply(axis, axis) for axis in (X, Y))
+# x y.
 _PRODUCT = multiply(X, Y)
 
 MASS_RANGE = 1e-6, 1e6
@@ -55,15 +57,15 @@ class Motion(Result):
         return self.form.terms
 
     def value(self, x: Any, y: Any) -> Any:
-        """Return V at (x, y); arrays broadcast."""
+        """Return V at (x, y). Arrays broadcast."""
         return self.form.value(x, y)
 
     def gradient(self, x: Any, y: Any) -> tuple[Any, Any]:
-        """Return (V_x, V_y) at (x, y); arrays broadcast."""
+        """Return (V_x, V_y) at (x, y). Arrays broadcast."""
         return self.form.gradient(x, y)
 
     def hessian(self, x: Any, y: Any) -> tuple[Any, Any, Any]:
-        """Return (V_xx, V_xy, V_yy) at (x, y); arrays broadcast."""
+        """Return (V_xx, V_xy, V_yy) at (x, y). Arrays broadcast."""
         return self.form.hessian(x, y)
 
     def hessian_matrix(self, x: float, y: float) -> np.ndarray:
@@ -78,9 +80,9 @@ class Motion(Result):
     def jacobi_constant(self, energy: Any) -> Any:
         """Return the Jacobi constant C = 2U − ẋ² − ẏ² of energies H in a rotating frame; arrays keep their shape.
 
-        C = −2H about the axis of the frame, which is the barycentre in the three-body problem, where U = Σ m/r + ½ (x² + y²). In
-        the Earth–Moon system, seen from the Moon, C = (1 − m)² − 2H. Some authors add μ(1 − μ) to C, so that their values are
-        larger by this amount. For a mass other than 1, H is divided by the mass.
+        If the origin is on the axis of the frame, C = −2H. In the three-body problem, U = Σ m/r + ½ (x² + y²), and the axis is at
+        the barycentre. In the Earth–Moon system, seen from the Moon, C = (1 − m)² − 2H. Some authors add μ(1 − μ) to C. For a
+        mass other than 1, H is divided by the mass.
 
         Raises
         ------
@@ -104,8 +106,9 @@ class Motion(Result):
     def _squared_speed_of_origin(self) -> float:
         """The square of the speed Ω d with which the origin moves around the axis of the frame.
 
-        A uniform field in Φ = … + a x + b y − ½ m Ω² (x² + y²) is the centrifugal force about an axis at (a, b)/mΩ², as in the
-        three-body problem in the coordinates of one body. If there are other quadratic terms, the axis is at the origin.
+        The terms a x + b y in Φ = … + a x + b y − ½ m Ω² (x² + y²) are part of the centrifugal force about an axis at (a, b)/mΩ²,
+        as in the three-body problem in the coordinates of one body. If there are other quadratic terms, the axis is at the
+        origin.
         """
         if not self.rotation:
             raise ValueError(f"potential={self.name}: its frame must rotate for a Jacobi constant")
@@ -138,16 +141,16 @@ class Motion(Result):
 
     @cached_property
     def reversed_in_time(self) -> Self:
-        """Return the potential with −Ω, whose orbits are those of this potential backward in time with reversed velocities."""
+        """Return the potential with −Ω. Its orbits are those of this potential backward in time, with reversed velocities."""
         return self._copy_with(rotation=-self.rotation) if self.rotation else self
 
     def with_parameters(self, omega_1: float = 1.0, omega_2: float = 1.0, epsilon: float = 1.0) -> Self:
         """Return this potential with other frequencies of its well and another strength of its perturbation.
 
-        V = ½ (ω1² x² + ω2² y²) + ε V1 of Zotos (2014), who uses ω1 = ω2 = ε = 1; V1 consists of the terms of degree 3 and higher.
-        In general V1 is V without the constant, linear and quadratic terms of its expansion about the origin. The terms with x²,
-        y² and x y are multiplied by ω1², ω2² and ω1 ω2, even if the quadratic terms are not ½ (x² + y²), so that the default
-        values give the potential itself. Constant and linear terms are unchanged.
+        V = ½ (ω1² x² + ω2² y²) + ε V1 as in Zotos (2014), who uses ω1 = ω2 = ε = 1. V1 is V without the constant, linear and
+        quadratic terms of its expansion about the origin: the terms of degree 3 and higher of a polynomial. The terms with x², y²
+        and x y are multiplied by ω1², ω2² and ω1 ω2, even if the quadratic terms are not ½ (x² + y²). The default values give the
+        potential itself. Constant and linear terms are unchanged.
 
         Parameters
         ----------
@@ -161,17 +164,17 @@ class Motion(Result):
         ValueError
             If a parameter is out of range.
         """
-        chosen = {"omega_1": omega_1, "omega_2": omega_2, "epsilon": epsilon}
-        for name, value in chosen.items():
+        parameters = {"omega_1": omega_1, "omega_2": omega_2, "epsilon": epsilon}
+        for name, value in parameters.items():
             low, high = WELL_PARAMETERS[name].range
             if not low <= checked_number(name, value) <= high:
                 raise ValueError(f"{name}={value}: must be between {low:g} and {high:g}")
         is_changed = not omega_1 == omega_2 == epsilon == 1.0
         if is_changed and not np.isfinite(self.hessian_matrix(0.0, 0.0)).all():
             raise ValueError(f"omega_1, omega_2, epsilon: V of {self.name} has no expansion about the origin; must be 1")
-        changed = ", ".join(f"{symbol_of(name)}={value:g}" for name, value in chosen.items() if value != 1.0)
+        changes = ", ".join(f"{symbol_of(name)}={value:g}" for name, value in parameters.items() if value != 1.0)
         form = self.form.with_parameters(omega_1, omega_2, epsilon)
-        return self._copy_with(name=f"{self.name} ({changed})" if changed else self.name, form=form)
+        return self._copy_with(name=f"{self.name} ({changes})" if changes else self.name, form=form)
 
     def check_at_rest(self, what: str) -> None:
         """Raise ValueError in a rotating frame, for computations that rely on time-reversal symmetry."""

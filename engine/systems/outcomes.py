@@ -1,8 +1,7 @@
 """The ends of orbits: exits over saddles, centres with a radius of collision, and an escape circle.
 
-Each kind of outcome is a class and an entry of `KINDS` with its texts. A kind of end besides the exits also has its place, its
-row for the kernels, its clause after a formula and its attribute in files. The colours of each kind are in
-`plots.pictures.palette`.
+Each kind of outcome is a class in `KINDS` with texts. A kind of end other than exits also has a place, a row for the kernels, a
+clause after a formula, and an attribute in files. The colours of each kind are in `plots.pictures.palette`.
 """
 
 from __future__ import annotations
@@ -33,15 +32,15 @@ class Kind:
     Attributes
     ----------
     key
-        Its name in files and in palettes.
+        Name of the kind in files and in palettes.
     word
         The word for the place where orbits end: "exit", "centre".
     label, action
-        Label and action of an outcome, with {} for its name. The verb of the action ends in e, for the past tense in "ed".
+        Label and action of an outcome, with {} for its name. The verb of the action must end in e, because `Outcome.past` adds d.
     event
         The event that ends an orbit, in a word: "escape", "collision".
     origin
-        Text on the beginning of an orbit that ends in this way backward in time, with {label} and {present} of the outcome.
+        Text about the beginning of an orbit that ends in this way backward in time, with {label} and {present} of the outcome.
     """
 
     key: ClassVar[str]
@@ -53,9 +52,9 @@ class Kind:
 
     @classmethod
     def outcome(cls, number: int, name: str = "", *, occurs: bool = True) -> Outcome:
-        """Return the outcome with a number among the outcomes of this kind; its default name is "exit 1", "centre 1" …"""
-        name = name or f"{cls.word} {number}"
-        return Outcome(cls, cls.label.format(name), cls.action.format(name), occurs, number)
+        """Return the outcome with a number among the outcomes of this kind. By default, its name is "exit 1", "centre 1", …"""
+        full_name = name or f"{cls.word} {number}"
+        return Outcome(cls, cls.label.format(full_name), cls.action.format(full_name), occurs, number)
 
 
 class Exit(Kind):
@@ -75,11 +74,12 @@ class End(Kind):
     side
         The side of the circle on which orbits have ended: −1 inside, 1 outside.
     clause, syntax, spellings
-        For its clause after a formula: pattern of the parameters, their description in errors, and other spellings of `word`.
+        For the clause after a formula: pattern of the parameters, description of the clause in errors, and other spellings of
+        `word`.
     most
         Largest number of such ends of a formula.
     attribute
-        Its attribute in files.
+        Name of the attribute in files.
     x, y, radius, name
         See `Centre`.
     """
@@ -111,12 +111,12 @@ class End(Kind):
 
     @classmethod
     def match(cls, clause: str) -> re.Match[str] | None:
-        """Match a clause of this kind and return its parameters; None for other clauses."""
+        """Match a clause of this kind, and return the match with its parameters; None for other clauses."""
         return re.match(rf"\s*(?:{'|'.join((cls.word, *cls.spellings))}){cls.clause}", clause)
 
     @property
     def text(self) -> str:
-        """Its clause, with all digits of the numbers."""
+        """The clause of the end, with all digits of the numbers."""
         return f"{self.word} {self.name + ' ' if self.name else ''}({self.x!r}, {self.y!r}) {self.radius!r}"
 
     @property
@@ -154,21 +154,21 @@ class End(Kind):
     def contains(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
         """Return whether points, in arrays of any shape, lie where orbits have ended."""
         distance = np.hypot(x - self.x, y - self.y)
-        ended: np.ndarray = distance < self.radius if self.side < 0 else distance > self.radius
-        return ended
+        has_ended: np.ndarray = distance < self.radius if self.side < 0 else distance > self.radius
+        return has_ended
 
 
 class Centre(End):
-    """A body; an orbit that enters the disc around the body has collided with it.
+    """A body. An orbit that enters the disc around the body has collided with it.
 
     Parameters
     ----------
     x, y
-        Its place, finite, dimensionless.
+        Place of the body, finite, dimensionless.
     radius
         Radius of the disc, 1e-6 to 1e6, dimensionless.
     name
-        Its name in texts, such as "the Moon"; empty to use its number.
+        Name of the body in texts, such as "the Moon"; empty to use its number.
 
     Raises
     ------
@@ -183,7 +183,7 @@ class Centre(End):
 
 @dataclass(frozen=True)
 class EscapeCircle(End):
-    """The circle around the origin beyond which orbits have escaped; with such a circle, saddles are not exits."""
+    """The circle around the origin beyond which orbits have escaped. With such a circle, saddles are not exits."""
 
     key, word, attribute = "escape", "escape", "escape_radius"
     label, action = "escape", "escape beyond the escape radius"
@@ -207,7 +207,7 @@ class EscapeCircle(End):
         return f"escape radius {format_number(self.radius)}"
 
     def moved(self, x: float, y: float) -> Self:
-        """Return the circle itself, which is around the origin before and after."""
+        """Return the circle itself, which is around any origin."""
         return self
 
     @classmethod
@@ -237,15 +237,15 @@ class Outcome:
     Attributes
     ----------
     kind
-        The class of the outcome, with its texts: an exit over a saddle, a collision with a centre, or the escape circle.
+        The class of the outcome: an exit over a saddle, a collision with a centre, or the escape circle.
     label
-        Its name in legends and tables: "exit 1", "collision with the Moon", "escape".
+        Name in legends and tables: "exit 1", "collision with the Moon", "escape".
     action
         The action of orbits: "escape through exit 1", "collide with the Moon", "escape beyond the escape radius".
     occurs
         Whether orbits can have this outcome; False for a channel that belongs to an exit of a lower number.
     number
-        Its number, from 1, among the outcomes of its kind, which determines its colour.
+        Number, from 1, among the outcomes of the kind. It determines the colour.
     """
 
     kind: type[Kind]
@@ -283,7 +283,7 @@ class Outcome:
 
 
 def outcomes_of(channels: int, ends: Iterable[End]) -> tuple[Outcome, ...]:
-    """Return the outcomes of a system in the order of fates; the first one has the fate 1."""
+    """Return the outcomes of a system in the order of fates. The first outcome has the fate 1."""
     groups = [list(group) for _, group in groupby(ends, type)]
     return (
         *(Exit.outcome(channel) for channel in range(1, channels + 1)),
@@ -300,5 +300,6 @@ def read_outcomes(text: str) -> tuple[Outcome, ...]:
     """Read outcomes from an attribute."""
     rows = json.loads(text)
     keys = [key for key, *_ in rows]
-    numbers = [keys[:place].count(key) + 1 for place, key in enumerate(keys)]
+    # The number of an outcome among the outcomes of its kind.
+    numbers = [keys[:index].count(key) + 1 for index, key in enumerate(keys)]
     return tuple(replace(Outcome(KINDS[key], *rest), number=number) for (key, *rest), number in zip(rows, numbers, strict=True))

@@ -10,7 +10,7 @@ from engine.foundations.validation import LARGEST_NUMBER
 
 
 class Parameter(NamedTuple):
-    """The symbol of a parameter in texts, its neutral value, and its legal values, dimensionless."""
+    """The symbol of a parameter in texts, its neutral value, and its smallest and largest legal value, dimensionless."""
 
     symbol: str
     default: float
@@ -28,9 +28,9 @@ WELL_PARAMETERS: Mapping[str, Parameter] = MappingProxyType(
         ROTATION: Parameter("Ω", 0.0, (-LARGEST_NUMBER, LARGEST_NUMBER)),
     }
 )
-"""The parameters by name: those of `Potential.with_parameters`, and the rate of `Potential.in_rotating_frame`."""
+"""The parameters by name: of `Potential.with_parameters`, and the rate of `Potential.in_rotating_frame`."""
 
 
 def symbol_of(name: str) -> str:
-    """Return the symbol of a parameter; a letter of a formula is its own symbol."""
+    """Return the symbol of a parameter. A letter of a formula is its own symbol."""
     return WELL_PARAMETERS[name].symbol if name in WELL_PARAMETERS else name

@@ -1,6 +1,6 @@
-"""Potentials: a formula, the rotation of its frame, and the ends of orbits besides its exits.
+"""Potentials: a formula, the rotation of its frame, and the ends of orbits other than exits.
 
-All else is derived from these: critical points, exits and units by `engine.systems.well`, kernels by `engine.integrator`.
+All else is derived from these data: critical points, exits and units by `engine.systems.well`, kernels by `engine.integrator`.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 # Default of `centres` and `escape_radius`, which leaves `ends` unchanged.
 _AS_IN_ENDS: Any = ...
 
-# Default t_max if bounded orbits are integrated to the end, in units of 1/Ω.
+# Default t_max if bounded orbits are integrated to the end, in units of 1/|Ω|.
 _SHORT_TIME = 1000.0
 
 
@@ -44,16 +44,16 @@ class Potential(Motion):
     In a frame that rotates at the rate Ω, V stands for the effective potential Φ, px and py for mẋ and mẏ, and H for the Jacobi
     integral m(ẋ² + ẏ²)/2 + Φ: mẍ = 2mΩẏ − Φ_x, mÿ = −2mΩẋ − Φ_y. See `in_rotating_frame`.
 
-    Orbits with a mass m are those with a mass of 1 at the same energy, with momenta and times multiplied by √m. They are computed
-    in this way; multiplying by √m rounds unless √m is a power of 2.
+    Orbits with a mass m are orbits with a mass of 1 at the same energy, with momenta and times multiplied by √m, and are computed
+    in this way. The multiplication by √m rounds, unless √m is a power of 2.
 
-    Without an escape radius, orbits leave a well, or a centre, at the origin through the exits over its saddles. With an escape
+    Without an escape radius, orbits leave the well, or the centre, at the origin through exits over saddles. With an escape
     radius, saddles are not exits, and orbits end beyond this radius. See `with_outcomes`.
 
     Parameters
     ----------
     name
-        Display name, which has no influence on any result; potentials with different names can be equal.
+        Display name. It has no influence on any result, and potentials with different names can be equal.
     form
         The function V. For a polynomial Σ c x^i y^j, its terms ((i, j, c), …), with exponents from 0 to 12, coefficients of at
         most 1e90 in magnitude, and each (i, j) only once. `parse_formula` makes the forms of other formulas.
@@ -64,16 +64,16 @@ class Potential(Motion):
     escape_radius
         Distance from the origin beyond which orbits have escaped, 1e-6 to 1e6, dimensionless; None for exits over saddles.
     origin
-        (x, y) of the origin of the axes in the coordinates of the formula, see `at_minimum`; it has no influence on any result.
+        (x, y) of the origin of the axes in the coordinates of the formula, see `at_minimum`. It has no influence on any result.
     lineage
-        The way in which its well is found.
+        The way in which the well is found.
     system
         The `System` of this potential; None if it was made in another way.
     ends
-        Ends of orbits besides exits, such as a `Centre`; `centres` and `escape_radius` replace those of their kinds.
+        Ends of orbits other than exits, such as a `Centre`. `centres` and `escape_radius` replace ends of their kinds.
     exit_names
-        Names of the exits in channel order, such as ("L2", "L1"), which have no influence on any result; they are used if there
-        are as many exits as names.
+        Names of the exits in channel order, such as ("L2", "L1"). They have no influence on any result, and are used if there are
+        as many exits as names.
     mass
         m, 1e-6 to 1e6, dimensionless.
 
@@ -160,22 +160,22 @@ class Potential(Motion):
 
     @property
     def gaps(self) -> tuple[End, ...]:
-        """The ends that are gaps in the interior, such as the discs of centres; V may be singular there."""
+        """The ends that are gaps in the interior, such as the discs of centres. V may be singular there."""
         return tuple(end for end in self.ends if end.side < 0)
 
     @property
     def critical_points(self) -> np.ndarray:
-        """All points (n, 2) with ∇V = 0; a point at the origin is exactly (0, 0). ValueError if the points form a curve."""
+        """All points with ∇V = 0, of shape (n, 2). A point at the origin is exactly (0, 0). ValueError for a curve of points."""
         return self.well.critical_points
 
     @property
     def saddles(self) -> np.ndarray:
-        """The saddles (n, 2) that lead out of the well at the origin, in channel order; none with an escape radius."""
+        """The saddles that lead out of the well at the origin, of shape (n, 2), in channel order; none with an escape radius."""
         return self.well.saddles
 
     @property
     def channels(self) -> int:
-        """The number of exit channels; they are numbered from 1, counterclockwise from the +x axis."""
+        """The number of exit channels. Channels are numbered from 1, counterclockwise from the +x axis."""
         return self.well.channels
 
     @property
@@ -188,7 +188,7 @@ class Potential(Motion):
 
     @property
     def outcomes(self) -> tuple[Outcome, ...]:
-        """The possible ends of orbits: the exits in channel order, then `ends`; the first one is fate 1."""
+        """The possible ends of orbits: the exits in channel order, then `ends`. The first has the fate 1."""
         return self.outcomes_at(-np.inf) if self.exit_names else self.well.outcomes
 
     def outcomes_at(self, energy: float | tuple[float, float]) -> tuple[Outcome, ...]:
@@ -209,15 +209,15 @@ class Potential(Motion):
         return self if self.units == WellUnits() else scaled_to_well(self)
 
     def continued(self, family: str, found: np.ndarray, maxima: np.ndarray, around: Sequence[Sequence[int]]) -> Potential:
-        """Return the potential as a member of a family, with known exits; the parameters are those of `ContinuedWell`."""
+        """Return the potential as a member of a family, with known exits. The parameters are those of `ContinuedWell`."""
         return replace(self, lineage=Lineage(family, partial(ContinuedWell, found=found, maxima=maxima, around=around)))
 
     def _copy_with(self, **values: Any) -> Potential:
-        """Return a copy with other values of some attributes, whose well is searched anew."""
+        """Return a copy with other values of some attributes. Its well is searched again."""
         return replace(self, lineage=SEARCHED, system=None, **values)
 
     def at_minimum(self, x: float = 0.0, y: float = 0.0) -> Potential:
-        """Return the potential with its axes moved to the minimum nearest to a place, so that orbits leave the well there.
+        """Return the potential with its axes moved to the minimum nearest to a place. Exits are then those of the well there.
 
         Energies are unchanged. A frame that rotates turns about the new origin.
 
@@ -240,8 +240,8 @@ class Potential(Motion):
         """
         place = np.array([checked_number("x", x), checked_number("y", y)])
         points = self.well.critical_points
-        along_x, _, along_y = self.hessian(*points.T)
-        minima = points[(self.well.critical_indices > 0.0) & (along_x + along_y > 0.0)]
+        vxx, _, vyy = self.hessian(*points.T)
+        minima = points[(self.well.critical_indices > 0.0) & (vxx + vyy > 0.0)]
         if not len(minima):
             raise ValueError(f"potential={self.name}: V must have a minimum to which its axes can be moved")
         nearest = minima[np.argmin(np.hypot(*(minima - place).T))].tolist()
@@ -250,11 +250,11 @@ class Potential(Motion):
         return self._copy_with(form=self.form.moved(*nearest), ends=ends, origin=origin, exit_names=())
 
     def with_outcomes(self, centres: Sequence[Centre] = (), escape_radius: float | None = None) -> Potential:
-        """Return the potential with other centres and another escape radius; the parameters are those of `Potential`."""
+        """Return the potential with other centres and another escape radius. The parameters are those of `Potential`."""
         return self._copy_with(centres=centres, escape_radius=escape_radius)
 
     def checked_t_max(self, t_max: Any, longest: float = LONGEST_TIME, *, name: str = "t_max") -> float:
-        """Return `t_max`, above 0, as a float. The limit `longest` is in the time unit of the well if that exceeds 1.
+        """Return `t_max`, above 0, as a float. If the time unit of the well exceeds 1, the limit `longest` is in this unit.
 
         None stands for 1e5, or for a shorter time if bounded orbits are integrated to the end.
         """
@@ -274,7 +274,7 @@ class Potential(Motion):
     def tori_are_evidence(self) -> bool:
         """Whether an invariant torus counts as evidence that its orbits are bounded for ever: only in a well at rest.
 
-        In a rotating frame, and with ends besides the exits, this evidence has not been tested.
+        In a rotating frame, and with ends other than exits, this evidence has not been tested.
         """
         return not self.rotation and not self.ends
 

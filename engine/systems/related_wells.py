@@ -26,7 +26,7 @@ class ScaledWell(Well):
     Attributes
     ----------
     stated
-        The same well in the units of the original potential. Its exits, divided by powers of 2, are the exits.
+        The same well in the units of the original potential. Its exits are converted by powers of 2.
     """
 
     stated: Well
@@ -68,9 +68,9 @@ class ContinuedWell(Well):
     Attributes
     ----------
     found
-        (n, 2) the saddles of all exits, in any order.
+        The saddles of all exits, of shape (n, 2), in any order.
     maxima
-        (m, 2) the maxima between exits.
+        The maxima between exits, of shape (m, 2).
     around
         For each maximum, the indices of its exits among the saddles.
     """
@@ -87,8 +87,9 @@ class ContinuedWell(Well):
     @cached_property
     def channel_mergers(self) -> tuple[ChannelMerger, ...]:
         """See `Well.channel_mergers`."""
-        channel = np.array([1 + np.argmin(np.hypot(*(self.saddles - saddle).T)) for saddle in self.found], int)
-        return self._mergers_at(self.maxima, [np.sort(channel[list(places)]) for places in self.around])
+        # The channel of each saddle in `found`.
+        channels = np.array([1 + np.argmin(np.hypot(*(self.saddles - saddle).T)) for saddle in self.found], int)
+        return self._mergers_at(self.maxima, [np.sort(channels[list(indices)]) for indices in self.around])
 
 
 @dataclass(frozen=True)
@@ -98,10 +99,10 @@ class Lineage:
     Attributes
     ----------
     family
-        Name of the family from which the exits were continued (`ParameterFamily`), or empty. Continued exits may differ in the
-        last bit from exits found from the critical points, so that caches keep their results apart.
+        Name of the family from which the exits were continued (`ParameterFamily`); otherwise empty. Continued exits may differ in
+        the last bit from exits found from the critical points, so caches keep their results apart.
     make_well
-        Makes the well from form, rotation, ends and mass; it has no influence on any result.
+        Makes the well from form, rotation, ends and mass. It has no influence on any result.
     """
 
     family: str = ""

@@ -19,7 +19,7 @@ TYPED = "typed"
 """The case of a potential that is given by a formula."""
 
 SHOWN_DIGITS = 12
-"""Significant digits of the coefficients in formulas. With 12 digits, 1.46²/2 is 1.0658, without a rounding error."""
+"""Number of significant digits of coefficients in formulas. With 12 digits, 1.46²/2 is 1.0658, without a rounding error."""
 
 
 @dataclass(frozen=True)
@@ -36,8 +36,8 @@ class System:
         V(x, y) as text for a formula; otherwise empty.
     parameters
         Values by name: omega_1, omega_2 and epsilon as in `Potential.with_parameters`, rotation as in
-        `Potential.in_rotating_frame`, and the letters of the formula as in `parse_formula`. Parameters with their default value,
-        `default_of`, are left out.
+        `Potential.in_rotating_frame`, and the letters of the formula as in `parse_formula`. Parameters with their default values
+        (see `default_of`) are left out.
 
     Raises
     ------
@@ -53,11 +53,12 @@ class System:
         check_type("case", self.case, str)
         check_type("formula", self.formula, str)
         check_type("parameters", self.parameters, Mapping)
+        # This raises the error for an unknown case.
         _ = self.entry
-        # The parameters are sorted, so that the order in which they were chosen changes neither titles nor links.
-        places = {name: place for place, name in enumerate(WELL_PARAMETERS)}
-        ordered = sorted(self.parameters, key=lambda name: (places.get(name, len(places)), name))
-        changed = {name: self.parameters[name] for name in ordered if self.parameters[name] != self.default_of(name)}
+        # Sort the parameters, so that the order in which they were chosen changes neither titles nor links.
+        positions = {name: position for position, name in enumerate(WELL_PARAMETERS)}
+        sorted_names = sorted(self.parameters, key=lambda name: (positions.get(name, len(positions)), name))
+        changed = {name: self.parameters[name] for name in sorted_names if self.parameters[name] != self.default_of(name)}
         object.__setattr__(self, "parameters", changed)
 
     def __hash__(self) -> int:
@@ -78,7 +79,7 @@ class System:
 
     @property
     def entry(self) -> CatalogueEntry:
-        """Its entry of the catalogue; for a typed formula, an equivalent entry."""
+        """The entry of the catalogue; for a typed formula, an equivalent entry."""
         return CatalogueEntry("", "Typed potential", self.formula) if self.case == TYPED else CATALOGUE[self.case]
 
     @property
@@ -114,7 +115,7 @@ class System:
 
     @property
     def as_typed(self) -> System:
-        """The same system given by a formula, in which wells have coefficients and other systems have letters."""
+        """The same system given by a formula. The formula of a well has coefficients, and any other formula has letters."""
         if self.case == TYPED:
             return self
         if self.entry.is_well:
@@ -140,7 +141,7 @@ class System:
 
     @property
     def formula_shown(self) -> str:
-        """V(x, y) as text, with the values of parameters and letters, and with any shift of the axes."""
+        """V(x, y) as text, with the values of parameters and letters, and with the shift of the axes, if any."""
         if self.case != TYPED and not (self.parameters and self.entry.is_well):
             return self.entry.formula
         if self.value_of(ROTATION):
@@ -160,6 +161,6 @@ def _potential(system: System) -> Potential:
         raise ValueError(f"parameters: {reprlib.repr(unknown[0])} is not a parameter of {system.case}; it has {legal}")
     values = {**entry.parameters, **system.parameters}
     letters = {name: value for name, value in values.items() if name not in WELL_PARAMETERS}
-    well = {name: value for name, value in values.items() if name in WELL_PARAMETERS and name != ROTATION}
-    found = parse_formula(entry.formula, entry.name, letters).with_parameters(**well).in_rotating_frame(values[ROTATION])
-    return replace(found, system=system)
+    well_values = {name: value for name, value in values.items() if name in WELL_PARAMETERS and name != ROTATION}
+    potential = parse_formula(entry.formula, entry.name, letters).with_parameters(**well_values)
+    return replace(potential.in_rotating_frame(values[ROTATION]), system=system)

@@ -1,4 +1,4 @@
-"""Quantities derived from a potential: critical points, numbered exits, symmetries and units, each computed at its first use."""
+"""Quantities derived from a potential, each computed at its first use: critical points, numbered exits, symmetries, units."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ from engine.systems.outcomes import End, EscapeCircle, Exit, Outcome, outcomes_o
 from engine.systems.well_units import WellUnits, nearest_power_of_two
 
 EQUAL_ENERGY_TOLERANCE = 1e-12
-"""Saddles whose energies differ by less than this, in units of the energy of the well, count as equally high."""
+"""Largest difference of the energies of saddles that count as equally high, in units of energy of the well."""
 
-# Coordinates below this share of the distance from the origin are rounding errors of zero, whose sign would change the channel
+# Coordinates below this share of the distance from the origin are rounding errors of zero. Their sign would change the channel
 # numbers on the +x axis.
 _ROUNDING = 1e-13
 
 # Typical radius of orbits in units of the escape radius.
 _TYPICAL_SHARE = 0.1
-# Number of points on a circle of typical radius.
+# Number of points on a circle of the typical radius.
 _CIRCLE_POINTS = 64
 
 
@@ -56,15 +56,15 @@ class Well(ReadOnlyArrays):
 
     @property
     def critical_points(self) -> np.ndarray:
-        """All points (n, 2) with ∇V = 0; a point at the origin is exactly (0, 0). ValueError if the points form a curve.
+        """All points with ∇V = 0, of shape (n, 2). A point at the origin is exactly (0, 0). ValueError for a curve of points.
 
-        For a formula that is not a polynomial, these are all points of a region, see `engine.systems.forms.stationary_points`.
+        For a formula that is not a polynomial, these are the points of a region, see `engine.systems.forms.stationary_points`.
         """
         return self._points_and_indices[:, :2]
 
     @property
     def critical_indices(self) -> np.ndarray:
-        """The index (n,) of each critical point: 1 for a minimum or a maximum, −1 for a saddle, 0 for a degenerate point."""
+        """The indices of the critical points, of shape (n,): 1 for a minimum or maximum, −1 for a saddle, 0 if degenerate."""
         return self._points_and_indices[:, 2]
 
     @cached_property
@@ -73,11 +73,11 @@ class Well(ReadOnlyArrays):
 
     @cached_property
     def saddles(self) -> np.ndarray:
-        """Saddle points (n, 2), ∇V = 0 and V_xx V_yy − V_xy² < 0, that lead out of the well at the origin.
+        """Saddles that lead out of the well at the origin, of shape (n, 2): ∇V = 0 and V_xx V_yy − V_xy² < 0.
 
-        The saddles are in counterclockwise order from the +x axis: channel k passes over ``saddles[k - 1]``. Only saddles from
-        which exactly one of the two lines of steepest descent ends at the origin are exits. Zotos (2014) prints the saddle test
-        without the square of V_xy, which is a misprint. With an escape radius there are no exit saddles.
+        The saddles are in counterclockwise order from the +x axis: channel k passes over ``saddles[k - 1]``. A saddle is an exit
+        if exactly one of the two lines of steepest descent from the saddle ends at the origin. Zotos (2014) prints the saddle
+        test without the square of V_xy, which is a misprint. With an escape radius, there are no exit saddles.
         """
         if self.escape_radius is not None:
             return read_only(np.empty((0, 2)))
@@ -87,16 +87,16 @@ class Well(ReadOnlyArrays):
 
     def _in_channel_order(self, points: np.ndarray) -> np.ndarray:
         """Sort exit saddles (n, 2) counterclockwise from the +x axis, and make zeros and mirror symmetry exact."""
-        points = np.where(np.abs(points) < _ROUNDING * np.hypot(*points.T)[:, None], 0.0, points)
-        angle = np.arctan2(points[:, 1], points[:, 0]) % (2 * np.pi)
-        points = points[np.argsort(angle, kind="stable")]
+        rounded = np.where(np.abs(points) < _ROUNDING * np.hypot(*points.T)[:, None], 0.0, points)
+        angle = np.arctan2(rounded[:, 1], rounded[:, 0]) % (2 * np.pi)
+        saddles = rounded[np.argsort(angle, kind="stable")]
         if self.mirror_in_x:
-            _make_symmetric(points)
-        return read_only(points)
+            _make_symmetric(saddles)
+        return read_only(saddles)
 
     @property
     def channels(self) -> int:
-        """The number of exit channels; they are numbered from 1, counterclockwise from the +x axis."""
+        """The number of exit channels. Channels are numbered from 1, counterclockwise from the +x axis."""
         return len(self.saddles)
 
     @cached_property
@@ -123,14 +123,14 @@ class Well(ReadOnlyArrays):
     def is_closed_at(self, energy: Any) -> Any:
         """Return whether no orbit of the well ends at an energy: the energy is below all saddles, and there are no other ends.
 
-        With an escape radius, the result is always False. In a rotating frame the same holds, because orbits cannot pass the
-        zero-velocity curve V = h.
+        With an escape radius, the result is always False. The criterion also holds in a rotating frame, because orbits cannot
+        pass the zero-velocity curve V = h.
         """
         return np.logical_and(np.asarray(energy) <= self.escape_energy, not self.ends)
 
     @cached_property
     def outward_directions(self) -> np.ndarray:
-        """Unit vectors (channels, 2) along the unstable direction of each exit saddle, pointing away from the well."""
+        """Unit vectors along the unstable directions of the exit saddles, away from the well, of shape (channels, 2)."""
         directions = np.array([self._unstable_direction(saddle) for saddle in self.saddles]).reshape(-1, 2)
         if self.mirror_in_x:
             for k in np.flatnonzero(self.saddles[:, 0] < 0.0):
@@ -138,18 +138,20 @@ class Well(ReadOnlyArrays):
         return read_only(directions)
 
     def _unstable_direction(self, saddle: np.ndarray) -> np.ndarray:
-        direction: np.ndarray = np.linalg.eigh(hessian_matrix(self.form, *saddle))[1][:, 0]
-        direction = np.where(np.abs(direction) < _ROUNDING, 0.0, direction)
+        _, eigenvectors = np.linalg.eigh(hessian_matrix(self.form, *saddle))
+        # The first eigenvector belongs to the negative eigenvalue.
+        unstable = eigenvectors[:, 0]
+        direction: np.ndarray = np.where(np.abs(unstable) < _ROUNDING, 0.0, unstable)
         return direction if direction @ saddle > 0 else -direction
 
     @cached_property
     def outcomes(self) -> tuple[Outcome, ...]:
-        """The possible ends of orbits: exits in channel order, then `ends`; the first one is fate 1."""
+        """The possible ends of orbits: exits in channel order, then `ends`. The first has the fate 1."""
         return outcomes_of(self.channels, self.ends)
 
     @property
     def setting(self) -> Setting:
-        """The properties besides the formula on which compiled functions depend."""
+        """The properties other than the formula on which compiled functions depend."""
         return Setting(self.channels, tuple(end.side for end in self.ends), self.rotation != 0.0)
 
     @cached_property
@@ -160,17 +162,20 @@ class Well(ReadOnlyArrays):
         """
         if not self.channels:
             return ()
-        form, points, indices = self.form, self.critical_points, self.critical_indices
+        form = self.form
+        points, indices = self.critical_points, self.critical_indices
+        # Indices of the exit saddles among the critical points.
         saddles = np.array([np.argmin(np.hypot(*(points - saddle).T)) for saddle in self.saddles], int)
-        beside = stored_points("maxima", form, lambda: find_maxima_beside(form, points, indices, saddles))
-        maxima = np.flatnonzero(beside.sum(axis=0) > 1)
-        return self._mergers_at(points[maxima], [np.flatnonzero(beside[:, k]) + 1 for k in maxima])
+        # Whether each critical point is a maximum beside each exit, of shape (channels, points).
+        is_beside = stored_points("maxima", form, lambda: find_maxima_beside(form, points, indices, saddles))
+        maxima = np.flatnonzero(is_beside.sum(axis=0) > 1)
+        return self._mergers_at(points[maxima], [np.flatnonzero(is_beside[:, k]) + 1 for k in maxima])
 
     def _mergers_at(self, maxima: np.ndarray, channels: Sequence[np.ndarray]) -> tuple[ChannelMerger, ...]:
         """Return the mergers at maxima (n, 2) between channels, the lowest first."""
-        places = zip(maxima.tolist(), channels, strict=True)
+        pairs = zip(maxima.tolist(), channels, strict=True)
         return tuple(
-            sorted(ChannelMerger(float(self.form.value(x, y)), x, y, tuple(around.tolist())) for (x, y), around in places)
+            sorted(ChannelMerger(float(self.form.value(x, y)), x, y, tuple(around.tolist())) for (x, y), around in pairs)
         )
 
     def merged_exits(self, energy: float) -> tuple[MergedExit, ...]:
@@ -178,23 +183,23 @@ class Well(ReadOnlyArrays):
         return merged_exits(self.channel_mergers, energy)
 
     def exit_numbers(self, energy: Any) -> np.ndarray:
-        """Return the number of the exit to which each fate belongs, of shape (…, outcomes + 1) at energies (…); entry 0 is 0."""
-        below = np.searchsorted([merger.energy for merger in self.channel_mergers], np.asarray(energy), side="left")
-        numbers: np.ndarray = exit_numbers(self.channel_mergers, len(self.outcomes))[below]
+        """Return the number of the exit to which each fate belongs, of shape (…, outcomes + 1) at energies (…). Entry 0 is 0."""
+        merger_count = np.searchsorted([merger.energy for merger in self.channel_mergers], np.asarray(energy), side="left")
+        numbers: np.ndarray = exit_numbers(self.channel_mergers, len(self.outcomes))[merger_count]
         return numbers
 
     def outcomes_at(self, energy: float | tuple[float, float], given: Sequence[str] = ()) -> tuple[Outcome, ...]:
         """Return `outcomes` with the names that exits have at an energy, or in a range of energies (low, high).
 
-        given: the names of all channels; by default an exit is called "exit 1".
+        given: the names of all channels. By default, an exit is called "exit 1".
         """
         low, high = energy if isinstance(energy, tuple) else (energy, energy)
         if not (given or self.merged_exits(high)):
             return self.outcomes
-        lowest = self.exit_numbers(low)
+        numbers_at_low = self.exit_numbers(low)
         names = [describe_channel(channel, self.channel_mergers, low, high, given) for channel in range(1, self.channels + 1)]
         exits = [
-            Exit.outcome(channel, name if given else f"{Exit.word} {name}", occurs=bool(lowest[channel] == channel))
+            Exit.outcome(channel, name if given else f"{Exit.word} {name}", occurs=bool(numbers_at_low[channel] == channel))
             for channel, name in enumerate(names, 1)
         ]
         return (*exits, *self.outcomes[self.channels :])
@@ -216,17 +221,19 @@ class Well(ReadOnlyArrays):
 
     @cached_property
     def mirror_channels(self) -> np.ndarray:
-        """The image of each fate under x → −x, of shape (outcomes + 1,); entry 0 is 0. Only valid if `mirror_in_x`."""
-        of_kinds = [np.array([(end.x, end.y) for end in group]) for _, group in groupby(self.ends, type)]
+        """The mirror image of each fate under x → −x, of shape (outcomes + 1,). Entry 0 is 0. Requires `mirror_in_x`."""
+        ends_by_kind = [np.array([(end.x, end.y) for end in group]) for _, group in groupby(self.ends, type)]
         images = [np.arange(1)]
-        for points in (self.saddles, *of_kinds):
+        for points in (self.saddles, *ends_by_kind):
             if len(points):
                 distance = np.hypot(*(points[:, None] - points * [-1.0, 1.0]).T)
-                images.append(sum(map(len, images)) + np.argmin(distance, axis=0))
+                # Fates of a kind follow the fates of the kinds before.
+                first_fate = sum(map(len, images))
+                images.append(first_fate + np.argmin(distance, axis=0))
         return read_only(np.concatenate(images).astype(np.int8))
 
     def mirror_numbers(self, energy: Any) -> np.ndarray:
-        """Return the image of each fate under x → −x, of shape (…, outcomes + 1) at energies (…). Requires `mirror_in_x`."""
+        """Return the mirror image of each fate at energies (…), of shape (…, outcomes + 1). Requires `mirror_in_x`."""
         numbers: np.ndarray = self.exit_numbers(energy)[..., self.mirror_channels]
         return numbers
 
@@ -260,11 +267,14 @@ class Well(ReadOnlyArrays):
 
     @cached_property
     def _fastest_light_frequency(self) -> float:
-        """The fastest frequency for a mass of 1."""
+        """The value of `fastest_frequency` for a mass of 1."""
         if self.is_minimum or not self.typical_radius:
             matrix = hessian_matrix(self.form, 0.0, 0.0)
+            if not np.isfinite(matrix).all():
+                return np.nan
+            # Without a well, the square root of a negative eigenvalue is NaN.
             with np.errstate(invalid="ignore"):
-                return float(np.sqrt(np.linalg.eigvalsh(matrix)[-1])) if np.isfinite(matrix).all() else np.nan
+                return float(np.sqrt(np.linalg.eigvalsh(matrix)[-1]))
         slope = np.hypot(*self.form.gradient(*self._typical_circle))
         return float(np.sqrt(slope[np.isfinite(slope)].mean() / self.typical_radius))
 
@@ -278,9 +288,9 @@ class Well(ReadOnlyArrays):
     def units(self) -> WellUnits:
         """The units of the well, rounded to powers of 2 for a mass of 1; all are 1 for the three cases of Zotos (2014).
 
-        The unit of length is the distance of the nearest exit saddle, and the unit of time is 1/ω of the fastest small
-        oscillation in the well, see `fastest_frequency`. With an escape radius the unit of length is a tenth of this radius;
-        without exits it is the length of the form. The unit of mass is the mass.
+        The unit of length is the distance of the nearest exit saddle; with an escape radius, a tenth of this radius; without
+        exits, the length of the form. The unit of time is 1/ω of the fastest small oscillation in the well, see
+        `fastest_frequency`. The unit of mass is the mass.
         """
         frequency = self._fastest_light_frequency
         time = 1.0 / nearest_power_of_two(frequency) if np.isfinite(frequency) and frequency > 0.0 else 1.0
@@ -296,7 +306,7 @@ class Well(ReadOnlyArrays):
 
     @property
     def stated_units(self) -> WellUnits:
-        """Units in which errors state energies and positions: those of the original potential, see `ScaledWell`."""
+        """Units in which error messages state energies and positions: those of the original potential, see `ScaledWell`."""
         return WellUnits()
 
     @cached_property
@@ -317,6 +327,7 @@ class Well(ReadOnlyArrays):
 
 def _make_symmetric(points: np.ndarray) -> None:
     """Replace each point at x < 0 by the exact mirror image of its partner at x > 0, in place."""
-    right = points[points[:, 0] > 0.0]
+    right_points = points[points[:, 0] > 0.0]
     for left in np.flatnonzero(points[:, 0] < 0.0):
-        points[left] = right[np.argmin(np.hypot(*(right - points[left] * [-1.0, 1.0]).T))] * [-1.0, 1.0]
+        distance = np.hypot(*(right_points - points[left] * [-1.0, 1.0]).T)
+        points[left] = right_points[np.argmin(distance)] * [-1.0, 1.0]

@@ -1,9 +1,9 @@
 """Units of length, time and mass of a well.
 
-The units of length and energy are powers of 2, so that conversion does not round. The same holds for times and momenta if √mass
-is a power of 2. Under x → L x, V → E V and m → M m, times scale as L √(M/E) and momenta as √(M E). Systems that differ only by
-such a scaling are equal in units of the well. All tolerances and all constants of time and length of the engine are in these
-units; for the three cases of Zotos (2014) the units are 1.
+The units of length and energy are powers of 2, so conversion of lengths and energies does not round. Conversion of times and
+momenta does not round if √mass is a power of 2. Under x → L x, V → E V and m → M m, times scale as L √(M/E) and momenta as
+√(M E). Systems that differ only by such a scaling are equal in units of the well. All tolerances and all constants of time and
+length of the engine are in these units. For the three cases of Zotos (2014), the units are 1.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ class WellUnits:
     def restore[Computed](self, result: Computed) -> Computed:
         """Convert a result from these units to the units of the potential.
 
-        Fields whose metadata is a quantity, such as `TIME`, are converted; arrays stay read-only.
+        Fields whose metadata is a quantity, such as `TIME`, are converted. Read-only arrays stay read-only.
         """
         if self == WellUnits():
             return result
@@ -85,11 +85,11 @@ class WellUnits:
         return replace(result, **restored)  # type: ignore[type-var]
 
     def _unit(self, length: int, time: int, mass: int) -> float:
-        """Return the unit of a quantity; √mass, which rounds, has the power 0 in lengths and energies."""
+        """Return the unit of a quantity. √mass, which rounds, has the power 0 in units of length and energy."""
         return self.length**length * self.light_time**time * math.sqrt(self.mass) ** (time + 2 * mass)
 
 
 def nearest_power_of_two(value: float) -> float:
-    """Return the power of 2 nearest to a finite value above 0 on a logarithmic scale; a factor of 2^k carries over exactly."""
+    """Return the power of 2 nearest to a finite value above 0 on a logarithmic scale. A factor of 2^k carries over exactly."""
     mantissa, exponent = math.frexp(value)
     return math.ldexp(1.0, exponent if mantissa * mantissa >= 0.5 else exponent - 1)

@@ -1,4 +1,4 @@
-"""Birkhoff digits of one orbit: the number of digits to which averages over two consecutive windows of time agree."""
+"""Birkhoff digits of one orbit: the number of digits to which averages over two consecutive time windows agree."""
 
 from __future__ import annotations
 
@@ -65,8 +65,8 @@ def compute_birkhoff_digits(
     Returns
     -------
     The `BirkhoffDigits` for T = 1000, 4000, 16 000 and 64 000 time units of the well, as long as the orbit is bounded for 2T ≤
-    t_max. There are fewer windows if the averages cannot be compared: on an orbit along an axis one coordinate is always 0. There
-    are none around bodies, because the fixed steps of the averages cannot pass close to a body.
+    t_max. There are no windows for an orbit along an axis, where one coordinate is always 0, nor around bodies, because the fixed
+    steps of the averages cannot pass close to a body.
 
     Raises
     ------
@@ -81,10 +81,11 @@ def compute_birkhoff_digits(
     >>> integrate_orbit(CASES["II"], (0.1, 0.0, 0.0, 0.3), t_max=2000.0).compute_birkhoff_digits().digits.round(1)
     array([8.9])
     """
-    start, units = checked_state("state", state), potential.units
+    start = checked_state("state", state)
     t_max = potential.checked_t_max(t_max)
-    found = _compare_windows(potential.in_well_units, start[None] / units.state, t_max / units.time, execution)
-    return replace(units.restore(found), made_by=describe_run(potential, energy=float(potential.energy(start)), t_max=t_max))
+    units = potential.units
+    result = _compare_windows(potential.in_well_units, start[None] / units.state, t_max / units.time, execution)
+    return replace(units.restore(result), made_by=describe_run(potential, energy=float(potential.energy(start)), t_max=t_max))
 
 
 def _compare_windows(potential: Potential, start: np.ndarray, t_max: float, execution: Execution) -> BirkhoffDigits:
@@ -93,18 +94,19 @@ def _compare_windows(potential: Potential, start: np.ndarray, t_max: float, exec
     orbit = OrbitBatch.from_starts(start, np.zeros(1, np.int64))
     orbit.mark_outside(potential, np.arange(1), curves, execution=execution.in_this_thread())
     digits: list[float] = []
-    # The units of the well are rounded. They are not used here, because verdicts must not depend on the user's units.
+    # The rounded units of the well are not used here, because verdicts must not depend on the user's units.
     unit = potential.well.exact_time_unit
     windows = [window * unit for window in WINDOWS]
     for window in windows:
         if potential.gaps or 2.0 * window > t_max or not _stays_inside(potential, curves, orbit, 2.0 * window, execution):
             break
-        found = count_agreeing_digits(potential, start, window, execution=execution.in_this_thread())[0]
+        agreeing_digits = count_agreeing_digits(potential, start, window, execution=execution.in_this_thread())[0]
         execution.raise_if_cancelled()
-        if found == 0.0:
+        # 0 means that the averages cannot be compared.
+        if agreeing_digits == 0.0:
             break
-        digits.append(float(found))
-        if found >= TORUS_DIGITS:
+        digits.append(float(agreeing_digits))
+        if agreeing_digits >= TORUS_DIGITS:
             break
     return BirkhoffDigits(read_only(np.array(windows[: len(digits)])), read_only(np.array(digits)), unit)
 

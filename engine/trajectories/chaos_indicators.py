@@ -1,13 +1,12 @@
 """Chaos indicators of one orbit, the entries of `INDICATORS`: SALI, the finite-time Lyapunov exponent and Birkhoff digits.
 
-Each indicator judges a bounded orbit by its own rule. SALI and the exponent come from deviation vectors, which can show chaos.
-If they do not, there is no sign of chaos so far: sticky orbits follow a torus for a long time before they leave it. Only averages
-that agree as on a torus make an orbit regular. An escaping orbit can be chaotic while it is inside; no other verdict on it is
-possible.
+Each indicator judges a bounded orbit by its own rule. SALI and the exponent come from deviation vectors. They can show chaos, but
+not that an orbit is regular: sticky orbits follow a torus for a long time before they leave it. Only averages that agree as on a
+torus make an orbit regular. An escaping orbit can be chaotic while it is inside; no other verdict on it is possible.
 
 The thresholds below were calibrated on 850 orbits bounded until t = 1e5 on six maps (I at h = 0.12 and 0.13, II at 0.16 and 0.17,
-III at 0.24 and 0.26). "Tori" are the orbits among them with 8 agreeing digits. `benchmarks.verdicts` counts how many of
-the verdicts turn out wrong later.
+III at 0.24 and 0.26). "Tori" are those of the 850 orbits with 8 agreeing digits. `benchmarks.verdicts` counts how many verdicts
+turn out wrong later.
 """
 
 from __future__ import annotations
@@ -26,7 +25,7 @@ from engine.trajectories.birkhoff_digits import BirkhoffDigits
 from engine.trajectories.trajectory import Orbit
 
 MIN_GROWTH_TIME = 100.0
-"""Shortest orbit judged by the growth of a deviation vector, in units of the well.
+"""Shortest time after which an orbit is judged by the growth of a deviation vector, in units of the well.
 
 On tori ln|w|/ln t can come close to `CHAOTIC_POWER` at t = 30.
 """
@@ -34,7 +33,7 @@ On tori ln|w|/ln t can come close to `CHAOTIC_POWER` at t = 30.
 REGULAR_SALI = 1e-5
 """A SALI above this is no sign of chaos.
 
-Between this value and `CHAOS_THRESHOLD` lie few tori, and orbits that become chaotic later.
+Orbits between this value and `CHAOS_THRESHOLD` are a few tori, and orbits that become chaotic later.
 """
 
 CHAOTIC_POWER = 2.0
@@ -47,9 +46,9 @@ REGULAR_POWER = 1.5
 """Fastest growth from t/10 to t, as a power of t, that is no sign of chaos. On a torus a deviation vector grows like t."""
 
 CHAOTIC_DIGITS = dict(zip(WINDOWS, (1.0, 2.0, 3.0, 4.0), strict=True))
-"""Numbers of digits by window length T; an orbit whose averages agree to fewer digits is chaotic.
+"""By window length T, the number of digits below which an orbit is chaotic.
 
-The smallest values on tori were 1.4, 2.2, 3.8 and 6.8.
+The smallest numbers on tori were 1.4, 2.2, 3.8 and 6.8.
 """
 
 # Number of samples from which the growth of a deviation vector is fitted.
@@ -59,8 +58,8 @@ _GROWTH_FIT_SAMPLES = 200
 class Verdict(StrEnum):
     """Conclusion about a bounded orbit or, for ``CHAOTIC_INSIDE``, about an orbit that escapes.
 
-    ``NO_SIGN``: like a regular orbit until the end of the integration, but without evidence of a torus.
-    ``UNDECIDED``: too short to tell, or between regular and chaotic values.
+    ``NO_SIGN``: the orbit is like a regular orbit until the end of the integration, but without evidence of a torus.
+    ``UNDECIDED``: the orbit is too short to tell, or the value is between regular and chaotic values.
     """
 
     REGULAR = "regular"
@@ -72,7 +71,7 @@ class Verdict(StrEnum):
 
 @dataclass(frozen=True)
 class IndicatorVerdict:
-    """Result of one indicator at the end of an orbit.
+    """The conclusion of one indicator at the end of an orbit.
 
     Attributes
     ----------
@@ -98,7 +97,7 @@ _Digits = BirkhoffDigits | None
 
 @dataclass(frozen=True)
 class Indicator:
-    """An indicator of chaos.
+    """An indicator of chaos, as functions of an orbit and of its `BirkhoffDigits`, which may be None.
 
     Attributes
     ----------
@@ -137,26 +136,27 @@ def evaluate_indicators(orbit: Orbit, digits: BirkhoffDigits | None = None) -> t
 
     Returns
     -------
-    An `IndicatorVerdict` each for SALI, the Lyapunov exponent, the Birkhoff digits of both halves of a bounded orbit and, if
-    given, `digits`; `OrbitVerdict.findings` contains these results. An orbit that escapes is chaotic while inside if SALI or the
-    growth of a deviation vector reached the threshold of chaos before. Other escaping orbits and starts outside get values but no
-    conclusion: no escaping orbit is regular, and an orbit that escapes early may not show its chaos.
+    One `IndicatorVerdict` each for SALI, for the Lyapunov exponent, for the Birkhoff digits of both halves of a bounded orbit
+    and, if given, for `digits`; `OrbitVerdict.findings` contains these results. An orbit that escapes is chaotic while inside if
+    SALI or the growth of a deviation vector reached the threshold of chaos before the escape. Other escaping orbits and starts
+    outside have values but no conclusion: no escaping orbit is regular, and an orbit that escapes early may not show its chaos.
     """
     return tuple(_evaluate(indicator, orbit, digits) for indicator in INDICATORS if indicator.applies(orbit, digits))
 
 
 def _evaluate(indicator: Indicator, orbit: Orbit, digits: BirkhoffDigits | None) -> IndicatorVerdict:
-    judged: _Judgement
+    judgement: _Judgement
     if orbit.fate == Fate.BOUNDED:
-        judged = indicator.judge(orbit, digits)
+        judgement = indicator.judge(orbit, digits)
     elif orbit.fate >= 1:
-        judged = indicator.judge_inside(orbit) or (None, _describe_escape(orbit))
+        judgement = indicator.judge_inside(orbit) or (None, _describe_escape(orbit))
     else:
-        judged = (None, describe_fate(orbit.fate, orbit.outcomes))
-    return IndicatorVerdict(indicator.name, indicator.value(orbit, digits), *judged)
+        judgement = (None, describe_fate(orbit.fate, orbit.outcomes))
+    return IndicatorVerdict(indicator.name, indicator.value(orbit, digits), *judgement)
 
 
 def _describe_escape(orbit: Orbit) -> str:
+    # The first word: "escapes" of "escapes through exit 1".
     verb = outcome_of(orbit.fate, orbit.outcomes).present.partition(" ")[0]
     return f"No sign of chaos before the orbit {verb} at t = {format_time(orbit.escape_time)}."
 
@@ -166,18 +166,18 @@ def _describe_end(orbit: Orbit) -> str:
 
 
 def _judge_sali_inside(orbit: Orbit) -> _Judgement | None:
-    """Return the verdict on an escaping orbit from its SALI until the escape; None if this shows no chaos."""
-    least = float(np.min(orbit.sali))
-    if not is_chaotic(least):
+    """Return the verdict on an escaping orbit from its SALI until the escape; None if SALI shows no chaos."""
+    smallest_sali = float(np.min(orbit.sali))
+    if not is_chaotic(smallest_sali):
         return None
     return (
         Verdict.CHAOTIC_INSIDE,
-        f"SALI fell to {least:.2g} before the {_describe_end(orbit)}: {CHAOS_THRESHOLD:g} or below is chaotic.",
+        f"SALI fell to {smallest_sali:.2g} before the {_describe_end(orbit)}: {CHAOS_THRESHOLD:g} or below is chaotic.",
     )
 
 
 def _judge_growth_inside(orbit: Orbit) -> _Judgement | None:
-    """Return the verdict on an escaping orbit from the growth of a deviation vector; None if this shows no chaos."""
+    """Return the verdict on an escaping orbit from the growth of a deviation vector; None if the growth shows no chaos."""
     t_end = float(orbit.t[-1])
     log_growth = float(orbit.lyapunov_exponent[-1]) * t_end
     if t_end < MIN_GROWTH_TIME * orbit.time_unit or log_growth <= _growth_limit(t_end, orbit.time_unit):
@@ -218,7 +218,7 @@ def _judge_exponent(orbit: Orbit, digits: _Digits) -> _Judgement:
 
 
 def _judge_growth(log_growth: float, power: float, t_end: float, time_unit: float) -> tuple[Verdict, str]:
-    """Return verdict and reason from the logarithm of the growth until `t_end` and the recent growth as a power of t."""
+    """Return verdict and reason, given the logarithm of the growth until `t_end` and the power of t of the recent growth."""
     limit = _growth_limit(t_end, time_unit)
     if log_growth > limit:
         return Verdict.CHAOTIC, f"more than t^{CHAOTIC_POWER:g} = e^{limit:.3g}, which no torus reaches"
@@ -241,9 +241,9 @@ def _undecided_too_short(t_end: float) -> tuple[Verdict, str]:
 def _fit_growth_power(orbit: Orbit) -> float:
     """Return the power of t with which the first deviation vector grew over the last nine tenths of the orbit."""
     last = orbit.t.size - 1
-    sample = np.unique(np.geomspace(0.1 * last, last, _GROWTH_FIT_SAMPLES).astype(int))
-    t = orbit.t[sample]
-    slope, _ = np.polyfit(np.log(t), orbit.lyapunov_exponent[sample] * t, 1)
+    index = np.unique(np.geomspace(0.1 * last, last, _GROWTH_FIT_SAMPLES).astype(int))
+    t = orbit.t[index]
+    slope, _ = np.polyfit(np.log(t), orbit.lyapunov_exponent[index] * t, 1)
     return float(slope)
 
 
@@ -266,13 +266,14 @@ def _judge_digits(orbit: Orbit, digits: _Digits) -> _Judgement:
     if digits is None or not digits.digits.size:
         return Verdict.UNDECIDED, f"No windows to compare: {_reason_without_windows(orbit)}."
     window, value = float(digits.windows[-1]), float(digits.digits[-1])
-    chaotic = CHAOTIC_DIGITS[min(WINDOWS, key=lambda known: abs(known - window / digits.time_unit))]
+    # The nearest of the known windows, because the quotient is rounded.
+    limit = CHAOTIC_DIGITS[min(WINDOWS, key=lambda known: abs(known - window / digits.time_unit))]
     if value >= TORUS_DIGITS:
         verdict, reason = Verdict.REGULAR, f"{TORUS_DIGITS:g} or more, as on a torus"
-    elif value < chaotic:
-        verdict, reason = Verdict.CHAOTIC, f"below {chaotic:g}: fewer than on any known torus"
+    elif value < limit:
+        verdict, reason = Verdict.CHAOTIC, f"below {limit:g}: fewer than on any known torus"
     else:
-        verdict, reason = Verdict.UNDECIDED, f"neither below {chaotic:g}, as in chaos, nor {TORUS_DIGITS:g}, as on a torus"
+        verdict, reason = Verdict.UNDECIDED, f"neither below {limit:g}, as in chaos, nor {TORUS_DIGITS:g}, as on a torus"
     return verdict, f"Averages over two windows of T = {format_time(window)} agree to {value:.1f} digits, {reason}."
 
 
@@ -314,4 +315,4 @@ INDICATORS = (
         applies=lambda orbit, digits: digits is not None,
     ),
 )
-"""The indicators, in the order of texts."""
+"""The indicators, in the order in which texts list them."""

@@ -13,8 +13,8 @@ from engine.slices.sampling import LARGEST_SAMPLE
 from engine.systems.potential import Potential
 
 # Number of points along half a Lyapunov orbit at which the flux is summed.
-_PLACES = 2001
-# Distance of the starts from the Lyapunov orbit, as a share of its length. At distance 0, rounding would decide what is inside.
+_POINTS = 2001
+# Distance of the starts from the line across the exit, as a share of its length; at 0, rounding would decide what is inside.
 _SHIFT = 1e-7
 
 
@@ -23,9 +23,9 @@ def sample_entrances(potential: Potential, energy: float, count: int, *, seed: i
     """Draw random states on the Lyapunov orbits that move into the well, with the distribution of the flux.
 
     These are the orbits that enter from outside, through each exit in proportion to its flux. The times until they leave are the
-    gap times (Ezra, Waalkens & Wiggins 2009, J. Chem. Phys. 130, 164118). Their mean is `EscapeFlux.mean_passage_time` if no
-    volume is enclosed by orbits that never leave. The time of an orbit that is still inside at t_max is NaN; if NaN is replaced
-    by t_max, as in the example, the mean is a lower bound.
+    gap times (Ezra, Waalkens & Wiggins 2009, J. Chem. Phys. 130, 164118). Their mean is `EscapeFlux.mean_passage_time` if orbits
+    that never leave occupy no volume. The time of an orbit that is still inside at t_max is NaN; if NaN is replaced by t_max, as
+    in the example, the mean is a lower bound.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def sample_entrances(potential: Potential, energy: float, count: int, *, seed: i
 
     Returns
     -------
-    x, y, px, py of each state, of shape (count, 4), with this energy to rounding, just inside the exits.
+    x, y, px, py of each state, of shape (count, 4), just inside the exits. Their energies are equal to `energy` up to rounding.
 
     Raises
     ------
@@ -95,17 +95,17 @@ def sample_entrances_by_exit(potential: Potential, energy: float, count: int, *,
     orbits = find_lyapunov_orbits(potential, h)
     if not orbits:
         raise ValueError(f"energy={h}: all exits are closed; must be above the escape energy {potential.escape_energy:.6g}")
-    halves = [_HalfOrbit(potential, orbit) for orbit in orbits]
-    flux = np.array([half.flux[-1] for half in halves])
-    chosen = random.choice(len(halves), count, p=flux / flux.sum())
+    lines = [_ExitLine(potential, orbit) for orbit in orbits]
+    flux = np.array([line.flux[-1] for line in lines])
+    line_index = random.choice(len(lines), count, p=flux / flux.sum())
     states = np.empty((count, 4))
-    for place, half in enumerate(halves):
-        states[chosen == place] = half.draw(int((chosen == place).sum()), random)
-    return np.array([orbit.channel for orbit in orbits], np.int64)[chosen], states
+    for index, line in enumerate(lines):
+        states[line_index == index] = line.draw(int((line_index == index).sum()), random)
+    return np.array([orbit.channel for orbit in orbits], np.int64)[line_index], states
 
 
-class _HalfOrbit:
-    """Draws states that cross half a Lyapunov orbit, the line across its exit, inward, with the distribution of the flux."""
+class _ExitLine:
+    """Half a Lyapunov orbit, the line across its exit. Draws states that cross it inward, with the distribution of the flux."""
 
     def __init__(self, potential: Potential, orbit: LyapunovOrbit) -> None:
         # The import is slow and seldom needed.
@@ -114,34 +114,36 @@ class _HalfOrbit:
         self._potential, self._energy = potential, orbit.energy
         path = orbit.half_path
         self._path = CubicSpline(np.linspace(0.0, 0.5 * orbit.period, len(path)), path)
-        self.times = np.linspace(0.0, 0.5 * orbit.period, _PLACES)
+        self.times = np.linspace(0.0, 0.5 * orbit.period, _POINTS)
         speed_squared = (self._path(self.times, 1) ** 2).sum(axis=1)
-        parts = 0.5 * (speed_squared[1:] + speed_squared[:-1]) * np.diff(self.times)
-        self.flux = np.concatenate([[0.0], np.cumsum(parts)])
+        increments = 0.5 * (speed_squared[1:] + speed_squared[:-1]) * np.diff(self.times)
+        # The flux through the line up to each point, without constant factors.
+        self.flux = np.concatenate([[0.0], np.cumsum(increments)])
         self._length = float(np.hypot(*(path[-1] - path[0])))
-        self._inward = self._find_side()
+        # 1 if the well is to the left of the line, otherwise −1.
+        self._side = 1.0
+        self._side = self._find_side()
 
     def draw(self, count: int, random: np.random.Generator) -> np.ndarray:
-        """Draw states, (count, 4), uniform in the flux: in p·dq along the line, and in the component of the momentum along it."""
+        """Draw states, (count, 4), uniform in the flux: in p·dq along the line, and in the momentum's component along it."""
         times = np.interp(random.uniform(0.0, self.flux[-1], count), self.flux, self.times)
         points, along, inward = self._frame(times)
         points = points + _SHIFT * self._length * inward
         kinetic = np.maximum(self._energy - self._potential.value(*points.T), 0.0)
         momentum = np.sqrt(2.0 * self._potential.mass * kinetic)
-        share = random.uniform(-1.0, 1.0, count)
-        directions = share[:, None] * along + np.sqrt(1.0 - share * share)[:, None] * inward
+        sine = random.uniform(-1.0, 1.0, count)
+        directions = sine[:, None] * along + np.sqrt(1.0 - sine * sine)[:, None] * inward
         return np.column_stack([points, momentum[:, None] * directions])
 
     def _frame(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return points of the line, and unit vectors along it and into the well."""
         velocity: Any = self._path(times, 1)
         along = velocity / np.maximum(np.hypot(*velocity.T), np.finfo(float).tiny)[:, None]
-        return self._path(times), along, self._inward * np.column_stack([-along[:, 1], along[:, 0]])
+        return self._path(times), along, self._side * np.column_stack([-along[:, 1], along[:, 0]])
 
     def _find_side(self) -> float:
-        """Return 1 if the well is to the left of the line, otherwise −1."""
-        self._inward = 1.0
-        points, _, normal = self._frame(self.times[[_PLACES // 2]])
-        point = points + 1e3 * _SHIFT * self._length * normal
-        outside = find_outside_channels(self._potential, self._energy, *np.ascontiguousarray(point.T))
+        """Return the side of the well, while `_side` is 1: a point a little to the left of the middle of the line decides."""
+        middle, _, left = self._frame(self.times[[_POINTS // 2]])
+        test_point = middle + 1e3 * _SHIFT * self._length * left
+        outside = find_outside_channels(self._potential, self._energy, *np.ascontiguousarray(test_point.T))
         return -1.0 if outside[0] else 1.0

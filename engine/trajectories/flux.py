@@ -1,4 +1,4 @@
-"""Flux through the exits of a well and the phase-space volume inside, which give the decay rate of a well with mixed motion."""
+"""Flux through the exits of a well and phase-space volume inside. If motion inside is mixed, they give the decay rate."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from engine.slices.planes import SPACE
 from engine.systems.potential import Potential
 from engine.systems.provenance import describe_run
 
-# Rows of points between which the edge of the interior is searched. The middle row of each three serves to estimate the error.
+# Number of rows of points between which the edge of the interior is searched; a multiple of 3, see `_interior_area`.
 _ROWS = 513
-# Columns of these points.
+# Number of columns of these points.
 _COLUMNS = 256
 # Halvings of the distance between a point inside and the next point outside.
 _HALVINGS = 40
@@ -39,7 +39,7 @@ class EscapeFlux(RecordedResult):
     channels
         (n,) numbers of the open exits.
     flux
-        (n,) phase-space volume that leaves through each exit per unit of time, in the measure δ(H − h) dx dy dpx dpy.
+        (n,) phase-space volume that leaves through each exit per unit of time, measured by δ(H − h) dx dy dpx dpy.
     area, area_error
         Area of the interior in (x, y), and its estimated error.
     mass
@@ -83,7 +83,7 @@ class EscapeFlux(RecordedResult):
 
     @property
     def shares(self) -> np.ndarray:
-        """(n,) share of each exit in the flux. Escapes have these shares if orbits forget their start before they leave."""
+        """(n,) share of each exit in the flux; also in the escapes, if orbits forget their start before they leave."""
         return self.flux / self.total if self.flux.size else self.flux
 
     @property
@@ -146,7 +146,7 @@ def compute_flux(potential: Potential, energy: float) -> EscapeFlux:
     if h <= float(potential.value(0.0, 0.0)):
         raise ValueError(f"energy={h}: must be above the bottom of the well, {float(potential.value(0.0, 0.0)):.6g}")
     orbits = find_lyapunov_orbits(potential, h)
-    # The mean over evenly spaced times of a period converges exponentially with their number.
+    # ∮ p·dq is the integral of p²/m = 2 (h − V). The mean over evenly spaced times of a period converges exponentially.
     actions = [orbit.period * float(np.mean(2.0 * (h - potential.value(orbit.x[:-1], orbit.y[:-1])))) for orbit in orbits]
     area, error = _interior_area(potential, h)
     channels = np.array([orbit.channel for orbit in orbits], np.int64)
@@ -155,21 +155,22 @@ def compute_flux(potential: Potential, energy: float) -> EscapeFlux:
 
 
 def _interior_area(potential: Potential, h: float) -> tuple[float, float]:
-    """Return the area of the interior and its error, from the lengths of its parts on evenly spaced lines."""
-    box = default_window(potential, SPACE, h)
-    height = box.height / _ROWS
-    y = box.ordinate_low + height * (np.arange(_ROWS) + 0.5)
-    x = np.linspace(box.x_low, box.x_high, _COLUMNS)
+    """Return the area of the interior and its error, from the lengths of its sections with evenly spaced lines."""
+    window = default_window(potential, SPACE, h)
+    row_height = window.height / _ROWS
+    y = window.ordinate_low + row_height * (np.arange(_ROWS) + 0.5)
+    x = np.linspace(window.x_low, window.x_high, _COLUMNS)
     inside = _is_inside(potential, h, *np.meshgrid(x, y))
     lengths = np.zeros(_ROWS)
     row, column = np.nonzero(inside[:, 1:] != inside[:, :-1])
-    within = np.where(inside[row, column], x[column], x[column + 1])
-    beyond = np.where(inside[row, column], x[column + 1], x[column])
-    within, _ = bisect(lambda middle: ~_is_inside(potential, h, middle, y[row]), within, beyond, _HALVINGS)
-    np.add.at(lengths, row, np.where(inside[row, column], within, -within))
-    area = float(lengths.sum()) * height
-    # The lengths behave like square roots at their ends, so a third of the rows gives 3^1.5 times the error.
-    return area, abs(area - 3.0 * height * float(lengths[1::3].sum())) / (3.0**1.5 - 1.0)
+    inner_x = np.where(inside[row, column], x[column], x[column + 1])
+    outer_x = np.where(inside[row, column], x[column + 1], x[column])
+    edge_x, _ = bisect(lambda middle: ~_is_inside(potential, h, middle, y[row]), inner_x, outer_x, _HALVINGS)
+    # The length of a row is the sum of its right edges minus the sum of its left edges.
+    np.add.at(lengths, row, np.where(inside[row, column], edge_x, -edge_x))
+    area = float(lengths.sum()) * row_height
+    # The lengths behave like square roots at their ends, so the middle rows of each three alone give 3^1.5 times the error.
+    return area, abs(area - 3.0 * row_height * float(lengths[1::3].sum())) / (3.0**1.5 - 1.0)
 
 
 def _is_inside(potential: Potential, h: float, x: np.ndarray, y: np.ndarray) -> np.ndarray:

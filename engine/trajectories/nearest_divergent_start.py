@@ -20,21 +20,22 @@ from engine.systems.potential import Potential
 from engine.systems.provenance import describe_run
 from engine.systems.well_units import LENGTH
 
-# Smallest distance, in units of the well: a few hundred units in the last place of coordinates of order 1.
+# Smallest distance of a neighbour, in units of the well: a few hundred units in the last place of coordinates of order 1.
 _MIN_DISTANCE = 1e-13
 # Number of directions in which neighbours lie.
 _DIRECTIONS = 16
-# Number of neighbours while their distance grows by a factor of 10.
+# Number of neighbours for each factor of 10 in distance.
 _STARTS_PER_DECADE = 80
-# Rings are classified in batches of this many starts, from the inside out. An orbit that escapes late has a divergent start on
-# one of the first rings, so many neighbours further out, some of them bounded for much longer, need not be integrated.
+# Number of neighbours classified together, from the inside out. An orbit that escapes late has a divergent start on one of the
+# first rings, so neighbours farther out, some of them bounded for much longer, need not be integrated.
 _BATCH_SIZE = 128
-# Two refinements into 10 sections reduce the gap between two rings, a factor of at most 1.6, to less than 1 %.
+# Number of refinements. Two into 10 sections reduce the gap between two rings, a factor of at most 1.6, to less than 1 %.
 _REFINEMENTS = 2
+# Number of sections of a refinement.
 _SECTIONS = 10
-# Neighbours are integrated for this multiple of the escape time of the given start, but at least for `_SHORTEST_HORIZON`.
+# Integration time of neighbours, in units of the escape time of the given start.
 _HORIZON_FACTOR = 3.0
-# In units of the well.
+# Shortest integration time of neighbours, in units of the well.
 _SHORTEST_HORIZON = 1000.0
 
 
@@ -79,10 +80,10 @@ def find_divergent_start(
 ) -> DivergentStart | None:
     """Find the nearest neighbour of a start with a different outcome; for a bounded start, the nearest with any outcome.
 
-    Neighbours lie on rings around the start: 16 directions on rings that grow by a factor of 1.6, or, with an axis h, the two
-    directions of constant energy on rings that grow by a factor of 1.06. Between the first ring with a divergent start and the
-    previous ring the distance is refined to 1 % along the directions found. Basins narrower than the gaps between rings or
-    directions can be missed.
+    Neighbours lie on rings around the start: in 16 directions on rings that grow by a factor of 1.6 or, with an axis h, in the
+    two directions of constant energy on rings that grow by a factor of 1.06. Between the first ring with a divergent start and
+    the previous ring, the distance is refined to 1 % along the directions of the divergent starts. Basins narrower than the gaps
+    between rings or directions can be missed.
 
     Parameters
     ----------
@@ -127,7 +128,8 @@ def find_divergent_start(
     h = _checked_energy(plane, energy, x, ordinate)
     if plane.parameter is not None:
         potential, plane = plane.potential_at(potential, x, ordinate), plane.line((x, ordinate)[plane.parameter_axis or 0])
-    t_max, units = potential.checked_t_max(t_max), potential.units
+    t_max = potential.checked_t_max(t_max)
+    units = potential.units
     nearest = _MIN_DISTANCE * units.length
     furthest = units.length if furthest is None else checked_number("furthest", furthest, f"a finite number above {nearest:g}")
     if not furthest > nearest:
@@ -136,14 +138,14 @@ def find_divergent_start(
     search = _Search(potential.in_well_units, plane.in_well_units(units), h / units.energy, centre, execution)
     search.classify_centre(t_max / units.time)
     if search.centre_fate in (Fate.FORBIDDEN, Fate.OUTSIDE):
-        fate, inside = name_fate(search.centre_fate), plane.limiting_curve(potential.mass).replace("=", "≤")
+        fate, condition = name_fate(search.centre_fate), plane.limiting_curve(potential.mass).replace("=", "≤")
         start = ", ".join(f"{name}={value}" for name, value in zip(plane.axis_names, (x, ordinate), strict=True))
-        raise ValueError(f"{start}: {fate} on {plane.title} at h={h}; must have {inside} and lie inside all exits")
-    found = search.find_nearest(furthest / units.length)
-    if found is None:
+        raise ValueError(f"{start}: {fate} on {plane.title} at h={h}; must have {condition} and lie inside all exits")
+    divergent = search.find_nearest(furthest / units.length)
+    if divergent is None:
         return None
     made_by = describe_run(potential, energy=h, plane=plane.title, t_max=t_max)
-    return replace(plane.restore(found, units), made_by=made_by)
+    return replace(plane.restore(divergent, units), made_by=made_by)
 
 
 def _checked_energy(plane: Slice, energy: Energy, x: float, ordinate: float) -> float:
@@ -157,9 +159,10 @@ def _checked_energy(plane: Slice, energy: Energy, x: float, ordinate: float) -> 
 
 @dataclass(frozen=True, eq=False)
 class _Bracket:
-    """Bounds of the distance to the nearest divergent start along some directions (m, 2).
+    """Bounds of the distance to the nearest divergent start.
 
-    There is no divergent start at radius `low`. At radius `high`, `fates` (m,) has the fate of the start in each direction.
+    There is no divergent start at radius `low`. At radius `high`, there is one in each of the `directions` (m, 2), with `fates`
+    (m,).
     """
 
     low: float
@@ -169,7 +172,7 @@ class _Bracket:
 
 
 class _Search:
-    """Searches around the start `centre` (2,) = x, ordinate, at energy `h`, in units of the well."""
+    """Searches for divergent starts around the start `centre` (2,) = x, ordinate, at energy `h`, in units of the well."""
 
     def __init__(
         self,
@@ -192,29 +195,34 @@ class _Search:
     def find_nearest(self, furthest: float) -> DivergentStart | None:
         """Find the nearest divergent start, from the inside out."""
         directions = _directions(self.plane)
+        # The batches of rings are classified one by one, up to the first with a divergent start.
         brackets = (self.find_bracket(radii, directions) for radii in _ring_radii(furthest, len(directions)))
         bracket = next(filter(None, brackets), None)
         if bracket is None:
             return None
         for _ in range(_REFINEMENTS if bracket.high > _MIN_DISTANCE else 0):
             radii = np.linspace(bracket.low, bracket.high, _SECTIONS + 1)
+            # The last of these rings has a divergent start, so `or` only excludes None for the type checker.
             bracket = self.find_bracket(radii, bracket.directions) or bracket
         x, ordinate = (self.centre + bracket.high * bracket.directions[0]).tolist()
         distance = float(np.hypot(*(self.centre - [x, ordinate])))
         return DivergentStart(x, ordinate, distance, int(bracket.fates[0]), self.centre_fate, self.potential.outcomes_at(self.h))
 
     def find_bracket(self, radii: np.ndarray, directions: np.ndarray) -> _Bracket | None:
-        """Find the smallest of the increasing radii with a divergent start, if any; the first radius is known to have none."""
+        """Return the bracket of the smallest of increasing radii with a divergent start; None if there is none.
+
+        The first radius is not classified: it has no divergent start.
+        """
         fate = self.classify(self.centre + radii[1:, None, None] * directions, self.horizon)[0]
         divergent = (fate >= 1) & (fate != self.centre_fate)
         if not divergent.any():
             return None
         ring = int(np.argmax(divergent.any(axis=1)))
-        found = divergent[ring]
-        return _Bracket(float(radii[ring]), float(radii[ring + 1]), directions[found], fate[ring, found])
+        is_divergent = divergent[ring]
+        return _Bracket(float(radii[ring]), float(radii[ring + 1]), directions[is_divergent], fate[ring, is_divergent])
 
     def classify(self, points: np.ndarray, t_max: float) -> tuple[np.ndarray, np.ndarray]:
-        """Return fates and escape times, both (…), of points (…, 2)."""
+        """Return fates and escape times, (…) each, of points (…, 2); points without a state are forbidden."""
         x, ordinate = points.reshape(-1, 2).T
         states = self.plane.states(self.potential, self.h, x, ordinate)
         exists = np.isfinite(states).all(axis=1)
@@ -228,16 +236,19 @@ class _Search:
 def _directions(plane: Slice) -> np.ndarray:
     """Return unit vectors, (m, 2); with an axis h, the two directions of constant energy."""
     if not all(plane.free_axes):
-        along = np.array(plane.free_axes, float)
-        return np.array([along, -along])
+        direction = np.array(plane.free_axes, float)
+        return np.array([direction, -direction])
     angle = 2.0 * np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
     # The vectors are rounded, so that the neighbours of mirror images are exact mirror images.
     return np.round(np.column_stack([np.cos(angle), np.sin(angle)]), 12)
 
 
-def _ring_radii(furthest: float, directions: int) -> Iterator[np.ndarray]:
-    """Yield batches of logarithmically spaced, increasing radii; each batch begins with the last radius of the previous one."""
-    count = int(np.ceil(_STARTS_PER_DECADE / directions * np.log10(furthest / _MIN_DISTANCE))) + 1
+def _ring_radii(furthest: float, direction_count: int) -> Iterator[np.ndarray]:
+    """Yield batches of increasing radii, from 0 and then spaced logarithmically.
+
+    Each batch begins with the last radius of the previous batch.
+    """
+    count = int(np.ceil(_STARTS_PER_DECADE / direction_count * np.log10(furthest / _MIN_DISTANCE))) + 1
     radii = np.concatenate([[0.0], np.geomspace(_MIN_DISTANCE, furthest, count)])
-    rings = _BATCH_SIZE // directions
-    yield from (radii[begin : begin + rings + 1] for begin in range(0, count, rings))
+    rings_per_batch = _BATCH_SIZE // direction_count
+    yield from (radii[begin : begin + rings_per_batch + 1] for begin in range(0, count, rings_per_batch))

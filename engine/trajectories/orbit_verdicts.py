@@ -37,8 +37,8 @@ class OrbitVerdict(OrbitResult):
         The reason why the orbit is called bounded: ``INTEGRATED`` holds only until `t_end`, ``CLOSED`` for ever, and
         ``QUASI_PERIODIC`` is evidence of a torus, on which the orbit would stay for ever. ``NONE`` for other orbits.
     character
-        If the orbit is bounded, what its indicators show until `t_end`: "regular", "chaotic", "no sign of chaos" (like a regular
-        orbit but without evidence of a torus), or "undecided". For other orbits, "chaotic while inside" or None.
+        What the indicators show until `t_end`. For a bounded orbit: "regular", "chaotic", "no sign of chaos" (like a regular
+        orbit but without evidence of a torus), or "undecided". For other orbits: "chaotic while inside" or None.
     indicators
         The indicators that determine the character, with their values; empty if no indicator does.
     outcomes
@@ -47,8 +47,8 @@ class OrbitVerdict(OrbitResult):
         The reason why the exits over saddles are not known at the energy, see `Orbit`; empty if they are known.
     findings
         The indicators one by one: SALI, the Lyapunov exponent, the Birkhoff digits of both halves of a bounded orbit and, if
-        given, the digits of windows. Each indicator has a `name`, a `value` at the end of the orbit, NaN if not available, a
-        `conclusion`, one of the words of `character` or None, and a `sentence` with the reason.
+        given, the digits of windows. Each finding has a `name`, a `value` at the end of the orbit (NaN if not available), a
+        `conclusion` (one of the words of `character`, or None) and a `sentence` with the reason.
     """
 
     fate: int
@@ -74,40 +74,40 @@ class OrbitVerdict(OrbitResult):
 
     def describe(self) -> str:
         """Describe the verdict in one sentence; if exits are not known, a second sentence says why."""
-        unknown = f" Exits are not known at this energy: {self.exits_unknown}." if self.exits_unknown else ""
-        return self._describe_fate() + unknown
+        note = f" Exits are not known at this energy: {self.exits_unknown}." if self.exits_unknown else ""
+        return self._describe_fate() + note
 
     def _describe_fate(self) -> str:
         crossings, time = f"{format_count(self.crossings, 'upward crossing')} of y = 0", format_time(self.t_end)
         if self.fate >= 1:
-            kind = f"after {crossings}" if self.crossings else "directly, without crossing y = 0 upward"
-            return f"{outcome_of(self.fate, self.outcomes).past} at t = {time}, {kind}{self._inside}."
+            manner = f"after {crossings}" if self.crossings else "directly, without crossing y = 0 upward"
+            return f"{outcome_of(self.fate, self.outcomes).past} at t = {time}, {manner}{self._character_inside}."
         if self.character is None:
             return describe_fate(self.fate, self.outcomes)
         reason = describe_evidence(self.evidence)
         match self.evidence:
             case Evidence.CLOSED:
-                return f"Bounded for ever ({reason}){self._decided}, with {crossings} until t = {time}."
+                return f"Bounded for ever ({reason}){self._character_bounded}, with {crossings} until t = {time}."
             case Evidence.QUASI_PERIODIC:
-                return f"Bounded until t = {time} and probably for ever ({reason}){self._decided}, with {crossings}."
+                return f"Bounded until t = {time} and probably for ever ({reason}){self._character_bounded}, with {crossings}."
             case _:
-                return f"{self._stays.capitalize()} until t = {time}{self._decided}, with {crossings}."
+                return f"{self._participle.capitalize()} until t = {time}{self._character_bounded}, with {crossings}."
 
     def summarize(self) -> str:
         """Return the verdict in a few words, for lists."""
         if self.fate >= 1:
-            return f"{name_fate(self.fate, self.outcomes)} at t = {format_time(self.t_end, digits=5)}{self._inside}"
+            return f"{name_fate(self.fate, self.outcomes)} at t = {format_time(self.t_end, digits=5)}{self._character_inside}"
         if self.character is None:
             return name_fate(self.fate, self.outcomes)
         until = "for ever" if self.is_bounded_for_ever else f"until t = {format_time(self.t_end)}"
-        return f"{self._stays} {until}, {self.character}"
+        return f"{self._participle} {until}, {self.character}"
 
     def headline(self) -> str:
         """Return the verdict in a short sentence without its reasons."""
         if self.fate >= 1:
-            return f"{outcome_of(self.fate, self.outcomes).past} at t = {format_time(self.t_end)}{self._inside}"
-        words = self.summarize()
-        return words[0].upper() + words[1:]
+            return f"{outcome_of(self.fate, self.outcomes).past} at t = {format_time(self.t_end)}{self._character_inside}"
+        summary = self.summarize()
+        return summary[0].upper() + summary[1:]
 
     @property
     def _may_have_left(self) -> bool:
@@ -115,11 +115,12 @@ class OrbitVerdict(OrbitResult):
         return self.fate == Fate.BOUNDED and bool(self.exits_unknown)
 
     @property
-    def _stays(self) -> str:
+    def _participle(self) -> str:
+        """The participle for an orbit that has not ended."""
         return "followed" if self._may_have_left else "bounded"
 
     @property
-    def _decided(self) -> str:
+    def _character_bounded(self) -> str:
         """The part of a sentence on the character of a bounded orbit."""
         match self.character:
             case Verdict.UNDECIDED:
@@ -130,7 +131,7 @@ class OrbitVerdict(OrbitResult):
                 return f", {self.character} ({self.indicators})"
 
     @property
-    def _inside(self) -> str:
+    def _character_inside(self) -> str:
         """The part of a sentence on the character of an escaping orbit."""
         return f", {self.character}" if self.character is not None else ""
 
@@ -140,10 +141,11 @@ def judge_orbit(orbit: Orbit, digits: BirkhoffDigits | None = None) -> OrbitVerd
     """Judge an orbit by its energy, its outcome and its chaos indicators.
 
     A bounded orbit is regular or chaotic if an indicator concludes so and no indicator concludes the opposite. If no indicator
-    concludes either, the orbit shows no sign of chaos if all indicators of deviation vectors say so. In all other cases it is
-    undecided. The orbit is bounded for ever if its energy is below every saddle. Birkhoff averages that agree as on an invariant
-    torus are evidence that it is bounded for ever in a well at rest (`Potential.tori_are_evidence`), unless another indicator
-    shows chaos. An escaping orbit is chaotic while inside if an indicator says so.
+    concludes either, and all indicators of deviation vectors conclude that there is no sign of chaos, so does the verdict. In all
+    other cases the orbit is undecided. The orbit is bounded for ever if its energy is below every saddle. In a well at rest,
+    Birkhoff averages that agree as on an invariant torus are evidence that the orbit is bounded for ever
+    (`Potential.tori_are_evidence`), unless another indicator shows chaos. An escaping orbit is chaotic while inside if an
+    indicator concludes so.
 
     Parameters
     ----------
@@ -167,30 +169,39 @@ def judge_orbit(orbit: Orbit, digits: BirkhoffDigits | None = None) -> OrbitVerd
     """
     indicators = evaluate_indicators(orbit, digits)
     conclusions = [indicator.conclusion for indicator in indicators]
-    character = _combine(indicators) if orbit.fate == Fate.BOUNDED else _character_inside(conclusions)
-    evidence = _find_evidence(orbit, digits, Verdict.CHAOTIC in conclusions)
-    deciding = _deciding_indicators(indicators, character)
-    t_end, known = float(orbit.t[-1]), (orbit.outcomes, orbit.exits_unknown)
-    found = orbit.fate, t_end, orbit.crossings, evidence, character, deciding
-    return OrbitVerdict(*found, *known, findings=indicators, made_by=orbit.made_by)
+    character = _combine(indicators) if orbit.fate == Fate.BOUNDED else _judge_inside(conclusions)
+    return OrbitVerdict(
+        orbit.fate,
+        float(orbit.t[-1]),
+        orbit.crossings,
+        _find_evidence(orbit, digits, Verdict.CHAOTIC in conclusions),
+        character,
+        _deciding_indicators(indicators, character),
+        orbit.outcomes,
+        orbit.exits_unknown,
+        findings=indicators,
+        made_by=orbit.made_by,
+    )
 
 
 def _combine(indicators: Sequence[IndicatorVerdict]) -> Verdict:
-    decided = {Verdict.REGULAR, Verdict.CHAOTIC}.intersection(one.conclusion for one in indicators)
-    if len(decided) == 1:
-        return decided.pop()
-    of_deviations = {one.conclusion for one in indicators if one.name in _DEVIATION_INDICATORS}
-    return Verdict.NO_SIGN if not decided and of_deviations == {Verdict.NO_SIGN} else Verdict.UNDECIDED
+    """Combine the conclusions on a bounded orbit, see `judge_orbit`."""
+    decisive = {Verdict.REGULAR, Verdict.CHAOTIC}.intersection(indicator.conclusion for indicator in indicators)
+    if len(decisive) == 1:
+        return decisive.pop()
+    of_deviations = {indicator.conclusion for indicator in indicators if indicator.name in _DEVIATION_INDICATORS}
+    return Verdict.NO_SIGN if not decisive and of_deviations == {Verdict.NO_SIGN} else Verdict.UNDECIDED
 
 
-def _character_inside(conclusions: Sequence[Verdict | None]) -> Verdict | None:
+def _judge_inside(conclusions: Sequence[Verdict | None]) -> Verdict | None:
+    """Return the character of an orbit that is not bounded."""
     return Verdict.CHAOTIC_INSIDE if Verdict.CHAOTIC_INSIDE in conclusions else None
 
 
 def _deciding_indicators(indicators: Sequence[IndicatorVerdict], character: Verdict | None) -> str:
     """Return the indicators that conclude this character, with their values."""
-    deciding = [one for one in indicators if character is not None and one.conclusion is character]
-    return ", ".join(f"{one.name} {one.value:.2g}" for one in deciding)
+    deciding = [indicator for indicator in indicators if character is not None and indicator.conclusion is character]
+    return ", ".join(f"{indicator.name} {indicator.value:.2g}" for indicator in deciding)
 
 
 def _find_evidence(orbit: Orbit, digits: BirkhoffDigits | None, shows_chaos: bool) -> Evidence:

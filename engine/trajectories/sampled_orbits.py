@@ -1,4 +1,4 @@
-"""Paths of many orbits at chosen times, in one result."""
+"""States of many orbits at chosen times, in one result."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 # Number of components of a state.
-_STATE = 4
+_COMPONENTS = 4
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -70,11 +70,11 @@ class SampledOrbits(OrbitResult):
 
         The dataset can be written as NetCDF and Zarr.
         """
-        unit = {"units": "1"}
-        are_common = bool((self.t == self.t[0]).all() and (np.diff(self.t[0]) > 0.0).all())
-        times = ("t", self.t[0], unit) if are_common else (("orbit", "sample"), self.t, unit)
-        dimensions = ("orbit", "t" if are_common else "sample")
-        paths = {name: (dimensions, getattr(self, name), unit) for name in ("x", "y", "px", "py")}
+        attributes = {"units": "1"}
+        times_are_common = bool((self.t == self.t[0]).all() and (np.diff(self.t[0]) > 0.0).all())
+        times = ("t", self.t[0], attributes) if times_are_common else (("orbit", "sample"), self.t, attributes)
+        dimensions = ("orbit", "t" if times_are_common else "sample")
+        paths = {name: (dimensions, getattr(self, name), attributes) for name in ("x", "y", "px", "py")}
         return super().to_xarray().assign(paths).assign_coords(t=times)
 
 
@@ -93,7 +93,8 @@ def sample_orbits(potential: Potential, states: Any, times: Any, *, execution: E
     states
         (n, 4) x, y, px, py at t = 0; finite, dimensionless.
     times
-        (m,) times for all orbits, or (n, m) times of each; ascending, from 0 to at most 1e7, the last above 0; dimensionless.
+        (m,) times for all orbits, or (n, m) times of each orbit, dimensionless: ascending, at least 0 and at most 1e7, the last
+        time above 0.
     execution
         How the computation runs.
 
@@ -121,55 +122,55 @@ def sample_orbits(potential: Potential, states: Any, times: Any, *, execution: E
     if not len(states):
         raise ValueError("states: must be at least one state")
     times = _checked_times(times, len(states), potential)
-    units, well = potential.units, potential.in_well_units
+    units, scaled_potential = potential.units, potential.in_well_units
     # The kernels are compiled before the threads begin.
-    kernels_of(well)
+    kernels_of(scaled_potential)
     futures = [
-        execution.submit(_sample_orbit, well, start / units.state, row / units.time)
-        for start, row in zip(states, times, strict=True)
+        execution.submit(_sample_orbit, scaled_potential, start / units.state, orbit_times / units.time)
+        for start, orbit_times in zip(states, times, strict=True)
     ]
-    rows = []
-    for place, future in enumerate(futures):
+    results = []
+    for index, future in enumerate(futures):
         if execution.is_cancelled:
-            for waiting in futures[place:]:
-                waiting.cancel()
+            for pending in futures[index:]:
+                pending.cancel()
         execution.raise_if_cancelled()
-        rows.append(execution.collect(future))
-        execution.report(lambda place=place: (place + 1) / len(futures))  # type: ignore[misc]
+        results.append(execution.collect(future))
+        execution.report(lambda index=index: (index + 1) / len(futures))  # type: ignore[misc]
     energies = potential.energy(states)
     outcomes = potential.outcomes_at((float(energies.min()), float(energies.max())))
-    found = units.restore(_join(well, states / units.state, times / units.time, rows))
-    return replace(found, outcomes=outcomes, made_by=describe_run(potential, t_max=float(times[:, -1].max())))
+    orbits = units.restore(_join(scaled_potential, states / units.state, times / units.time, results))
+    return replace(orbits, outcomes=outcomes, made_by=describe_run(potential, t_max=float(times[:, -1].max())))
 
 
 def _sample_orbit(potential: Potential, start: np.ndarray, times: np.ndarray) -> tuple[np.ndarray, Outcomes]:
     """Return the states of one orbit, of shape (4, m), and its outcome, in units of the well."""
     curves = exit_curves(potential, float(potential.energy(start)))
     recorded = record_orbit(potential, start, curves, times[-1], SERIAL_EXECUTION)
-    path = np.full((_STATE, times.size), np.nan)
+    path = np.full((_COMPONENTS, times.size), np.nan)
     if len(recorded.steps):
-        reached = int(np.searchsorted(times, recorded.t_end, side="right"))
-        path[:, :reached] = sample_path(kernels_of(potential), recorded.steps, times[:reached])
+        count = int(np.searchsorted(times, recorded.t_end, side="right"))
+        path[:, :count] = sample_path(kernels_of(potential), recorded.steps, times[:count])
     else:
-        # This orbit starts outside.
+        # An orbit that starts outside has a state at t = 0 only.
         path[:, times == 0.0] = start[:, None]
     return path, recorded.outcomes
 
 
-def _join(potential: Potential, states: np.ndarray, times: np.ndarray, rows: list[Any]) -> SampledOrbits:
-    """Join the results of all orbits, in units of the well."""
-    paths = np.array([path for path, _ in rows]).reshape(len(rows), _STATE, times.shape[1])
-    ends = (np.concatenate([getattr(outcome, name) for _, outcome in rows]) for name in ("fate", "escape_time", "crossings"))
-    arrays = (times, *paths.transpose(1, 0, 2), *ends, np.atleast_1d(potential.energy(states)))
-    filled: list[Any] = [read_only(np.ascontiguousarray(array)) for array in arrays]
-    return SampledOrbits(*filled)
+def _join(potential: Potential, states: np.ndarray, times: np.ndarray, results: list[Any]) -> SampledOrbits:
+    """Join the results of `_sample_orbit` for all orbits, in units of the well."""
+    paths = np.array([path for path, _ in results]).reshape(len(results), _COMPONENTS, times.shape[1])
+    names = ("fate", "escape_time", "crossings")
+    outcomes = (np.concatenate([getattr(outcome, name) for _, outcome in results]) for name in names)
+    arrays = (times, *paths.transpose(1, 0, 2), *outcomes, np.atleast_1d(potential.energy(states)))
+    fields: list[Any] = [read_only(np.ascontiguousarray(array)) for array in arrays]
+    return SampledOrbits(*fields)
 
 
 def _checked_times(times: np.ndarray, count: int, potential: Potential) -> np.ndarray:
-    """Return the times of all orbits, of shape (n, m)."""
+    """Return the times of each orbit, of shape (n, m); ValueError if they are not as `sample_orbits` takes them."""
     rows = np.array(np.broadcast_to(times, (count, times.size))) if times.ndim == 1 else times
-    has_shape = rows.ndim == 2 and len(rows) == count and rows.size > 0
-    if not has_shape:
+    if not (rows.ndim == 2 and len(rows) == count and rows.size > 0):
         raise ValueError(f"times of shape {times.shape}: must be (m,) or ({count}, m)")
     if not ((rows[:, 0] >= 0.0).all() and (np.diff(rows) >= 0.0).all()):
         raise ValueError(f"times={short_repr(times.tolist())}: must be ascending from 0")

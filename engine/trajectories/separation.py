@@ -21,6 +21,7 @@ from engine.systems.well_units import LENGTH, TIME
 LONGEST_SEPARATION = 2000.0
 """Longest time over which two orbits are compared, in units of the well; neighbours in a chaotic sea separate much earlier."""
 
+# Number of times at which the distance is computed.
 _SAMPLES = 2000
 
 
@@ -34,7 +35,7 @@ class Separation(RecordedResult):
         (n,) times, evenly spaced from 0.
     distance
         (n,) √(Δx² + Δy² + Δpx² + Δpy²), with momenta in units in which the unit of time of the well is 1; 0 where both states are
-        equal to the last digit.
+        exactly equal.
     """
 
     t: np.ndarray = field(metadata=TIME)
@@ -49,8 +50,8 @@ def compute_separation(
 ) -> Separation:
     """Compute the distance of two orbits at 2000 evenly spaced times.
 
-    Both states come from the dense output of their own integration at the same times, so small distances are accurate to the
-    rounding of the states, about 1e-16.
+    Each orbit is integrated on its own, and its dense output gives the states at common times. Small distances are therefore
+    accurate to the rounding of the states, about 1e-16.
 
     Parameters
     ----------
@@ -59,8 +60,8 @@ def compute_separation(
     first, second
         (4,) initial x, y, px, py; finite, dimensionless.
     t_max
-        Last time, 0 < t_max ≤ 1e8, dimensionless; not after the escape of either orbit. Times beyond 2000 units of the well are
-        left out.
+        Last time, 0 < t_max ≤ 1e8, dimensionless; not after the escape of either orbit. A time above 2000 units of the well is
+        reduced to 2000.
     execution
         How the computation runs.
 
@@ -79,8 +80,9 @@ def compute_separation(
     >>> distance.size, round(float(distance[-1] / distance[0]))
     (2000, 235)
     """
-    longest, units = potential.checked_t_max(t_max), potential.units
-    times = np.linspace(0.0, min(longest / units.time, LONGEST_SEPARATION), _SAMPLES)
+    t_max = potential.checked_t_max(t_max)
+    units = potential.units
+    times = np.linspace(0.0, min(t_max / units.time, LONGEST_SEPARATION), _SAMPLES)
     kernels = kernels_of(potential.in_well_units)
     paths = []
     for name, state in (("first", first), ("second", second)):

@@ -13,7 +13,7 @@ from engine.slices.window import Window
 SPACING = 1 / 200
 """Largest distance between neighbouring points as a share of the window's side, before straight parts are thinned."""
 
-# Curves in a window extend beyond the window's edges by this share of its sides.
+# Distance by which curves extend beyond the edges of a window, as a share of its sides.
 _WINDOW_MARGIN = 0.1
 
 # Largest distance of a point from the chord of its neighbours, as a share of the spacing.
@@ -22,9 +22,9 @@ _MAX_SAGITTA = 0.05
 _THINNING_TOLERANCE = 0.025
 # Largest difference in passage time between neighbouring points of an arc, in units of the well.
 _MAX_TIME_GAP = 0.3
-# Orbits of a tube have phases from 0 to 1. Initial number of intervals of the phase.
+# Initial number of intervals of the phase; orbits of a tube have phases from 0 to 1.
 _FIRST_INTERVALS = 512
-# Smallest widths to which intervals are refined, each for all images before the next. Below the last width, rounding errors of
+# Smallest widths of the intervals in successive rounds of refinement of all passages; below the last width, rounding errors of
 # the start states are visible.
 _MIN_WIDTHS = (1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10)
 # Largest number of parts into which an interval is split at once.
@@ -35,7 +35,7 @@ _MAX_PARTS = 8
 class PointSpacing:
     """Largest distance between neighbouring points: `fine` in the window that is drawn, `coarse` elsewhere.
 
-    The window is given by its `low` and `high` corners on the plane of the unstable manifold, where px has the opposite sign;
+    `low` and `high` are the corners of the window on the plane of the unstable manifold, where px has the opposite sign. They are
     None for the whole plane.
     """
 
@@ -45,9 +45,9 @@ class PointSpacing:
     high: np.ndarray | None = None
 
     @classmethod
-    def for_window(cls, whole: Window, window: Window | None) -> PointSpacing:
-        """Return the spacing for the whole interior, or for a window in it, both on the plane of the stable manifold."""
-        coarse = SPACING * whole.width
+    def for_window(cls, plane_window: Window, window: Window | None) -> PointSpacing:
+        """Return the spacing for a window, or for the window of the whole plane, both on the plane of the stable manifold."""
+        coarse = SPACING * plane_window.width
         if window is None:
             return cls(coarse, coarse)
         low, high = np.array([[window.x_low, -window.ordinate_high], [window.x_high, -window.ordinate_low]])
@@ -62,12 +62,12 @@ class PointSpacing:
         # Between two points, a curve may bulge by as much as their distance.
         distance = np.abs(np.diff(points, axis=0)).max(axis=1)[:, None]
         start, end = points[:-1], points[1:]
-        near = (np.minimum(end, start) - distance <= self.high) & (np.maximum(end, start) + distance >= self.low)
-        spacing: np.ndarray = np.where(near.all(axis=1), self.fine, self.coarse)
+        is_near = (np.minimum(end, start) - distance <= self.high) & (np.maximum(end, start) + distance >= self.low)
+        spacing: np.ndarray = np.where(is_near.all(axis=1), self.fine, self.coarse)
         return spacing
 
     def thin(self, piece: np.ndarray) -> Iterator[np.ndarray]:
-        """Yield the lines of a piece in the window, each (m, 2), without points close to the line between their neighbours."""
+        """Yield the lines (m, 2) of a piece in the window, without points close to the line between their neighbours."""
         import shapely
 
         line = shapely.simplify(shapely.LineString(piece), _THINNING_TOLERANCE * self.fine, preserve_topology=False)
@@ -79,7 +79,11 @@ class PointSpacing:
 def refine_passages(
     find_passages: Callable[[np.ndarray], np.ndarray], count: int, spacing: PointSpacing, max_orbits: int
 ) -> np.ndarray:
-    """Return passages (n, count, 3) of orbits of rising phase, refined until curves are smooth or `max_orbits` are added."""
+    """Return passages of orbits of rising phase, (n, count, 3); orbits are added until the curves are smooth.
+
+    `find_passages` is a function of phases (m,) that returns the passages, (m, count, 3): x, px and time. At most `max_orbits`
+    orbits are added.
+    """
     phases = np.linspace(0.0, 1.0, _FIRST_INTERVALS + 1)
     passages = find_passages(phases)
     for min_width, passage in itertools.product(_MIN_WIDTHS, range(count)):
@@ -88,10 +92,10 @@ def refine_passages(
             parts = _affordable(_parts_needed(passages[:, passage], spacing), width, min_width, max_orbits)
             if parts.max() == 1:
                 break
-            interval, new = _subdivide(phases, width, parts)
-            phases = np.insert(phases, interval + 1, new)
-            passages = np.insert(passages, interval + 1, find_passages(new), axis=0)
-            max_orbits -= new.size
+            interval, new_phases = _subdivide(phases, width, parts)
+            phases = np.insert(phases, interval + 1, new_phases)
+            passages = np.insert(passages, interval + 1, find_passages(new_phases), axis=0)
+            max_orbits -= new_phases.size
     return passages
 
 
@@ -117,37 +121,40 @@ def _parts_needed(points: np.ndarray, spacing: PointSpacing) -> np.ndarray:
     step = np.diff(points, axis=0)
     length = np.hypot(step[:, 0], step[:, 1])
     parts = np.ceil(np.maximum(length / allowed, np.abs(step[:, 2]) / _MAX_TIME_GAP))
+    # NaN marks an interval with a missing passage at one end or at both.
     parts = np.where(np.isnan(parts), np.where(exists[1:] != exists[:-1], _MAX_PARTS, 1), np.maximum(parts, 1))
-    sharp = _sagitta(step[:, :2], length) > _MAX_SAGITTA * np.minimum(allowed[1:], allowed[:-1])
-    parts[:-1][sharp] = np.maximum(parts[:-1][sharp], 2)
-    parts[1:][sharp] = np.maximum(parts[1:][sharp], 2)
+    # Both intervals next to a sharp bend are split.
+    is_sharp = _sagitta(step[:, :2], length) > _MAX_SAGITTA * np.minimum(allowed[1:], allowed[:-1])
+    parts[:-1][is_sharp] = np.maximum(parts[:-1][is_sharp], 2)
+    parts[1:][is_sharp] = np.maximum(parts[1:][is_sharp], 2)
     return np.minimum(parts, _MAX_PARTS)
 
 
 def _sagitta(step: np.ndarray, length: np.ndarray) -> np.ndarray:
-    """Return the distance of each inner point from the chord of its neighbours, or the farther neighbour at a reversal.
+    """Return the distance of each inner point from the chord of its neighbours, of shape (n − 2,).
 
-    `step`, (n − 1, 2), and `length`, (n − 1,), are the differences between neighbouring points and their lengths. NaN distances
-    become 0.
+    Where the curve reverses, the distance is that from the farther neighbour. NaN becomes 0. `step`, (n − 1, 2), and `length`,
+    (n − 1,), are the differences between neighbouring points and their lengths.
     """
-    before, after = step[:-1], step[1:]
-    area = np.abs(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0])
-    chord = np.maximum(np.hypot(*(before + after).T), np.finfo(float).tiny)
-    ahead = np.sum(before * after, axis=1) > 0.0
-    sagitta: np.ndarray = np.where(ahead, area / chord, np.maximum(length[:-1], length[1:]))
+    step_in, step_out = step[:-1], step[1:]
+    area = np.abs(step_in[:, 0] * step_out[:, 1] - step_in[:, 1] * step_out[:, 0])
+    chord = np.maximum(np.hypot(*(step_in + step_out).T), np.finfo(float).tiny)
+    goes_ahead = np.sum(step_in * step_out, axis=1) > 0.0
+    sagitta: np.ndarray = np.where(goes_ahead, area / chord, np.maximum(length[:-1], length[1:]))
     return np.where(np.isnan(area), 0.0, sagitta)
 
 
 def split_curve(curve: np.ndarray, spacing: PointSpacing, closed: bool) -> list[np.ndarray]:
-    """Return the pieces, (m, 2), m ≥ 2, of a curve (n, 3) between gaps; last and first piece of a closed curve are joined."""
+    """Return the pieces of a curve (n, 3) between gaps, each (m, 2), m ≥ 2; the last piece of a closed curve joins the first."""
     step = np.diff(curve, axis=0)
-    short = np.hypot(step[:, 0], step[:, 1]) <= 2.0 * spacing.between(curve[:, :2])
-    joined = short & (np.abs(step[:, 2]) <= 2.0 * _MAX_TIME_GAP)
-    edges = np.concatenate([[0], np.flatnonzero(~joined) + 1, [len(curve)]])
+    is_short = np.hypot(step[:, 0], step[:, 1]) <= 2.0 * spacing.between(curve[:, :2])
+    is_joined = is_short & (np.abs(step[:, 2]) <= 2.0 * _MAX_TIME_GAP)
+    edges = np.concatenate([[0], np.flatnonzero(~is_joined) + 1, [len(curve)]])
     runs = [(begin, end) for begin, end in itertools.pairwise(edges) if end - begin > 1]
     pieces = [curve[begin:end, :2] for begin, end in runs]
     if closed and runs and runs[0][0] == 0 and runs[-1][1] == len(curve):
-        # The first and the last orbit of a closed curve are the same.
+        # The first and the last point of a closed curve belong to the same orbit. The first piece, or without a gap its first
+        # point, replaces the last point.
         last = pieces.pop()
         pieces[:1] = [np.concatenate([last[:-1], pieces[0] if pieces else last[:1]])]
     return pieces

@@ -35,10 +35,10 @@ if TYPE_CHECKING:
     import xarray as xr
 
 MOST_IMAGES = 6
-"""Largest number of images; later ones are too fine and too many to plot."""
+"""Largest number of images; the arcs of later images are too fine and too many to plot."""
 
 ORBITS_PER_IMAGE = 20_000
-"""Largest number of orbits integrated per channel and image, about 0.3 s of work; finer structure is left out."""
+"""Largest number of orbits integrated per channel and image, about 0.3 s of work; what they do not resolve is left out."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,7 +74,7 @@ class StableManifolds(Result):
     images
         Number of images computed for each tube.
     truncated
-        Whether an arc is incomplete: it winds around another arc infinitely often, or is too fine to be resolved.
+        Whether an arc is truncated, because it winds around another arc infinitely often or is too fine to be resolved.
     """
 
     potential: Potential
@@ -112,10 +112,12 @@ class StableManifolds(Result):
     def describe(self) -> str:
         """Return the numbers of arcs and points in one sentence."""
         images = sorted({arc.image for arc in self.arcs})
-        shown = f"images {', '.join(map(str, images))}" if len(images) > 1 else f"image {images[0]}" if images else "no image"
+        image_text = (
+            f"images {', '.join(map(str, images))}" if len(images) > 1 else f"image {images[0]}" if images else "no image"
+        )
         points = format_whole(sum(arc.x.size for arc in self.arcs))
-        truncated = ", some of them truncated spirals" if self.truncated else ""
-        return f"Stable manifolds of the Lyapunov orbits, {shown}: {len(self.arcs)} arcs of {points} points{truncated}."
+        note = ", some of them truncated spirals" if self.truncated else ""
+        return f"Stable manifolds of the Lyapunov orbits, {image_text}: {len(self.arcs)} arcs of {points} points{note}."
 
     @property
     def nbytes(self) -> int:
@@ -148,16 +150,16 @@ def find_stable_manifolds(
     images
         Number of successive intersections of each tube with the section, 1 to 6.
     window
-        Part of (x, px) to resolve in a zoom, given as in `MapSpec`: the spacing of points follows from its size, as far as the
-        number of orbits allows, and curves beyond the window are left out. None for the whole plane.
+        Part of (x, px) to resolve, given as in `MapSpec`; None for the whole plane. In a smaller window points are closer, as far
+        as the number of orbits allows. Curves beyond the window are left out.
     execution
         How the computation runs.
 
     Returns
     -------
-    The `StableManifolds`, without arcs at or below the escape energy. An arc ends where the tube, backward in time, leaves
-    through an exit. Near this end it winds infinitely often around the section of another manifold, and only the first few turns
-    are given. Points lie on the manifold to 1e-10.
+    The `StableManifolds`, which have no arcs at or below the escape energy. An arc ends where the tube, backward in time, leaves
+    through an exit. Near this end the arc winds infinitely often around an arc of another manifold, and is truncated after the
+    first few turns. Points lie on the manifold to 1e-10.
 
     Raises
     ------
@@ -179,39 +181,46 @@ def find_stable_manifolds(
     """
     potential.check_at_rest("stable manifolds")
     images = checked_count("images", images, 1, MOST_IMAGES)
-    given, given_energy, units = potential, checked_number("energy", energy), potential.units
-    whole = default_window(potential, SECTION, given_energy)
-    part = None if window is None else checked_window(window)
-    potential, energy = potential.in_well_units, given_energy / units.energy
+    energy = checked_number("energy", energy)
+    plane_window = default_window(potential, SECTION, energy)
+    zoom_window = None if window is None else checked_window(window)
+    units = potential.units
     factors = 1.0 / units.length, 1.0 / units.momentum
-    spacing = PointSpacing.for_window(whole.scaled(*factors), part.scaled(*factors) if part is not None else None)
-    orbits = {orbit.channel: orbit for orbit in find_orbits_in_well_units(potential, energy)}
-    mirror = potential.well.mirror_in_x and window is None
-    image = potential.well.mirror_numbers(energy) if mirror else np.arange(potential.channels + 1)
-    firsts = [channel for channel in orbits if channel <= image[channel]]
+    spacing = PointSpacing.for_window(
+        plane_window.scaled(*factors), None if zoom_window is None else zoom_window.scaled(*factors)
+    )
+    scaled_potential = potential.in_well_units
+    scaled_energy = energy / units.energy
+    orbits = {orbit.channel: orbit for orbit in find_orbits_in_well_units(scaled_potential, scaled_energy)}
+    # A window need not be symmetric, so all channels are computed in a window.
+    uses_mirror = scaled_potential.well.mirror_in_x and window is None
+    mirror_channel = (
+        scaled_potential.well.mirror_numbers(scaled_energy) if uses_mirror else np.arange(scaled_potential.channels + 1)
+    )
+    computed_channels = [channel for channel in orbits if channel <= mirror_channel[channel]]
     # Each thread mostly waits for the tiles of its channel.
-    with ThreadPoolExecutor(max(len(firsts), 1)) as threads:
-        found = threads.map(lambda channel: _find_arcs(orbits[channel], images, spacing, execution), firsts)
-        arcs = dict(zip(firsts, found, strict=True))
-    truncated = any(unfinished for _, unfinished in arcs.values())
-    restored = tuple(units.restore(arc) for channel in orbits for arc in _arcs_of(channel, arcs, int(image[channel])))
-    return StableManifolds(given, given_energy, restored, images, truncated)
+    with ThreadPoolExecutor(max(len(computed_channels), 1)) as threads:
+        results = threads.map(lambda channel: _find_arcs(orbits[channel], images, spacing, execution), computed_channels)
+        arcs = dict(zip(computed_channels, results, strict=True))
+    truncated = any(is_truncated for _, is_truncated in arcs.values())
+    restored = tuple(units.restore(arc) for channel in orbits for arc in _arcs_of(channel, arcs, int(mirror_channel[channel])))
+    return StableManifolds(potential, energy, restored, images, truncated)
 
 
-def _arcs_of(channel: int, arcs: dict[int, tuple[list[ManifoldArc], bool]], image: int) -> list[ManifoldArc]:
-    """Return the arcs of a channel, or the mirror images of the arcs of its mirror channel."""
+def _arcs_of(channel: int, arcs: dict[int, tuple[list[ManifoldArc], bool]], mirror_channel: int) -> list[ManifoldArc]:
+    """Return the arcs of a channel, computed, or mirrored from the arcs of its mirror channel."""
     if channel in arcs:
         return arcs[channel][0]
-    return [_mirrored(arc, channel) for arc in arcs[image][0]]
+    return [_mirrored(arc, channel) for arc in arcs[mirror_channel][0]]
 
 
 def _mirrored(arc: ManifoldArc, channel: int) -> ManifoldArc:
-    """Return the image under x → −x, which maps (x, px) to (−x, −px)."""
+    """Return an arc mirrored by x → −x, which maps (x, px) to (−x, −px)."""
     return ManifoldArc(channel, arc.image, read_only(-arc.x), read_only(-arc.px))
 
 
 def _find_arcs(orbit: LyapunovOrbit, images: int, spacing: PointSpacing, execution: Execution) -> tuple[list[ManifoldArc], bool]:
-    """Return the arcs of one channel, and whether any arc is incomplete."""
+    """Return the arcs of one channel, and whether any arc is truncated."""
     try:
         tube = UnstableManifold.from_orbit(orbit)
     except ValueError as error:
@@ -221,18 +230,18 @@ def _find_arcs(orbit: LyapunovOrbit, images: int, spacing: PointSpacing, executi
         lambda phases: tube.find_passages(phases, count, execution), count, spacing, images * ORBITS_PER_IMAGE
     )
     arcs = []
-    unfinished = False
+    is_truncated = False
     for image in range(1, images + 1):
         first = 0 if image == 1 else tube.near_passages + image - 1
         # The passages near the Lyapunov orbit join end to end and belong to image 1.
         curve = np.concatenate([passages[:, k] for k in range(first, tube.near_passages + image)])
         pieces = split_curve(curve, spacing, closed=tube.near_passages == 0)
-        unfinished |= not (len(pieces) == 1 and np.isfinite(curve).all())
+        is_truncated |= not (len(pieces) == 1 and np.isfinite(curve).all())
         arcs += [_arc(orbit.channel, image, line) for piece in pieces for line in spacing.thin(piece)]
-    return arcs, unfinished
+    return arcs, is_truncated
 
 
 def _arc(channel: int, image: int, line: np.ndarray) -> ManifoldArc:
-    """Return the arc of the stable manifold that follows from a line (m, 2) of the unstable manifold by reversing momenta."""
+    """Return an arc of the stable manifold, given a line (m, 2) of the unstable manifold, by reversing the momenta."""
     x, px = line.T
     return ManifoldArc(channel, image, read_only(x.copy()), read_only(-px))

@@ -29,7 +29,7 @@ from engine.trajectories.birkhoff_digits import BirkhoffDigits, compute_birkhoff
 MAX_ORBIT_TIME = 1e7
 """Largest t_max of `integrate_orbit`, for which its samples take 3 GB."""
 
-# Interval between samples, in units of the well, unless this gives too few or too many samples.
+# Interval between samples, in units of the well, unless it gives too few or too many samples.
 _SAMPLE_INTERVAL = 0.02
 # Smallest number of intervals between samples.
 _MIN_SAMPLES = 400
@@ -42,7 +42,7 @@ _MAX_SAMPLES = 500_000
 class Orbit(OrbitResult):
     """One orbit, dimensionless, sampled at n evenly spaced times from 0 to the escape or t_max; arrays are read-only.
 
-    An orbit exactly at rest on a saddle is bounded; it ends where rounding carries it off the saddle.
+    An orbit exactly at rest on a saddle is bounded; its samples end where rounding carries the orbit off the saddle.
 
     Attributes
     ----------
@@ -58,7 +58,8 @@ class Orbit(OrbitResult):
     fate
         k ≥ 1 for the outcome ``outcomes[k - 1]``, such as channel k, or a `Fate`, never `Fate.FORBIDDEN`.
     escape_time
-        Time of the passage through the exit, of the collision or of the passage of the escape radius; NaN without an outcome.
+        Time of the outcome: of the passage through an exit, of the collision, or of the passage of the escape radius; NaN without
+        an outcome.
     crossings
         Upward crossings of y = 0 before the escape or t_max; the start is not counted.
     energy_error
@@ -112,9 +113,9 @@ class Orbit(OrbitResult):
     def find_section_crossings(self) -> np.ndarray:
         """Return x and px at the upward crossings of y = 0, (n, 2), dimensionless, in order of time; n equals `crossings`.
 
-        The start is not counted. Between two samples on different sides of y = 0, the Taylor series of the first sample is used.
-        If steps are shorter than the distance of the samples, as near a body, the series of the step is used. Raises ValueError
-        if the orbit has no potential.
+        The start is not counted. A crossing between two samples is found with the Taylor series of the first sample or, where
+        steps are shorter than the distance of the samples, as near a body, with the series of the step. Raises ValueError if the
+        orbit has no potential.
 
         Examples
         --------
@@ -129,10 +130,10 @@ class Orbit(OrbitResult):
         samples = np.stack([self.x, self.y, self.px, self.py]) / units.state[:, None]
         times = self.t / units.time
         steps = trace_steps(kernels, samples[:, 0], times[-1], len(potential.outcomes))
-        short = steps[np.isin(steps[:, 4], _starts_of_short_steps(times, steps[:, 4]))]
-        every_time, first = np.unique(np.concatenate([times, short[:, 4]]), return_index=True)
-        path = np.concatenate([samples, short[:, :4].T], axis=1)[:, first]
-        return find_crossings(kernels, path, every_time) * [units.length, units.momentum]
+        short_steps = steps[np.isin(steps[:, 4], _starts_of_short_steps(times, steps[:, 4]))]
+        all_times, index = np.unique(np.concatenate([times, short_steps[:, 4]]), return_index=True)
+        path = np.concatenate([samples, short_steps[:, :4].T], axis=1)[:, index]
+        return find_crossings(kernels, path, all_times) * [units.length, units.momentum]
 
     def compute_birkhoff_digits(self, *, execution: Execution = DEFAULT_EXECUTION) -> BirkhoffDigits:
         """Compute the digits to which averages over two consecutive windows agree, for windows up to half as long as the orbit.
@@ -161,9 +162,9 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, exe
     """Integrate one orbit until it escapes or up to `t_max`.
 
     Fate, escape time and crossings are identical to those of a map pixel with the same start. The deviation vectors obey eq. 4
-    and SALI eq. 9 of Zotos (2014). The growth of the first vector gives the finite-time Lyapunov exponent (Benettin, Galgani,
-    Giorgilli & Strelcyn 1980, Meccanica 15, 9; Skokos 2010, Lect. Notes Phys. 790, 63). The deviation vectors have no influence
-    on the integration steps. If the exits are not defined at the energy, see `find_lyapunov_orbits`, the orbit is
+    of Zotos (2014), and SALI is given by eq. 9. The growth of the first vector gives the finite-time Lyapunov exponent (Benettin,
+    Galgani, Giorgilli & Strelcyn 1980, Meccanica 15, 9; Skokos 2010, Lect. Notes Phys. 790, 63). The deviation vectors have no
+    influence on the integration steps. If the exits are not defined at the energy, see `find_lyapunov_orbits`, the orbit is
     integrated without exits, and `Orbit.exits_unknown` has the reason.
 
     Parameters
@@ -173,8 +174,8 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, exe
     state
         (4,) x, y, px, py; finite, dimensionless. Its energy determines the exits.
     t_max
-        Longest integration time, 0 < t_max ≤ 1e7, dimensionless. Above about 1e5, samples are up to one integration step apart
-        and take about 300 bytes per time unit.
+        Longest integration time, 0 < t_max ≤ 1e7, dimensionless. Above about 1e5, there is at least one sample per integration
+        step, which takes about 300 bytes per time unit.
     execution
         How the computation runs.
 
@@ -192,8 +193,9 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, exe
     >>> orbit.fate, round(orbit.escape_time, 4), orbit.to_pandas().shape[1]
     (1, 15.1781, 8)
     """
-    start, units = checked_state("state", state), potential.units
+    start = checked_state("state", state)
     t_max = potential.checked_t_max(t_max, MAX_ORBIT_TIME)
+    units = potential.units
     orbit = _integrate(potential.in_well_units, start / units.state, t_max / units.time, execution)
     return replace(units.restore(orbit), potential=potential, made_by=describe_run(potential, t_max=t_max))
 
@@ -207,6 +209,7 @@ def _integrate(potential: Potential, start: np.ndarray, t_max: float, execution:
     arrays = (times, x, y, px, py, sali, exponent, x * x + y * y)
     for array in arrays:
         read_only(array)
+    # The columns of one orbit are arrays of length 1, in this order.
     fate, escape_time, crossings, energy_error = (values[0].item() for values in recorded.outcomes.columns().values())
     evidence = _find_evidence(potential, energy, fate)
     numbers = fate, escape_time, crossings, energy_error, energy, evidence, potential.well.exact_time_unit
@@ -228,22 +231,21 @@ def _sample_orbit(
         return np.zeros(1), start[:, None].copy(), np.full(1, np.sqrt(2.0)), np.full(1, np.nan)
     kernels = kernels_of(potential)
     times = np.linspace(0.0, t_end, _sample_count(t_end, len(steps)))
-    every_time = np.union1d(times, _starts_of_short_steps(times, steps[:, 4]))
-    path = sample_path(kernels, steps, every_time, execution)
-    sali, growth = sample_deviations(kernels, path, every_time, DEVIATION_VECTORS, execution)
-    sampled = np.searchsorted(every_time, times)
-    path, sali, growth = np.ascontiguousarray(path[:, sampled]), sali[sampled], growth[sampled]
+    all_times = np.union1d(times, _starts_of_short_steps(times, steps[:, 4]))
+    path = sample_path(kernels, steps, all_times, execution)
+    sali, growth = sample_deviations(kernels, path, all_times, DEVIATION_VECTORS, execution)
+    index = np.searchsorted(all_times, times)
     exponent = np.full_like(times, np.nan)
     with np.errstate(over="ignore"):
-        # The reciprocal of a very short time can overflow.
-        np.divide(growth, times, out=exponent, where=times > 0.0)
-    return times, path, sali, exponent
+        # The quotient by a very short time can overflow.
+        np.divide(growth[index], times, out=exponent, where=times > 0.0)
+    return times, np.ascontiguousarray(path[:, index]), sali[index], exponent
 
 
 def _starts_of_short_steps(times: np.ndarray, starts: np.ndarray) -> np.ndarray:
-    """Return the starts of the steps in intervals between samples that contain a whole step, as near a body.
+    """Return the starts of the steps in those intervals between samples that contain a whole step, as near a body.
 
-    Deviation vectors are carried over each interval by one series, which is valid for about one step.
+    Deviation vectors are carried over an interval by one series, which is valid for about one step only.
     """
     interval = np.searchsorted(times, starts, side="right") - 1
     contains_step = np.bincount(interval, minlength=times.size) > 1

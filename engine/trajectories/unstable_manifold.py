@@ -18,19 +18,19 @@ from engine.propagation.fixed_step_batches import map_tiles
 from engine.systems.compiled import kernels_of
 from engine.systems.potential import Potential
 
-# Largest displacement from the Lyapunov orbit at which orbits of the tube start. When the tube has grown to the size of the well,
-# the distance of such an orbit from the manifold scales with the third power of the displacement: 4e-8 for 1e-2, 3e-11 for 1e-3,
-# and thus 3e-13 for this value.
+# Largest displacement from the Lyapunov orbit at which orbits of the tube start, in units of the well. When the tube has grown to
+# the size of the well, the distance of such an orbit from the manifold scales with the third power of the displacement: 4e-8 for
+# 1e-2, 3e-11 for 1e-3, and thus 3e-13 for this value.
 _MAX_DISPLACEMENT = 2e-4
-# Between two section passages an orbit may stay near another Lyapunov orbit; stays longer than this many periods are not needed.
+# Longest time per passage of the section, in periods; an orbit that stays near another Lyapunov orbit for longer is not needed.
 _MAX_PERIODS_PER_PASSAGE = 12.0
-# Lyapunov orbits over a saddle have multipliers of 38 and more; with a multiplier near 1, an orbit is about to become stable.
+# Smallest multiplier of an unstable orbit. Over a saddle, multipliers are 38 or more; near 1, an orbit is about to become stable.
 _MIN_MULTIPLIER = 1.5
-# A Lyapunov orbit that crosses y = 0 is itself a point of the section, from which one infinite curve starts. Its first image ends
-# where a displacement that continued to grow by the multiplier would reach this multiple of the distance of the saddle from the
-# origin.
+# End of the first image of a Lyapunov orbit that crosses y = 0, in units of the distance of the saddle from the origin. Such an
+# orbit is itself a point of the section, where one infinite curve begins. The image ends where a displacement that continued to
+# grow by the multiplier would reach this size.
 _FIRST_IMAGE_END = 6.0
-# A tile takes about 0.3 ms.
+# Number of tiles that a thread computes at a time; a tile takes about 0.3 ms.
 _TILES_PER_TASK = 16
 
 
@@ -39,15 +39,15 @@ class UnstableManifold:
     """The inner branch of a Lyapunov orbit's unstable manifold, as a one-parameter family of orbits.
 
     A displacement from a fixed point of the Lyapunov orbit, in the unstable direction, grows by the multiplier per period. The
-    displacements between one size and the multiplier times that size therefore give each orbit of the branch once (a fundamental
-    domain). Their parameter is a phase from 0 to 1; both ends give the same orbit.
+    displacements between any size and the multiplier times that size therefore give each orbit of the branch once (a fundamental
+    domain). The parameter of the family is a phase from 0 to 1; phases 0 and 1 give the same orbit.
 
     Attributes
     ----------
     orbit
         The Lyapunov orbit of a potential in units of its well.
     direction
-        (4,) unit vector in phase space at the first point of the orbit, where it is at rest: the unstable direction, inward.
+        (4,) unit vector in phase space: the inward unstable direction at the first point of the orbit, a point of rest.
     multiplier
         Unstable eigenvalue of the monodromy matrix, above 1.
     min_displacement, max_displacement
@@ -84,6 +84,7 @@ class UnstableManifold:
             direction = -direction
         largest, near_passages = _MAX_DISPLACEMENT, 0
         if orbit.y[0] * orbit.y[orbit.y.size // 2] <= 0.0:
+            # The ends of the orbit are on different sides of y = 0.
             end = _FIRST_IMAGE_END * float(np.hypot(*orbit.potential.saddles[orbit.channel - 1]))
             periods = math.ceil(math.log(end / _MAX_DISPLACEMENT) / math.log(multiplier))
             largest, near_passages = end * multiplier**-periods, periods - 1
@@ -97,16 +98,17 @@ class UnstableManifold:
         return self.orbit.potential
 
     def _displacement_after_period(self, left_eigenvector: np.ndarray) -> float:
-        """Return the displacement of the orbit of phase 0 after one period, which nonlinear terms change.
+        """Return the displacement of the orbit of phase 0 after one period, with nonlinear terms.
 
-        `left_eigenvector`, (4,), belongs to the multiplier: its product with a displacement is proportional to the unstable
-        component.
+        The product of `left_eigenvector`, (4,), which belongs to the multiplier, and a displacement is proportional to the
+        unstable component of the displacement.
         """
         kernels = kernels_of(self.potential)
         (start,) = self.start_states(np.array([self.min_displacement]))
         steps = trace_steps(kernels, start, self.orbit.period, len(self.potential.outcomes))
         target = sample_path(kernels, steps, np.array([self.orbit.period]))[:, 0]
         displacement = self.max_displacement
+        # Three corrections reach the limit of rounding.
         for _ in range(3):
             (trial,) = self.start_states(np.array([displacement]))
             displacement += float(left_eigenvector @ (target - trial) / (left_eigenvector @ self.direction))
@@ -126,8 +128,8 @@ class UnstableManifold:
 
         Returns
         -------
-        (n, count, 3) x, px and time; NaN for missing passages. At time 0 the displacement, if it grew exponentially at its
-        initial rate, would be 1, so that phases 0 and 1 give the same times.
+        (n, count, 3) x, px and time; NaN for missing passages. The time is 0 where the displacement, if it grew exponentially at
+        its initial rate, would be 1. Phases 0 and 1 thus give the same times.
 
         Raises
         ------
@@ -154,6 +156,7 @@ class UnstableManifold:
     def start_states(self, displacements: np.ndarray) -> np.ndarray:
         """Return n states displaced from the Lyapunov orbit's point of rest and projected back onto its energy, (n, 4)."""
         states: np.ndarray = self.orbit.start + displacements[:, None] * self.direction
+        # Three steps of Newton's method along the gradient of H.
         for _ in range(3):
             gradient = np.column_stack([*self.potential.gradient(states[:, 0], states[:, 1]), states[:, 2:]])
             excess = self.potential.energy(states) - self.orbit.energy
@@ -173,6 +176,7 @@ def _passages(
 ) -> np.ndarray:
     """Return the passages of the orbits in a tile (4, lanes), of shape (lanes, count, 3)."""
     passages = np.full((tile.shape[1], count, 3), np.nan)
-    found = np.zeros(tile.shape[1], np.int64)
-    kernels_of(potential).find_section_passages(TOLERANCE, duration, gates, curves, tile, passages, found)
+    counts = np.zeros(tile.shape[1], np.int64)
+    # The kernel writes the passages of each orbit and their number.
+    kernels_of(potential).find_section_passages(TOLERANCE, duration, gates, curves, tile, passages, counts)
     return passages

@@ -16,9 +16,9 @@ from plots.layers.picture import ColourScale, Legend, Picture, ShownMap
 from plots.pictures.image_columns import FIRST_CLASS, pixel_codes
 from plots.pictures.palette import Entry, Palette
 
-# Number of classes of equal width: uint8 codes that other pixels do not use.
+# Number of classes of equal width. Their codes and the codes of other pixels fit into uint8.
 _CLASSES = 240
-# Share of the pixels below the first class, and above the last.
+# Share of the pixels below the first class, and share above the last class.
 _LEFT_OUT = 0.01
 
 DURATION = Setting(
@@ -49,7 +49,7 @@ DIRECTION = Setting(
 
 @functools.cache
 def _scale_colours() -> tuple[str, ...]:
-    # Slow to import, and needed for pictures only.
+    # Matplotlib is slow to import, and only pictures need it.
     from matplotlib import colormaps
     from matplotlib.colors import to_hex
 
@@ -67,32 +67,33 @@ def _job(spec: MapSpec, settings: Settings) -> Job[DescriptorMap]:
     return Job(compute_lagrangian_descriptor, (map_job(spec),), tuple(choices.items()))
 
 
-def _limits(found: DescriptorMap) -> tuple[float, float]:
-    """Return the ends of the scale; few pixels have values beyond them."""
-    known = found.descriptor[np.isfinite(found.descriptor)]
-    if not known.size:
+def _limits(result: DescriptorMap) -> tuple[float, float]:
+    """Return the ends of the scale. Few pixels have values beyond the ends."""
+    values = result.descriptor[np.isfinite(result.descriptor)]
+    if not values.size:
         return 0.0, 1.0
-    low, high = np.quantile(known, (_LEFT_OUT, 1.0 - _LEFT_OUT)).tolist()
+    low, high = np.quantile(values, (_LEFT_OUT, 1.0 - _LEFT_OUT)).tolist()
     return (low, high) if low < high else (low, low + 1.0)
 
 
-def _codes(found: DescriptorMap, frame: EscapeMap | None) -> np.ndarray:
-    low, high = _limits(found)
-    is_known = np.isfinite(found.descriptor)
-    share = (np.clip(np.where(is_known, found.descriptor, low), low, high) - low) / (high - low)
-    fate = np.full(found.descriptor.shape, Fate.NOT_COMPUTED) if frame is None else frame.fate
-    without = np.where((fate == Fate.FORBIDDEN) | (fate == Fate.OUTSIDE), fate, Fate.NOT_COMPUTED)
+def _codes(result: DescriptorMap, frame: EscapeMap | None) -> np.ndarray:
+    low, high = _limits(result)
+    is_known = np.isfinite(result.descriptor)
+    share = (np.clip(np.where(is_known, result.descriptor, low), low, high) - low) / (high - low)
+    fate = np.full(result.descriptor.shape, Fate.NOT_COMPUTED) if frame is None else frame.fate
+    fate_without_value = np.where((fate == Fate.FORBIDDEN) | (fate == Fate.OUTSIDE), fate, Fate.NOT_COMPUTED)
     classes = np.minimum((share * _CLASSES).astype(int), _CLASSES - 1)
-    return pixel_codes(np.where(is_known, Fate.BOUNDED, without), classes, bounded_too=True)
+    # Pixels with a value get the codes of classes, as bounded pixels do.
+    return pixel_codes(np.where(is_known, Fate.BOUNDED, fate_without_value), classes, bounded_too=True)
 
 
 def _legend(shown: ShownMap) -> Legend:
-    found = shown.results.get("descriptor")
-    if found is None:
+    result = shown.results.get("descriptor")
+    if result is None:
         return Legend(sentence="…")
-    without = {Fate.FORBIDDEN, Fate.OUTSIDE}
-    others: list[Entry] = [entry for fate, entry in shown.outcome_entries().items() if fate in without]
-    low, high = (float(f"{end:.3g}") for end in _limits(found))
+    fates_without_orbit = {Fate.FORBIDDEN, Fate.OUTSIDE}
+    others: list[Entry] = [entry for fate, entry in shown.outcome_entries().items() if fate in fates_without_orbit]
+    low, high = (float(f"{end:.3g}") for end in _limits(result))
     return Legend(others=others, scale=ColourScale(low, high, _scale_colours(), is_logarithmic=False))
 
 
@@ -108,8 +109,8 @@ DESCRIPTORS = Layer(
         column="descriptor",
         codes=_codes,
         colours=_colours,
-        entries=lambda found, palette: [],
-        values=lambda found: found.descriptor.astype(np.float32),
+        entries=lambda result, palette: [],
+        values=lambda result: result.descriptor.astype(np.float32),
         value_name="Lagrangian descriptor",
         sentences=[""] * (FIRST_CLASS + _CLASSES),
     ),

@@ -45,8 +45,8 @@ class Code:
 
     def entry(self, palette: Palette) -> Entry:
         """Return the entry of a legend."""
-        place = list(PALETTES.values()).index(palette)
-        return Entry(self.label, self.colours[place % len(self.colours)])
+        index = list(PALETTES.values()).index(palette)
+        return Entry(self.label, self.colours[index % len(self.colours)])
 
 
 def occurring_entries(codes: Sequence[Code], values: np.ndarray, palette: Palette) -> list[Entry]:
@@ -88,7 +88,7 @@ class Setting:
 
 @dataclass(frozen=True)
 class Count:
-    """The whole number that switches a layer on at the command line, where 0 is off.
+    """The whole number that switches a layer on at the command line; 0 means off.
 
     Attributes
     ----------
@@ -111,7 +111,7 @@ class Pixels:
     column
         Name of the column of codes.
     codes
-        (rows, columns) uint8 codes of a result on its map, or without one.
+        Returns the uint8 codes, of shape (rows, columns), of a result on its map, or without the map.
     colours
         Colours of the codes when the result is drawn alone.
     entries
@@ -119,13 +119,13 @@ class Pixels:
     sentences
         Descriptions of the codes in the hover text; empty for codes without one.
     own_sentences
-        Descriptions of the codes that depend on the result; None if they do not.
+        Returns descriptions of the codes for a result; None if descriptions do not depend on the result.
     values
-        (rows, columns) float32 values behind the codes of a result; None if there are none.
+        Returns the float32 values, of shape (rows, columns), behind the codes of a result; None if there are none.
     value_name
         Name of the values in the hover text.
     first_codes
-        (rows, columns) codes of an image of `EscapeMap.thinned` while there is no result; None if there are none.
+        Returns codes, of shape (rows, columns), from images of `EscapeMap.thinned` while there is no result; None without codes.
     """
 
     column: str
@@ -150,13 +150,13 @@ class Pixels:
 
     @property
     def column_names(self) -> tuple[str, ...]:
-        """Names of its columns."""
+        """Names of all columns."""
         numbers = () if self.values is None else (self.value_column,)
         words = () if self.own_sentences is None else (self.word_column,)
         return (self.column, *numbers, *words)
 
     def columns(self, result: Any, frame: EscapeMap | None) -> dict[str, list[Any]]:
-        """Return the columns of a result on its map, or without one."""
+        """Return the columns of a result on its map, or without the map."""
         numbers: dict[str, list[Any]] = {} if self.values is None else {self.value_column: [self.values(result)]}
         words = {} if self.own_sentences is None else {self.word_column: [list(self.own_sentences(result))]}
         return {self.column: [self.codes(result, frame)], **numbers, **words}
@@ -171,7 +171,7 @@ class Stroke:
     channel
         Exit channel, from 1; the lines have its colour.
     lines
-        (n, 2) points of each line in the plane.
+        Points of each line in the plane, of shape (n, 2).
     width, halo_width
         Widths of the line and of the light line below it, in pixels; 0 for no line below.
     alpha
@@ -243,9 +243,9 @@ class Layer:
     stage
         Text of the progress bar of the command line.
     result
-        Class of the result. Its method ``describe()`` returns a sentence; the result may be incomplete.
+        Class of the result. Its method ``describe()`` returns a sentence, even for an incomplete result.
     job
-        Computes the result of a map. The settings contain the number of a `count` under the layer's name.
+        Returns the job that computes the result of a map. The number of `count` is the setting with the layer's name.
         Raises ValueError if a setting is out of range.
     refusal
         Reason why the layer cannot be computed for a map; empty if it can.
@@ -293,5 +293,5 @@ class Layer:
     is_offered: Callable[[EscapeMap], bool] = never
 
     def over_picture(self, picture: str) -> Over | None:
-        """What the layer draws over a picture; None if it draws nothing."""
+        """Return what the layer draws over a picture; None if it draws nothing."""
         return self.over if self.over is not None and picture in self.over.pictures else None

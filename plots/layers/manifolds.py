@@ -14,12 +14,12 @@ from engine.trajectories.stable_manifolds import MOST_IMAGES, ManifoldArc
 from plots.layers.layer import Count, Layer, Over, Setting, Settings, Stroke
 from plots.pictures.palette import Entry, Mark, Palette
 
-# Number of images that the page computes. Later images are less than a pixel apart.
+# Number of images that the page computes. Later images are closer together than a pixel.
 _IMAGES = 3
 
-# Widths of the first, the second and all later images, in pixels. Later images lie closer together.
+# Widths of the first, the second and all later images, in pixels: later images lie closer together.
 _WIDTHS = (1.6, 1.0, 0.6)
-# Opacities of these images.
+# Opacities of the first, the second and all later images.
 _ALPHAS = (1.0, 0.9, 0.6)
 # Width of the halo on each side of a line, in pixels.
 _HALO_RIM = 0.8
@@ -37,8 +37,8 @@ IMAGE = Setting(
 def manifold_strokes(manifolds: StableManifolds) -> list[Stroke]:
     """Return the manifolds from back to front.
 
-    Earlier images are in front of later images, and only the first has a halo. Within an image, shorter curves are in front, so
-    that a closed curve around a basin stays visible although spirals of other channels wind around the curve within a pixel.
+    Earlier images are in front of later images. Only the first image has a halo. Within an image, shorter curves are in front: a
+    closed curve around a basin stays visible although spirals of other channels wind around this curve within a pixel.
     """
     groups: dict[tuple[int, int], list[ManifoldArc]] = {}
     for arc in manifolds.arcs:
@@ -55,10 +55,10 @@ def select_image(manifolds: StableManifolds, image: int) -> StableManifolds:
 
 
 def _stroke(channel: int, image: int, arcs: list[ManifoldArc]) -> Stroke:
-    place = min(image, len(_WIDTHS)) - 1
-    halo_width = _WIDTHS[place] + 2.0 * _HALO_RIM if image == 1 else 0.0
+    index = min(image, len(_WIDTHS)) - 1
+    halo_width = _WIDTHS[index] + 2.0 * _HALO_RIM if image == 1 else 0.0
     lines = tuple(np.column_stack([arc.x, arc.px]) for arc in arcs)
-    return Stroke(channel, lines, _WIDTHS[place], halo_width, _ALPHAS[place])
+    return Stroke(channel, lines, _WIDTHS[index], halo_width, _ALPHAS[index])
 
 
 def _length(arc: ManifoldArc) -> float:

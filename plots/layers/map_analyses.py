@@ -29,8 +29,8 @@ class MapAnalyses(Mapping[str, Any]):
 
     def with_result(self, name: str, result: Any) -> MapAnalyses:
         """Return a copy in which a layer has another result; None removes the result."""
-        others = {other: found for other, found in self.results.items() if other != name}
-        return MapAnalyses(others if result is None else {**others, name: result})
+        other_results = {other: each for other, each in self.results.items() if other != name}
+        return MapAnalyses(other_results if result is None else {**other_results, name: result})
 
     def describe(self) -> list[str]:
         """Return a sentence for each result."""
@@ -38,8 +38,10 @@ class MapAnalyses(Mapping[str, Any]):
 
     def add_to(self, dataset: xr.Dataset) -> xr.Dataset:
         """Add the variables of the layers, such as ``character`` and ``origin``, to the dataset of a map."""
-        found = {name: result.to_xarray()[name].variable for layer, result in self.items() for name in LAYERS[layer].variables}
-        return dataset.assign(found)
+        variables = {
+            name: result.to_xarray()[name].variable for layer, result in self.items() for name in LAYERS[layer].variables
+        }
+        return dataset.assign(variables)
 
 
 NO_ANALYSES = MapAnalyses()

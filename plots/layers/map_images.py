@@ -19,11 +19,13 @@ LAYER_COLUMNS = tuple(name for layer in LAYERS.values() if layer.pixels is not N
 
 
 def layer_columns(frame: EscapeMap, names: Collection[str]) -> dict[str, list[Any]]:
-    """Return the columns of all layers: of named layers as far as a map determines them, of others with a single pixel."""
+    """Return the columns of all layers. Layers that are not named, or not determined by the map, have a single pixel."""
     images, _ = frame.thinned()
     pixels = (layer.pixels for layer in LAYERS.values() if layer.name in names)
-    known = {one.column: [one.first_codes(images)] for one in pixels if one is not None and one.first_codes is not None}
-    return dict.fromkeys(LAYER_COLUMNS, NO_LAYER) | known
+    known_columns = {
+        each.column: [each.first_codes(images)] for each in pixels if each is not None and each.first_codes is not None
+    }
+    return dict.fromkeys(LAYER_COLUMNS, NO_LAYER) | known_columns
 
 
 def result_columns(name: str, frame: EscapeMap, result: Any) -> dict[str, list[Any]]:
@@ -53,7 +55,7 @@ def picture_pixels(
     Returns
     -------
     numpy.ndarray
-        (rows, columns, 4) uint8 RGBA, one pixel per start, row 0 on top.
+        uint8 RGBA of shape (rows, columns, 4), one pixel per start, row 0 on top.
 
     Raises
     ------
@@ -62,29 +64,32 @@ def picture_pixels(
     """
     if picture not in TITLES:
         raise ValueError(f"picture={picture!r}: must be one of {', '.join(TITLES)}")
-    drawn, columns = PICTURES[picture], map_columns(frame) | layer_columns(frame, LAYERS)
+    shown_picture = PICTURES[picture]
+    columns = map_columns(frame) | layer_columns(frame, LAYERS)
     for name, result in analyses.items():
         columns |= result_columns(name, frame, result)
-    pixels = rgba(drawn.colours(palette))[columns[drawn.column][0]]
-    if drawn.has_times:
+    pixels = rgba(shown_picture.colours(palette))[columns[shown_picture.column][0]]
+    if shown_picture.has_times:
         _paint_times(pixels, columns["escape_time"][0], palette, times or fitted_scale(frame))
     for name in analyses:
         _paint_over(pixels, name, picture, columns)
-    rows, wide = frame.fate.shape
-    whole: np.ndarray = pixels.repeat(frame.stride, axis=0).repeat(frame.stride, axis=1)[:rows, :wide]
-    return np.ascontiguousarray(whole[::-1])
+    row_count, column_count = frame.fate.shape
+    enlarged: np.ndarray = pixels.repeat(frame.stride, axis=0).repeat(frame.stride, axis=1)[:row_count, :column_count]
+    return np.ascontiguousarray(enlarged[::-1])
 
 
 def _paint_times(pixels: np.ndarray, escape_time: np.ndarray, palette: Palette, times: TimeScale) -> None:
-    escaped = np.isfinite(escape_time)
-    pixels[escaped] = rgba(palette.escape_time)[times.classes(escape_time[escaped], len(palette.escape_time))]
+    """Paint the escaped pixels in place."""
+    has_escaped = np.isfinite(escape_time)
+    pixels[has_escaped] = rgba(palette.escape_time)[times.classes(escape_time[has_escaped], len(palette.escape_time))]
 
 
 def _paint_over(pixels: np.ndarray, name: str, picture: str, columns: dict[str, list[Any]]) -> None:
-    """Paint the marks of a layer."""
-    pixels_of, over = LAYERS[name].pixels, LAYERS[name].over_picture(picture)
-    if pixels_of is None or over is None or over.pixel_colours is None:
+    """Paint the marks of a layer in place."""
+    layer_pixels = LAYERS[name].pixels
+    over = LAYERS[name].over_picture(picture)
+    if layer_pixels is None or over is None or over.pixel_colours is None:
         return
-    marks = rgba(over.pixel_colours)[columns[pixels_of.column][0]]
+    marks = rgba(over.pixel_colours)[columns[layer_pixels.column][0]]
     is_marked = marks[..., 3] > 0
     pixels[is_marked] = marks[is_marked]

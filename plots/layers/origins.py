@@ -17,10 +17,10 @@ from plots.layers.picture import ColourTable, Legend, Picture, ShownMap
 from plots.pictures.image_columns import FIRST_CLASS, at_places, end_numbers, pixel_codes
 from plots.pictures.palette import PAPER, Entry, Palette, end_places, mixed, short_label
 
-# For each origin from 1 to 13, the share of white (positive) or black (negative) mixed into the colour of the exit.
+# For each origin from 1 to 13, the share of white (if positive) or black (if negative) mixed into the colour of the exit.
 _TONES = (0.6, 0.0, -0.4, -0.65, 0.35, -0.2, 0.78, -0.8, 0.48, -0.52, 0.2, -0.3, 0.7)
-# For orbits that never entered: share of the colour of bounded orbits in the mixture.
-_BOUNDED = 0.65
+# Share of the colour of bounded orbits in the colour of orbits that never entered.
+_BOUNDED_SHARE = 0.65
 
 
 def _count_ends() -> int:
@@ -29,16 +29,16 @@ def _count_ends() -> int:
 
 
 def passage_colour(palette: Palette, origin: int, fate: int) -> str:
-    """Return the colour for an origin and a fate, numbered from 1, or 0 for none. The fate sets the hue, the origin the tone."""
+    """Return the colour for an origin and a fate, numbered from 1 (0: none). The fate sets the hue, the origin sets the tone."""
     colour = palette.ends[fate - 1] if fate else palette.bounded
     if origin == 0:
-        return mixed(colour, palette.bounded, _BOUNDED)
+        return mixed(colour, palette.bounded, _BOUNDED_SHARE)
     tone = _TONES[(origin - 1) % len(_TONES)]
     return mixed(colour, "#ffffff" if tone > 0 else "#000000", abs(tone))
 
 
 def _colours(palette: Palette) -> list[str]:
-    """Return the colours of fates that are not ends, and then by origin and fate, both beginning with 0."""
+    """Return the colours of fates that are not ends, followed by the colours by origin and fate, both from 0."""
     passages = (passage_colour(palette, origin, fate) for origin in range(_count_ends()) for fate in range(_count_ends()))
     return [*palette.outcome_colours, *passages]
 
@@ -59,7 +59,7 @@ def _refusal(spec: MapSpec) -> str:
 
 def _codes(origins: OriginFateMap, frame: EscapeMap | None) -> np.ndarray:
     origin, fate = (end_numbers(codes, origins.spec.outcomes) for codes in (origins.origin, origins.fate))
-    # If origin or fate is neither an end nor bounded, the pixel has its colour.
+    # If the origin or the fate is neither an end nor bounded, the pixel has the colour of this outcome.
     outcome = np.minimum(origins.origin, origins.fate)
     return pixel_codes(outcome, origin * _count_ends() + fate, bounded_too=True)
 
@@ -72,9 +72,9 @@ def _legend(shown: ShownMap) -> Legend:
 def _entries(palette: Palette, outcomes: Sequence[Outcome]) -> list[Entry]:
     """Return the legend as a list."""
     places = zip(end_places(outcomes), outcomes, strict=True)
-    ends = {0: "inside"} | {place + 1: short_label(end.label) for place, end in places if end.occurs}
-    pairs = ((origin, fate) for origin in ends for fate in ends if fate)
-    return [Entry(f"{ends[origin]} to {ends[fate]}", passage_colour(palette, origin, fate)) for origin, fate in pairs]
+    labels = {0: "inside"} | {place + 1: short_label(end.label) for place, end in places if end.occurs}
+    pairs = ((origin, fate) for origin in labels for fate in labels if fate)
+    return [Entry(f"{labels[origin]} to {labels[fate]}", passage_colour(palette, origin, fate)) for origin, fate in pairs]
 
 
 def _table(palette: Palette, outcomes: Sequence[Outcome]) -> ColourTable:

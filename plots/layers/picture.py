@@ -38,7 +38,7 @@ class ColourScale:
 
 @dataclass(frozen=True)
 class ColourTable:
-    """Colours of orbits. The end of an orbit sets the hue, the origin the tone.
+    """Colours of orbits. The end of an orbit sets the hue, and the origin sets the tone.
 
     Attributes
     ----------
@@ -61,7 +61,7 @@ class Legend:
     entries
         Entries of the classes of pixels.
     others
-        Entries of pixels without a class, omitted where there is little room, unless the labels are short.
+        Entries of pixels without a class. They are omitted where there is little room, unless the labels are short.
     is_short
         Whether the labels have short forms.
     scale
@@ -119,7 +119,7 @@ class ShownMap:
     is_locked
         Whether the scale of the escape times is kept from map to map.
     results
-        Results of the layers, by name; they may be incomplete.
+        Results of the layers, by name. A result may be incomplete.
     other
         The view with which the map is compared; None if there is none.
     """
@@ -134,7 +134,7 @@ class ShownMap:
 
     @classmethod
     def of(cls, frame: EscapeMap, palette: Palette, results: Mapping[str, Any], times: TimeScale | None = None) -> ShownMap:
-        """Return a map with the results of its layers; `times` is the scale of the escape times, None for `fitted_scale`."""
+        """Return a map with the results of its layers. `times` is the scale of the escape times; None means `fitted_scale`."""
         fates = frozenset(np.unique(frame.fate).tolist())
         return cls(frame.spec, palette, times or fitted_scale(frame), fates, results=results)
 

@@ -15,7 +15,7 @@ from plots.layers.picture import Legend, Picture, ShownMap
 from plots.pictures.image_columns import FIRST_CLASS, pixel_codes
 from plots.pictures.palette import COLOUR_BLIND_SAFE, PAPER, Entry, Palette
 
-# Colours as in the paper, and colour-blind safe ones.
+# Each code has a colour as in the paper, and a colour-blind safe colour.
 CODES = (
     Code(Regularity.NOT_APPLICABLE, "escapes", "", ("#f4ead2", "#f3efe2")),
     Code(Regularity.REGULAR, "bounded and regular", "regular", ("#40e8e6", "#87e9f1")),
@@ -67,6 +67,7 @@ def _codes_by_evidence(images: Mapping[str, np.ndarray]) -> np.ndarray:
 
 
 def _legend(shown: ShownMap) -> Legend:
+    # In the order of `CODES`.
     escapes, *judged, unjudged = entries(shown.palette)
     result = shown.results.get("judge")
     pending = [] if result is not None and result.complete else [unjudged]

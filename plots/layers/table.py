@@ -50,5 +50,6 @@ def map_legend(picture: str, shown: ShownMap) -> Legend:
     over: list[Entry] = []
     for name, result in shown.results.items():
         marks = LAYERS[name].over_picture(picture)
-        over += [] if marks is None else marks.legend(result, shown.palette)
+        if marks is not None:
+            over += marks.legend(result, shown.palette)
     return replace(PICTURES[picture].legend(shown), over=over)

@@ -12,7 +12,7 @@ from plots.layers.layer import Code, Layer, Over, Pixels, Settings, occurring_en
 from plots.pictures.palette import CLEAR, Entry, Mark, Palette
 
 TONES = ("#000000", "#ffffff")
-"""Two colours of doubtful pixels, which alternate as on a chessboard. At least one is visible on any colour."""
+"""Two colours of doubtful pixels. They alternate as on a chessboard, and at least one is visible on any colour."""
 
 CODES = (
     Code(Trust.NOT_APPLICABLE, str(Trust.NOT_APPLICABLE), "", ("#ffffff",)),
@@ -40,20 +40,21 @@ def _codes(trust: TrustMap, frame: EscapeMap | None) -> np.ndarray:
 
 
 def _colours(palette: Palette) -> list[str]:
+    # The last colour is for `_LIGHT`.
     colours = [code.colours[0] for code in CODES]
     return [*colours, colours[Trust.DOUBTFUL]]
 
 
 def _marks() -> list[str]:
-    """Return the colours over other pictures, which show only doubtful pixels."""
+    """Return the colours over other pictures, where only doubtful pixels are marked."""
     colours = [CLEAR] * (_LIGHT + 1)
     colours[Trust.DOUBTFUL], colours[_LIGHT] = TONES
     return colours
 
 
 def _sentences() -> list[str]:
-    words = [code.sentence for code in CODES]
-    return [*words, words[Trust.DOUBTFUL]]
+    sentences = [code.sentence for code in CODES]
+    return [*sentences, sentences[Trust.DOUBTFUL]]
 
 
 TRUST = Layer(

@@ -1,4 +1,4 @@
-"""Label the ticks of axes; where plain numbers would be too long, as distances from one tick."""
+"""Label the ticks of axes. Where plain numbers would be too long, labels are distances from one tick."""
 
 from __future__ import annotations
 
@@ -6,13 +6,14 @@ import math
 from decimal import Decimal
 from typing import NamedTuple
 
+# Smallest number of ticks of an axis.
 _FEWEST_TICKS = 3
 FINEST_PLAIN_STEP = -4
-"""Ticks closer than 10 to this power are labelled as distances from the middle tick, because plain labels would overlap."""
+"""Ticks closer than 10 to this power have distances from the middle tick as labels, because plain labels would overlap."""
 
 
 class Axis(NamedTuple):
-    """Name of an axis, and for each tick its position, 0 to 1 along the axis, and its label."""
+    """Name of an axis, and position (0 to 1 along the axis) and label of each tick."""
 
     name: str
     ticks: list[tuple[float, str]]
@@ -36,16 +37,17 @@ def find_offset(low: float, high: float, finest: int = FINEST_PLAIN_STEP) -> Off
     exponent = step.adjusted()
     if exponent >= finest:
         return None
-    numbers = _multiples(low, high, step)
-    return Offset(numbers[len(numbers) // 2], exponent)
+    ticks = _multiples(low, high, step)
+    return Offset(ticks[len(ticks) // 2], exponent)
 
 
 def label_axis(name: str, low: float, high: float) -> Axis:
     """Return three to eight ticks between two numbers, at multiples of 1, 2 or 5 · 10^k, with exact labels.
 
-    If `find_offset` returns an offset, the labels are distances from it, and the axis name contains it.
+    If `find_offset` returns an offset, the labels are distances from the offset, and the name of the axis contains the offset.
     """
-    values, offset = _multiples(low, high, _step(low, high)), find_offset(low, high)
+    values = _multiples(low, high, _step(low, high))
+    offset = find_offset(low, high)
     if offset is None:
         labels = [f"{value:f}" for value in values]
     else:
@@ -57,9 +59,10 @@ def label_axis(name: str, low: float, high: float) -> Axis:
 
 def _step(low: float, high: float) -> Decimal:
     """Return the distance between neighbouring ticks."""
-    most = (high - low) / _FEWEST_TICKS
-    exponent = math.floor(math.log10(most))
-    return Decimal(next((m for m in (5, 2) if m * 10.0**exponent <= most), 1)).scaleb(exponent)
+    largest_step = (high - low) / _FEWEST_TICKS
+    exponent = math.floor(math.log10(largest_step))
+    mantissa = next((m for m in (5, 2) if m * 10.0**exponent <= largest_step), 1)
+    return Decimal(mantissa).scaleb(exponent)
 
 
 def _multiples(low: float, high: float, step: Decimal) -> list[Decimal]:

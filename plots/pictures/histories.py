@@ -1,4 +1,4 @@
-"""Reduce histories of an orbit for drawing: to the curve where pixels resolve it, elsewhere to its envelope and mean."""
+"""Reduce histories of an orbit for drawing: to the curve where pixels resolve the curve, elsewhere to its envelope and mean."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ import numpy as np
 ENVELOPE_ALPHA = 0.3
 """Opacity of envelopes, low enough to see the mean through them."""
 
+# Number of intervals of a history, of equal length in log t: about one for each pixel of a plot.
 _BINS = 300
-"""Number of intervals of a history, of equal length in log t: about one for each pixel of a plot."""
 
+# Largest number of minima and maxima in an interval whose curve is drawn. Other intervals are drawn as an envelope.
 _MOST_TURNS = 2
-"""Intervals with more minima and maxima are drawn as an envelope."""
 
+# Largest number of samples of the curve that are drawn in an interval.
 _MOST_SAMPLES = 16
-"""Largest number of samples of the curve that are drawn in an interval."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,20 +58,21 @@ def reduce_history(t: np.ndarray, values: np.ndarray, *, logarithmic: bool) -> H
     Parameters
     ----------
     t, values
-        (n,) times, increasing and above 0, and values.
+        Times, increasing and above 0, and values, each of shape (n,).
     logarithmic
         Whether the axis of the values is logarithmic. If so, values must be positive, and means are geometric.
     """
     if t.size <= _BINS:
         return History((t, values), (t[:0], values[:0], values[:0]))
     edges = np.unique(np.searchsorted(t, np.geomspace(t[0], t[-1], _BINS + 1)[:-1]))
-    fast = np.flatnonzero(np.add.reduceat(_turns(values), edges) > _MOST_TURNS)
-    first = int(fast[0]) if fast.size else edges.size
-    edges, slow_edges = edges[first:], edges[:first]
-    end = int(edges[0]) if edges.size else t.size
-    slow = _visible_samples(slow_edges, end)
-    times, low, high, mean = _envelope(t, values, edges, logarithmic=logarithmic)
-    return History((np.append(t[slow], times), np.append(values[slow], mean)), (times, low, high))
+    fast_intervals = np.flatnonzero(np.add.reduceat(_turns(values), edges) > _MOST_TURNS)
+    # The envelope replaces the curve in the first fast interval and in all later intervals.
+    split = int(fast_intervals[0]) if fast_intervals.size else edges.size
+    curve_edges, envelope_edges = edges[:split], edges[split:]
+    curve_end = int(envelope_edges[0]) if envelope_edges.size else t.size
+    curve_samples = _visible_samples(curve_edges, curve_end)
+    times, low, high, mean = _envelope(t, values, envelope_edges, logarithmic=logarithmic)
+    return History((np.append(t[curve_samples], times), np.append(values[curve_samples], mean)), (times, low, high))
 
 
 def _turns(values: np.ndarray) -> np.ndarray:
@@ -83,9 +84,9 @@ def _turns(values: np.ndarray) -> np.ndarray:
 def _visible_samples(edges: np.ndarray, end: int) -> np.ndarray:
     """Return the indices of samples before `end`, evenly spaced in each interval, including the last sample."""
     counts = np.diff(np.append(edges, end))
-    place = np.arange(end) - np.repeat(edges, counts)
+    index_in_interval = np.arange(end) - np.repeat(edges, counts)
     stride = np.repeat(np.ceil(counts / _MOST_SAMPLES).astype(np.intp), counts)
-    return np.flatnonzero((place % stride == 0) | (np.arange(end) == end - 1))
+    return np.flatnonzero((index_in_interval % stride == 0) | (np.arange(end) == end - 1))
 
 
 def _envelope(t: np.ndarray, values: np.ndarray, edges: np.ndarray, *, logarithmic: bool) -> tuple[np.ndarray, ...]:
@@ -95,6 +96,6 @@ def _envelope(t: np.ndarray, values: np.ndarray, edges: np.ndarray, *, logarithm
     ends = np.append(edges[1:], t.size)
     times = t[(edges + ends) // 2]
     times[0], times[-1] = t[edges[0]], t[-1]
-    scale = np.log(values) if logarithmic else values
-    mean = np.add.reduceat(scale, edges) / (ends - edges)
+    scaled_values = np.log(values) if logarithmic else values
+    mean = np.add.reduceat(scaled_values, edges) / (ends - edges)
     return times, np.minimum.reduceat(values, edges), np.maximum.reduceat(values, edges), np.exp(mean) if logarithmic else mean

@@ -13,12 +13,12 @@ from plots.pictures.palette import CROSSING_CLASSES, OUTCOMES, PAPER, end_places
 NO_LAYER = [np.zeros((1, 1), np.uint8)]
 """Column of a layer that is off."""
 
-# Columns of a map without layers.
-_DRAWN = ("fate", "crossing_class", "crossings", "escape_time")
+# Images of a map without layers.
+_IMAGES = ("fate", "crossing_class", "crossings", "escape_time")
 
 _OUTCOME_CODES = {fate: code for code, fate in enumerate(OUTCOMES)}
 FIRST_CLASS = len(OUTCOMES)
-"""The first pixel code of a class. Lower codes are those of fates that are not ends."""
+"""The first pixel code of a class. Lower codes are for fates that are not ends."""
 
 _UNDECIDED = _OUTCOME_CODES[Fate.NOT_COMPUTED]
 _WITHOUT_ORBIT = (_OUTCOME_CODES[Fate.OUTSIDE], _OUTCOME_CODES[Fate.FORBIDDEN])
@@ -57,84 +57,93 @@ def fate_codes(fate: np.ndarray, outcomes: Sequence[Outcome]) -> np.ndarray:
 
 
 def draw_over(columns: dict[str, list[Any]], earlier: dict[str, list[Any]], sides: tuple[int, int]) -> dict[str, list[Any]]:
-    """Return the columns of an unfinished frame over those of an earlier map, whose pixels stay until finer ones are computed.
+    """Return the columns of an unfinished frame over an earlier map. Pixels of that map stay until finer pixels are computed.
 
     Parameters
     ----------
     columns, earlier
-        Columns of `map_columns`; their windows may differ.
+        Columns of `map_columns`. The windows may differ.
     sides
-        (columns, rows) of the finished map, the largest size of the images; smaller images have the finer pixels of both maps.
+        (columns, rows) of the finished map, the largest size of the images. Smaller images have the finer pixels of both maps.
     """
     if columns["complete"][0]:
         return columns
     pixels, earlier_pixels = _pixel_sides(columns), _pixel_sides(earlier)
-    finer = earlier_pixels[0] < pixels[0]
+    is_earlier_finer = earlier_pixels[0] < pixels[0]
     lengths = columns["dw"][0], columns["dh"][0]
-    shown = earlier_pixels if finer else pixels
-    across, up = (min(max(round(length / pixel), 1), side) for length, pixel, side in zip(lengths, shown, sides, strict=True))
-    x = columns["x"][0] + columns["dw"][0] * (np.arange(across) + 0.5) / across
-    y = columns["y"][0] + columns["dh"][0] * (np.arange(up) + 0.5) / up
-    (here, _), (there, inside) = _pixels_at(columns, x, y), _pixels_at(earlier, x, y)
-    keep = inside & (earlier["fate"][0][there] != _UNDECIDED) & (finer | (columns["fate"][0][here] == _UNDECIDED))
-    drawn = {name: [np.where(keep, earlier[name][0][there], columns[name][0][here])] for name in _DRAWN}
-    return columns | drawn
+    finer_pixels = earlier_pixels if is_earlier_finer else pixels
+    column_count, row_count = (
+        min(max(round(length / pixel), 1), side) for length, pixel, side in zip(lengths, finer_pixels, sides, strict=True)
+    )
+    x = columns["x"][0] + columns["dw"][0] * (np.arange(column_count) + 0.5) / column_count
+    y = columns["y"][0] + columns["dh"][0] * (np.arange(row_count) + 0.5) / row_count
+    index, _ = _pixels_at(columns, x, y)
+    earlier_index, is_inside = _pixels_at(earlier, x, y)
+    is_decided = is_inside & (earlier["fate"][0][earlier_index] != _UNDECIDED)
+    is_kept = is_decided & (is_earlier_finer | (columns["fate"][0][index] == _UNDECIDED))
+    images = {name: [np.where(is_kept, earlier[name][0][earlier_index], columns[name][0][index])] for name in _IMAGES}
+    return columns | images
 
 
 def _pixel_sides(columns: dict[str, list[Any]]) -> tuple[float, float]:
     """Return the width and height of the pixels of a map's columns."""
-    rows, across = columns["fate"][0].shape
-    return columns["dw"][0] / across, columns["dh"][0] / rows
+    row_count, column_count = columns["fate"][0].shape
+    return columns["dw"][0] / column_count, columns["dh"][0] / row_count
 
 
 def _pixels_at(columns: dict[str, list[Any]], x: np.ndarray, y: np.ndarray) -> tuple[tuple[np.ndarray, np.ndarray], np.ndarray]:
     """Return row and column indices of the pixels at x (columns,) and y (rows,), and whether these points lie in the images."""
-    rows, across = columns["fate"][0].shape
-    column = np.floor((x - columns["x"][0]) / columns["dw"][0] * across).astype(int)
-    row = np.floor((y - columns["y"][0]) / columns["dh"][0] * rows).astype(int)
-    inside = ((row >= 0) & (row < rows))[:, None] & ((column >= 0) & (column < across))
-    return np.ix_(row.clip(0, rows - 1), column.clip(0, across - 1)), inside
+    row_count, column_count = columns["fate"][0].shape
+    column = np.floor((x - columns["x"][0]) / columns["dw"][0] * column_count).astype(int)
+    row = np.floor((y - columns["y"][0]) / columns["dh"][0] * row_count).astype(int)
+    is_inside = ((row >= 0) & (row < row_count))[:, None] & ((column >= 0) & (column < column_count))
+    return np.ix_(row.clip(0, row_count - 1), column.clip(0, column_count - 1)), is_inside
 
 
 def difference_column(columns: dict[str, list[Any]], other: dict[str, list[Any]]) -> dict[str, list[Any]]:
-    """Return the column of pixels whose orbits have another outcome in another view of a plane with the same axes.
+    """Return the column ``difference``: whether orbits have another outcome in another view of a plane with the same axes.
 
     Parameters
     ----------
     columns
-        Columns of `map_columns`; the result is an additional column.
+        Columns of `map_columns`.
     other
-        Columns of the other view; its window and its number of pixels may differ.
+        Columns of the other view. Window and number of pixels may differ.
     """
-    (rows, across), (width, height) = columns["fate"][0].shape, _pixel_sides(columns)
-    x, y = columns["x"][0] + width * (np.arange(across) + 0.5), columns["y"][0] + height * (np.arange(rows) + 0.5)
-    there, inside = _pixels_at(other, x, y)
-    return {"difference": [_difference_codes(columns["fate"][0], np.where(inside, other["fate"][0][there], _UNDECIDED))]}
+    row_count, column_count = columns["fate"][0].shape
+    width, height = _pixel_sides(columns)
+    x = columns["x"][0] + width * (np.arange(column_count) + 0.5)
+    y = columns["y"][0] + height * (np.arange(row_count) + 0.5)
+    other_index, is_inside = _pixels_at(other, x, y)
+    other_codes = np.where(is_inside, other["fate"][0][other_index], _UNDECIDED)
+    return {"difference": [_difference_codes(columns["fate"][0], other_codes)]}
 
 
 def _difference_codes(one: np.ndarray, other: np.ndarray) -> np.ndarray:
     """Return codes of `DIFFERENCES` for two arrays of pixel codes of fates. A pixel without an orbit in both keeps its code."""
-    lack_one, lack_other = np.isin(one, _WITHOUT_ORBIT), np.isin(other, _WITHOUT_ORBIT)
-    classes = np.where(lack_one != lack_other, 2, np.where(one != other, 1, 0))
-    codes = np.where(lack_one & lack_other, one, FIRST_CLASS + classes)
+    lacks_one = np.isin(one, _WITHOUT_ORBIT)
+    lacks_other = np.isin(other, _WITHOUT_ORBIT)
+    # Indices of `DIFFERENCES`.
+    classes = np.where(lacks_one != lacks_other, 2, np.where(one != other, 1, 0))
+    codes = np.where(lacks_one & lacks_other, one, FIRST_CLASS + classes)
     return np.where((one == _UNDECIDED) | (other == _UNDECIDED), _UNDECIDED, codes).astype(np.uint8)
 
 
 def end_words(outcomes: Sequence[Outcome]) -> list[str]:
-    """Return what orbits of each of `Palette.ends` do; empty for ends that the potential does not have."""
+    """Return what orbits do at each of `Palette.ends`; empty for ends that the potential does not have."""
     return at_places(outcomes, [outcome.present for outcome in outcomes])
 
 
 def at_places(outcomes: Sequence[Outcome], words: Sequence[str]) -> list[str]:
     """Return words for each outcome, at its place among `Palette.ends`."""
-    placed = [""] * len(PAPER.ends)
+    words_by_place = [""] * len(PAPER.ends)
     for place, word in zip(end_places(outcomes), words, strict=True):
-        placed[place] = word
-    return placed
+        words_by_place[place] = word
+    return words_by_place
 
 
 def pixel_coding(outcomes: Sequence[Outcome]) -> dict[str, Any]:
-    """Return how pixels of a potential with these outcomes become codes, for programs elsewhere that make the columns.
+    """Return how pixels of a potential with these outcomes become codes, for the browser, which makes columns itself.
 
     The result contains the fates that are not ends, the first class, the places and words of the ends, the classes of crossings,
     the code of pixels that are not decided, and for each code the codes of differences from all codes.
@@ -154,12 +163,12 @@ def pixel_coding(outcomes: Sequence[Outcome]) -> dict[str, Any]:
 def end_numbers(fate: np.ndarray, outcomes: Sequence[Outcome]) -> np.ndarray:
     """Return the number of the end of each fate, 1 for the first of `Palette.ends`; 0 for fates that are not ends."""
     numbers = np.array([0, *(place + 1 for place in end_places(outcomes))])
-    found: np.ndarray = numbers[np.maximum(fate, 0)]
-    return found
+    end_of_pixels: np.ndarray = numbers[np.maximum(fate, 0)]
+    return end_of_pixels
 
 
 def pixel_codes(fate: np.ndarray, classes: np.ndarray, *, bounded_too: bool = False) -> np.ndarray:
-    """Return pixel codes: outcomes, then classes of escaped pixels, and of bounded ones if `bounded_too`."""
+    """Return pixel codes: of fates that are not ends, then of classes. Bounded pixels have classes if `bounded_too`."""
     codes = (FIRST_CLASS + classes).astype(np.min_scalar_type(FIRST_CLASS + int(classes.max(initial=0))))
     for outcome, code in _OUTCOME_CODES.items():
         if not (bounded_too and outcome is Fate.BOUNDED):

@@ -18,15 +18,15 @@ MOST_LINE_POINTS = 20_000
 """Longer paths are drawn as density images."""
 
 TRAIL = 25.0
-"""Duration of the trail behind the moving point, in units of time: about four periods of the well."""
+"""Duration of the trail behind the moving point: about four periods of the well."""
 
-# Twice the number of pixels of the plot, for high-density screens.
+# Side of a density image, in pixels: twice the side of the plot, for high-density screens.
 _SHADED_PIXELS = 600
 # Smallest opacity of visited pixels in a density image, 0 to 255.
 _FAINTEST = 50
-# Half the side of the window of a path, in units of the path's reach.
+# Half the side of the window of a path, in units of the largest |x| or |y| of the path.
 _AROUND_PATH = 1.1
-# Limit of half the side, in distances of the farthest saddle.
+# Largest half of the side, in units of the distance of the farthest saddle.
 _FARTHEST_SHOWN = 10.0
 
 
@@ -43,9 +43,9 @@ class OrbitCurves:
     histories
         The history of each of `ORBIT_QUANTITIES` by name.
     section
-        (n, 2) x and px of its upward crossings of y = 0.
+        x and px of the upward crossings of y = 0, of shape (n, 2).
     visits
-        (n, n) uint8 opacity of the density of a long path over the window, row 0 lowest; None for shorter paths.
+        Opacity of the density image of a long path, uint8 of shape (n, n), row 0 lowest; None for shorter paths.
     part
         Samples of the orbit that path and histories show; all by default.
     """
@@ -71,9 +71,9 @@ class OrbitCurves:
 
 
 def compute_orbit_curves(potential: Potential, orbit: Orbit, *, with_visits: bool = True) -> OrbitCurves:
-    """Compute the curves of an orbit. This is slow: call it once per orbit and outside the session's lock.
+    """Compute the curves of an orbit. This is slow: call it once per orbit, and outside the session's lock.
 
-    `with_visits`: whether a long path gets a density image, which needs the extra ``page``.
+    With `with_visits`, a long path gets a density image, which needs the extra ``page``.
     """
     window = _path_window(potential, orbit) if orbit.exits_unknown else find_well_window(potential, orbit.energy)
     everything = slice(None)
@@ -83,7 +83,7 @@ def compute_orbit_curves(potential: Potential, orbit: Orbit, *, with_visits: boo
 
 
 def find_well_window(potential: Potential, energy: float) -> Window:
-    """Return the window of the interior, or of the whole well below the minimum of the well, where all orbits are outside."""
+    """Return the window of the interior; for an energy without an interior, the window at the escape energy."""
     try:
         return default_window(potential, SPACE, energy)
     except ValueError:
@@ -107,7 +107,7 @@ def restrict_curves(curves: OrbitCurves, begin: float, end: float) -> OrbitCurve
     curves
         Curves of an orbit, restricted or not.
     begin, end
-        The interval, ``begin < end``; if it contains no samples, path and histories are empty.
+        The interval, ``begin < end``. If it contains no samples, path and histories are empty.
     """
     t = curves.orbit.t
     part = slice(int(np.searchsorted(t, begin)), int(np.searchsorted(t, end, side="right")))
@@ -125,12 +125,12 @@ def initial_state(orbit: Orbit) -> tuple[float, float, float, float]:
 
 
 def _visits(orbit: Orbit, window: Window, part: slice) -> np.ndarray | None:
-    """Return the density image of a long path; None for a short one. ModuleNotFoundError without the extra ``page``."""
+    """Return the density image of a long path; None for a shorter path. ModuleNotFoundError without the extra ``page``."""
     x, y = orbit.x[part], orbit.y[part]
     if x.size <= MOST_LINE_POINTS:
         return None
     require_package("datashader", "page")
-    # Slow to import, and needed for long paths only.
+    # These packages are slow to import, and only long paths need them.
     import datashader
     import pandas as pd
     from datashader import transfer_functions
@@ -144,14 +144,14 @@ def _visits(orbit: Orbit, window: Window, part: slice) -> np.ndarray | None:
 
 @dataclass(frozen=True)
 class Moment:
-    """(n,) x and y of the trail of an orbit, which ends at the current position."""
+    """x and y of the trail of an orbit, each of shape (n,). The last point is the position of the orbit."""
 
     x: np.ndarray
     y: np.ndarray
 
 
 def moment(orbit: Orbit, t: float) -> Moment:
-    """Return the trail of an orbit at a time. Before the orbit it is the first sample, after the orbit the trail at the end."""
+    """Return the trail of an orbit at a time: before the first sample, only this sample; after the last, the trail at the end."""
     last = max(int(np.searchsorted(orbit.t, t, side="right")) - 1, 0)
     first = int(np.searchsorted(orbit.t, orbit.t[last] - TRAIL))
     trail = slice(first, last + 1)

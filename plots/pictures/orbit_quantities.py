@@ -12,8 +12,11 @@ from engine.foundations.wording import format_number
 from engine.propagation.fates import CHAOS_THRESHOLD
 from plots.pictures.histories import History, find_decades, reduce_history
 
+# Ends of the axis of SALI.
 _LEAST_SALI, _LARGEST_SALI = 1e-17, 10.0
+# Ends of the axis of the Lyapunov exponent.
 _LEAST_EXPONENT, _LARGEST_EXPONENT = 1e-7, 1.0
+# Smallest upper end of the axis of R².
 _LEAST_R2 = 1e-3
 
 
@@ -30,9 +33,9 @@ class OrbitQuantity:
     label
         Label of the axis.
     values
-        (n,) values at all times of an orbit.
+        Returns the values at all times of an orbit, of shape (n,).
     limits
-        Returns the ends of the axis for a history of at least one sample.
+        Returns the ends of the axis for histories that have samples.
     least
         Lower end of a logarithmic axis. Smaller values are drawn there. None for a linear axis.
     threshold
@@ -57,7 +60,8 @@ class OrbitQuantity:
 
     def history(self, orbit: Orbit, part: slice) -> History:
         """Return the quantity over some samples of an orbit, without the sample at t = 0."""
-        later = slice(max(part.start or 0, int(orbit.t[0] == 0.0)), part.stop)
+        first = 1 if orbit.t[0] == 0.0 else 0
+        later = slice(max(part.start or 0, first), part.stop)
         values = self.values(orbit)[later]
         if self.least is not None:
             values = np.maximum(values, self.least)

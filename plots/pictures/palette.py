@@ -75,10 +75,11 @@ DIFFERENCES: tuple[tuple[str, str], ...] = (
 
 
 def end_places(outcomes: Sequence[Outcome]) -> list[int]:
-    """Return the place of each outcome in `Palette.ends`, the same in all systems. Outcomes beyond the last place share it."""
+    """Return the place of each outcome in `Palette.ends`, equal in all systems. Outcomes beyond the last place share it."""
     counts = {key: len(PAPER.of_kinds[key]) for key in KINDS}
-    firsts = dict(zip(counts, accumulate(counts.values(), initial=0), strict=False))
-    return [firsts[each.kind.key] + min(each.number, counts[each.kind.key]) - 1 for each in outcomes]
+    # `accumulate` also returns the sum of all counts, which `zip` drops.
+    first_places = dict(zip(counts, accumulate(counts.values(), initial=0), strict=False))
+    return [first_places[each.kind.key] + min(each.number, counts[each.kind.key]) - 1 for each in outcomes]
 
 
 MOST_ORBITS = 5
@@ -90,7 +91,7 @@ _OMITTED = re.compile(r"^exit |^bounded(?: and|,) | pixels$|(?::| \().*$")
 CLEAR = "#00000000"
 """Transparent."""
 
-# Translucent, for light and dark pages.
+# Colours of fates and of the interior, translucent for light and dark pages.
 _FORBIDDEN = "#ffffff00"
 _OUTSIDE = "#b0904a48"
 _NOT_COMPUTED = "#7f9cc855"
@@ -128,7 +129,7 @@ class Palette:
     @cached_property
     def escape_time(self) -> tuple[str, ...]:
         """256 colours, from fast to slow escapes."""
-        # Slow to import, and needed for pictures only.
+        # Matplotlib is slow to import, and only pictures need it.
         from matplotlib import colormaps
         from matplotlib.colors import LinearSegmentedColormap, to_hex
 
@@ -162,7 +163,7 @@ class Palette:
         return [Entry(label, colour) for (_, label), colour in zip(CROSSING_CLASSES, self.classes, strict=True)]
 
     def entry(self, fate: int, outcomes: Sequence[Outcome]) -> Entry:
-        """Return the label and colour of a fate. `outcomes` are those of the potential; without them all ends are channels."""
+        """Return the label and colour of a fate. `outcomes` are the potential's; without them, all ends are channels."""
         if fate < 1:
             return self.outcomes[Fate(fate)]
         [entry] = self.end_entries([outcome_of(fate, outcomes)])
@@ -184,7 +185,7 @@ class Palette:
 
     @cached_property
     def crossing_colours(self) -> list[str]:
-        """Colours of the pixel codes of the crossings; bounded pixels have one code per kind of evidence."""
+        """Colours of the pixel codes of the crossings. Bounded pixels have a code for each kind of evidence."""
         return [*self.outcome_colours, *self.classes, *(self.bounded for _ in Evidence)]
 
     @cached_property
@@ -199,13 +200,13 @@ class Palette:
 
     @cached_property
     def region_colours(self) -> list[str]:
-        """Colours of the pixel codes of the picture of the exits, in which the interior has one colour."""
+        """Colours of the pixel codes of the picture of the exits, where the interior has a single colour."""
         plain = [self.outcomes[fate].colour if fate in (Fate.OUTSIDE, Fate.FORBIDDEN) else _INTERIOR for fate in OUTCOMES]
         return [*plain, *([_INTERIOR] * len(self.ends))]
 
     @property
     def outcome_colours(self) -> list[str]:
-        """Colours of the pixel codes of fates that are not ends; these codes come first in all pictures."""
+        """Colours of the pixel codes of fates that are not ends. These codes come first in all pictures."""
         return [entry.colour for entry in self.outcomes.values()]
 
 
@@ -215,7 +216,7 @@ def short_label(label: str) -> str:
 
 
 def rgba(colours: Sequence[str]) -> np.ndarray:
-    """Return (n, 4) uint8 of colours ``#rrggbb`` or ``#rrggbbaa``."""
+    """Return colours ``#rrggbb`` or ``#rrggbbaa`` as uint8 RGBA, of shape (n, 4)."""
     return np.array([list(bytes.fromhex(colour[1:].ljust(8, "f"))) for colour in colours], np.uint8)
 
 
@@ -291,5 +292,10 @@ LAW_COLOURS = {"exponential": "#d1495b", "power law": "#b58900"}
 """Colours of fitted decay laws."""
 
 PATCH_EDGE = "#999999"
+"""Colour of the edges of patches in legends."""
+
 MARK_EDGE = "#111111"
+"""Colour of the edges of marks."""
+
 THRESHOLD = "#6f7f95"
+"""Colour of lines at thresholds."""

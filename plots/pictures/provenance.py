@@ -10,8 +10,11 @@ from engine.foundations.wording import format_number
 
 def provenance_line(frame: EscapeMap) -> str:
     """Describe a map in one line: potential with rotation and ends, h, plane, window, resolution, t_max and version."""
-    spec, plane, window = frame.spec, frame.spec.plane, frame.spec.find_window()
-    name, (columns, rows) = spec.potential.name, spec.resolution
+    spec = frame.spec
+    plane = spec.plane
+    window = spec.find_window()
+    name = spec.potential.name
+    columns, rows = spec.resolution
     energy = [] if spec.common_energy is None else [f"h = {spec.common_energy!r}"]
     abscissa, ordinate = plane.axis_symbols
     facts = [
@@ -30,7 +33,7 @@ def provenance_line(frame: EscapeMap) -> str:
 
 
 def _system_facts(potential: Potential) -> list[str]:
-    """Return the parts of a system other than V, in words."""
+    """Return the rotation and the ends of a system in words."""
     facts = [f"Ω = {format_number(potential.rotation)}"] if potential.rotation else []
     return [*facts, *(end.geometry for end in potential.ends)]
 

@@ -10,15 +10,15 @@ import numpy as np
 
 from engine import EscapeMap, Fate
 
-# Shares of the escape times below and above the scale.
+# Share of the escape times below the scale, and share above the scale.
 _LEFT_OUT = 0.01
-# Lower limit of a fitted scale, in units of time: an orbit that starts at an exit escapes at once.
+# Smallest lower end of a fitted scale (dimensionless time). An orbit that starts at an exit escapes at once.
 _LEAST = 0.1
-# Scales at least this long, in powers of ten, end at round numbers, so that they seldom change from map to map.
+# Smallest length of a long scale, in powers of ten. Long scales end at round numbers, so they seldom change between maps.
 _LONG = 1.0
-# Ends of long scales, times a power of ten.
+# Ends of long scales, in units of a power of ten.
 _ROUND = (1.0, 2.0, 5.0, 10.0)
-# Ends of short scales, times a power of ten.
+# Ends of short scales, in units of a power of ten.
 _FINE = tuple(tenth / 10.0 for tenth in range(10, 101))
 
 
@@ -65,8 +65,11 @@ def fitted_scale(frame: EscapeMap) -> TimeScale:
         return WITHOUT_ESCAPES
     low, high = np.maximum(np.quantile(times, (_LEFT_OUT, 1.0 - _LEFT_OUT)), _LEAST)
     steps = _ROUND if math.log10(high / low) >= _LONG else _FINE
-    lower, upper = _round(low, steps, up=False), _round(high, steps, up=True)
-    return TimeScale(lower, upper) if lower < upper else TimeScale(lower, _round(1.01 * upper, steps, up=True))
+    lower = _round(low, steps, up=False)
+    upper = _round(high, steps, up=True)
+    if lower == upper:
+        upper = _round(1.01 * upper, steps, up=True)
+    return TimeScale(lower, upper)
 
 
 def common_scale(frames: Iterable[EscapeMap]) -> TimeScale:
@@ -77,7 +80,9 @@ def common_scale(frames: Iterable[EscapeMap]) -> TimeScale:
 
 def _round(number: float, steps: tuple[float, ...], *, up: bool) -> float:
     """Round a positive number up or down to one of steps · 10^k."""
-    # The logarithm may be rounded up to the next whole number; the notation with all digits is exact.
+    # `math.log10` could be rounded up to the next whole number. The notation with all digits has the exact exponent.
     power = 10.0 ** int(f"{number:.16e}".partition("e")[2])
     candidates = [float(f"{step * power:.6g}") for step in steps]
-    return min(one for one in candidates if one >= number) if up else max(one for one in candidates if one <= number)
+    if up:
+        return min(candidate for candidate in candidates if candidate >= number)
+    return max(candidate for candidate in candidates if candidate <= number)

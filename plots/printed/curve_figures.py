@@ -16,20 +16,22 @@ from engine.measures.decay_laws import LawFit
 from engine.results import DecayLaws, EscapeStatistics, Sweep
 from plots.pictures.charts import BINS, CURVE_PANELS, MOST_CROSSINGS, NUMBER_COLOURS, SHARES, is_measured, law_curve
 from plots.pictures.palette import LAW_COLOURS, MEASURED, PAPER, THRESHOLD
-from plots.printed.figure_axes import add_panel_legend, label_axes, name_panel, new_figure, style_axes
+from plots.printed.figure_axes import add_panel_legend, label_axes, new_figure, set_title, style_axes
 from plots.printed.figure_style import SCREEN, FigureStyle
 
-# Equal curves, such as the shares of mirror-image channels, coincide. The second is dashed, so that both are visible.
+# Dashes of the second of two equal curves, such as the shares of mirror-image channels, so that both are visible.
 _DASHED = (0, (4.0, 3.0))
-# Height of the figure of curves with two columns, in units of its width.
+# Height of the figure of curves with two columns, in units of the width.
 _HEIGHT = 1.2
-# Height with one column.
+# Height of the figure of curves with one column, in units of the width.
 _HEIGHT_OF_COLUMN = 4.5
-# Share of remaining starts above which the curve is in the upper half of its panel.
+# Largest share of remaining starts for which the curve of survivors leaves the upper right corner free.
 _MOST_STAY = 0.4
+# Symbols of the rates of decay laws.
 _SYMBOLS = {"exponential": r"\kappa", "power law": r"\gamma"}
 # Largest number of points of a curve with markers.
 _MOST_MARKERS = 60
+# Line styles of decay laws.
 _DASHES = {"exponential": "--", "power law": "-."}
 
 
@@ -48,16 +50,16 @@ def draw_curves_figure(curves: Sweep, style: FigureStyle) -> Figure:
     starts = " × ".join(str(side) for side in request["resolution"])
     title = f"{request['potential']}, {request['plane']}, {starts} starts, t_max = {request['t_max']:g}"
     figure = new_figure(style, style.width * (_HEIGHT if columns == 2 else _HEIGHT_OF_COLUMN), title)
-    shown = [measure for measure in CURVE_PANELS if is_measured(measure, curves)]
-    grid = np.ravel(figure.subplots(math.ceil((1 + len(shown)) / columns), columns)).tolist()
+    measures = [measure for measure in CURVE_PANELS if is_measured(measure, curves)]
+    grid = np.ravel(figure.subplots(math.ceil((1 + len(measures)) / columns), columns)).tolist()
     draw_shares(grid[0], curves.values, curves["share"], curves.outcomes, style)
     label_axes(grid[0], curves.symbol, SHARES.curve.axis, style)
-    name_panel(grid[0], SHARES.title, style)
+    set_title(grid[0], SHARES.title, style)
     add_panel_legend(grid[0], "best", style)
-    for axes, measure in zip(grid[1:], shown, strict=False):
+    for axes, measure in zip(grid[1:], measures, strict=False):
         draw_measure(axes, curves, measure, style)
-        name_panel(axes, measure.title, style)
-    for axes in grid[1 + len(shown) :]:
+        set_title(axes, measure.title, style)
+    for axes in grid[1 + len(measures) :]:
         axes.remove()
     return figure
 
@@ -66,8 +68,9 @@ def draw_measure(axes: Axes, curves: Sweep, measure: Measure, style: FigureStyle
     """Draw the numbers of a measure against the energy or a parameter, with their error bars."""
     curve = measure.curve
     for (name, label), colour in zip(measure.labels.items(), NUMBER_COLOURS, strict=False):
-        words = re.sub(r"_(\w+)", r"$_{\1}$", label)
-        axes.plot(curves.values, curves[name], color=colour, linewidth=1.4, marker="o", markersize=2.2, label=words)
+        # Matplotlib typesets a subscript such as S_b between dollar signs.
+        typeset_label = re.sub(r"_(\w+)", r"$_{\1}$", label)
+        axes.plot(curves.values, curves[name], color=colour, linewidth=1.4, marker="o", markersize=2.2, label=typeset_label)
         axes.fill_between(curves.values, *curves.interval(name), color=colour, alpha=0.25, linewidth=0.0)
     if curve.level is not None:
         axes.axhline(curve.level[0], color=THRESHOLD, linestyle="--", linewidth=1.2, label=curve.level[1])
@@ -83,14 +86,14 @@ def draw_statistics_figure(statistics: EscapeStatistics, style: FigureStyle) -> 
     """Draw the histogram of escape times, and the probability of escape after each number of crossings."""
     columns = style.columns(2)
     figure = new_figure(style, style.width * (0.45 if columns == 2 else 1.6), "Statistics of the escapes")
-    times, probabilities = figure.subplots(2 // columns, columns).ravel().tolist()
-    draw_escape_times(times, statistics, style)
-    name_panel(times, "Escape times", style)
-    chances = statistics.escape_probabilities[: MOST_CROSSINGS + 1]
-    probabilities.bar(np.arange(len(chances)), chances, color=MEASURED)
-    probabilities.set_xlim(-0.6, MOST_CROSSINGS + 0.6)
-    probabilities.set_ylim(0.0, 1.0)
-    style_axes(probabilities, style, grid=True, names=("upward crossings n", "p"), title="Escapes after n crossings")
+    time_axes, crossing_axes = figure.subplots(2 // columns, columns).ravel().tolist()
+    draw_escape_times(time_axes, statistics, style)
+    set_title(time_axes, "Escape times", style)
+    probabilities = statistics.escape_probabilities[: MOST_CROSSINGS + 1]
+    crossing_axes.bar(np.arange(len(probabilities)), probabilities, color=MEASURED)
+    crossing_axes.set_xlim(-0.6, MOST_CROSSINGS + 0.6)
+    crossing_axes.set_ylim(0.0, 1.0)
+    style_axes(crossing_axes, style, grid=True, names=("upward crossings n", "p"), title="Escapes after n crossings")
     return figure
 
 
@@ -110,10 +113,11 @@ def draw_shares(
         if code == Fate.BOUNDED:
             line: dict[str, Any] = {"color": PAPER.bounded, "linewidth": 2.2, "label": PAPER.outcomes[Fate.BOUNDED].label}
         else:
-            dashed = any(np.array_equal(share, other) for other in shares.T[1:code])
+            is_dashed = any(np.array_equal(share, other) for other in shares.T[1:code])
             entry = PAPER.entry(code, outcomes)
             line = {"color": entry.colour, "linewidth": 1.7, "label": entry.label}
-            line |= {"linestyle": _DASHED, "zorder": 3} if dashed else {}
+            if is_dashed:
+                line |= {"linestyle": _DASHED, "zorder": 3}
         axes.plot(energies, 100.0 * share, marker="o", markersize=2.2, **line)
     axes.set_ylim(0.0, 100.0)
     axes.set_xlim(float(energies[0]), float(energies[-1]))
@@ -123,19 +127,21 @@ def draw_shares(
 def draw_decay_laws(axes: Axes, laws: DecayLaws, t_max: float) -> None:
     """Draw the share of starts that have not escaped, with its fits, against time until t_max."""
     times = np.concatenate([[1.0], laws.times[laws.times > 1.0], [t_max]])
-    steps = np.concatenate([[1.0], laws.survival[laws.times > 1.0], laws.survival[-1:] if laws.times.size else [1.0]])
-    positive = steps > 0.0
-    axes.step(times[positive], steps[positive], where="post", color=MEASURED, linewidth=1.8, label="starts")
+    last_survival = laws.survival[-1] if laws.times.size else 1.0
+    survival = np.concatenate([[1.0], laws.survival[laws.times > 1.0], [last_survival]])
+    # A logarithmic axis cannot show 0.
+    is_positive = survival > 0.0
+    axes.step(times[is_positive], survival[is_positive], where="post", color=MEASURED, linewidth=1.8, label="starts")
     for fit in (laws.exponential, laws.power_law):
         if fit is not None:
             _draw_law(axes, fit, preferred=laws.preferred is fit.law)
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.set_xlim(1.0, t_max)
-    # The axis spans at least a decade, so that it has labels.
-    axes.set_ylim(10.0 ** np.floor(np.log10(0.99 * steps[positive].min())), 1.4)
+    # The factor 0.99 makes the axis span at least a decade, so that it has labels.
+    axes.set_ylim(10.0 ** np.floor(np.log10(0.99 * survival[is_positive].min())), 1.4)
     style_axes(axes, grid=True)
-    add_panel_legend(axes, "lower left" if steps[-1] > _MOST_STAY else "upper right")
+    add_panel_legend(axes, "lower left" if survival[-1] > _MOST_STAY else "upper right")
 
 
 def _draw_law(axes: Axes, fit: LawFit, *, preferred: bool) -> None:
@@ -150,11 +156,11 @@ def _mathtext(number: float) -> str:
     return f"{number:.3g}" if abs(int(power)) < 3 else rf"{digits} \times 10^{{{int(power)}}}"
 
 
-def draw_line(axes: Axes, x: np.ndarray, y: np.ndarray, across: str, up: str, *, logarithmic: str = "") -> None:
+def draw_line(axes: Axes, x: np.ndarray, y: np.ndarray, x_label: str, y_label: str, *, logarithmic: str = "") -> None:
     """Draw one measured curve. `logarithmic` contains the letters of the logarithmic axes, such as "xy"."""
     axes.plot(x, y, color=MEASURED, linewidth=1.4, marker="o" if x.size <= _MOST_MARKERS else "", markersize=3.0)
     if "x" in logarithmic:
         axes.set_xscale("log")
     if "y" in logarithmic:
         axes.set_yscale("log")
-    style_axes(axes, grid=True, names=(across, up))
+    style_axes(axes, grid=True, names=(x_label, y_label))

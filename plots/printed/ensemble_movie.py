@@ -37,7 +37,8 @@ _HEIGHT = 0.55
 _PARTICLE_AREA = 3.0
 # Lower end of the axis of shares, in units of the share of one orbit.
 _LEAST_SHARE = 0.5
-_MIXED_DASHES = (0, (4, 3))
+# Dashes of the law of mixed motion.
+_LAW_DASHES = (0, (4, 3))
 
 
 class MovieFormat(StrEnum):
@@ -71,9 +72,9 @@ def ensemble_movie_bytes(
     orbits
         Orbits of one energy, at common times.
     palette
-        Colours: each orbit has the colour of the exit through which it leaves, or the colour of bounded orbits.
+        Colours of the orbits: of the exits through which they leave, or of bounded orbits.
     format
-        File format; MP4 needs the extra ``movies``.
+        File format. MP4 needs the extra ``movies``.
     style
         Width, resolution and font size.
 
@@ -84,16 +85,17 @@ def ensemble_movie_bytes(
     """
     with tempfile.TemporaryDirectory() as folder, RENDER_LOCK, _options(format):
         path = Path(folder, f"movie.{format}")
-        stage, writer = _draw_stage(potential, orbits, palette, style), _make_writer(format)
+        stage = _draw_stage(potential, orbits, palette, style)
+        writer = _make_writer(format)
         with writer.saving(stage.figure, str(path), style.dpi):
-            for place in range(orbits.t.shape[1]):
-                _show(stage, orbits, place)
+            for index in range(orbits.t.shape[1]):
+                _show(stage, orbits, index)
                 writer.grab_frame()
         return path.read_bytes()
 
 
 def _options(format: MovieFormat) -> Any:
-    """Matplotlib settings for the encoder."""
+    """Return a context with the settings of Matplotlib for the encoder."""
     if format is not MovieFormat.MP4:
         return rc_context()
     require_package("imageio_ffmpeg", "movies")
@@ -103,8 +105,8 @@ def _options(format: MovieFormat) -> Any:
 
 
 def _make_writer(format: MovieFormat) -> AbstractMovieWriter:
-    kind = FFMpegWriter if format is MovieFormat.MP4 else PillowWriter
-    return kind(fps=FRAMES_PER_SECOND, metadata={"title": "Escape Explorer"})
+    writer_class = FFMpegWriter if format is MovieFormat.MP4 else PillowWriter
+    return writer_class(fps=FRAMES_PER_SECOND, metadata={"title": "Escape Explorer"})
 
 
 def _draw_stage(potential: Potential, orbits: SampledOrbits, palette: Palette, style: FigureStyle) -> _Stage:
@@ -126,15 +128,16 @@ def _draw_stage(potential: Potential, orbits: SampledOrbits, palette: Palette, s
 
 
 def _draw_chart(axes: Axes, potential: Potential, orbits: SampledOrbits, style: FigureStyle) -> Line2D:
-    """Draw the chart of the share inside, with the law of mixed motion; return the line that `_show` extends."""
-    last, least = float(orbits.t[0, -1]), _LEAST_SHARE / len(orbits.fate)
-    times = np.linspace(0.0, last, 200)
+    """Draw the chart of the share inside, with the law of mixed motion. Return the line that `_show` extends."""
+    last_time = float(orbits.t[0, -1])
+    least_share = _LEAST_SHARE / len(orbits.fate)
+    times = np.linspace(0.0, last_time, 200)
     rate = compute_flux(potential, float(orbits.energy[0])).decay_rate
-    axes.plot(times, np.exp(-rate * times), color=LIGHT.quiet, linewidth=1.0, linestyle=_MIXED_DASHES, label="flux over volume")
+    axes.plot(times, np.exp(-rate * times), color=LIGHT.quiet, linewidth=1.0, linestyle=_LAW_DASHES, label="flux over volume")
     (survival,) = axes.plot([], [], color=LIGHT.text, linewidth=1.5, drawstyle="steps-post", label="share inside")
     axes.set_yscale("log")
-    axes.set_xlim(0.0, last)
-    axes.set_ylim(max(least, 0.5 * np.exp(-rate * last)), 1.2)
+    axes.set_xlim(0.0, last_time)
+    axes.set_ylim(max(least_share, 0.5 * np.exp(-rate * last_time)), 1.2)
     axes.yaxis.set_major_locator(LogLocator())
     style_axes(axes, style, grid=True, names=("t", "share inside"), title="Share still inside")
     axes.legend(loc="upper right", fontsize=style.small_size, frameon=False)
@@ -142,15 +145,16 @@ def _draw_chart(axes: Axes, potential: Potential, orbits: SampledOrbits, style: 
     return line
 
 
-def _show(stage: _Stage, orbits: SampledOrbits, place: int) -> None:
-    """Show the orbits at the time with the index `place`."""
-    window, t = stage.window, float(orbits.t[0, place])
-    across = (orbits.x[:, place] - window.x_low) / window.width
-    up = (orbits.y[:, place] - window.ordinate_low) / window.height
-    stage.particles.set_offsets(np.column_stack([across, up]))
-    left = np.sort(orbits.escape_time[orbits.fate > Fate.BOUNDED])
-    left = left[left <= t]
+def _show(stage: _Stage, orbits: SampledOrbits, index: int) -> None:
+    """Show the orbits at the time with this index."""
+    window = stage.window
+    t = float(orbits.t[0, index])
+    x_shares = (orbits.x[:, index] - window.x_low) / window.width
+    y_shares = (orbits.y[:, index] - window.ordinate_low) / window.height
+    stage.particles.set_offsets(np.column_stack([x_shares, y_shares]))
+    escape_times = np.sort(orbits.escape_time[orbits.fate > Fate.BOUNDED])
+    past_times = escape_times[escape_times <= t]
     count = len(orbits.fate)
-    inside = np.concatenate([[1.0], 1.0 - np.arange(1, len(left) + 1) / count])
-    stage.survival.set_data(np.concatenate([[0.0], left, [t]]), np.concatenate([inside, inside[-1:]]))
-    stage.count.set_text(f"t = {t:.1f}: {count - len(left)} of {count} inside")
+    shares = np.concatenate([[1.0], 1.0 - np.arange(1, len(past_times) + 1) / count])
+    stage.survival.set_data(np.concatenate([[0.0], past_times, [t]]), np.append(shares, shares[-1]))
+    stage.count.set_text(f"t = {t:.1f}: {count - len(past_times)} of {count} inside")

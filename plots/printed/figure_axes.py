@@ -34,13 +34,17 @@ RENDER_LOCK = threading.Lock()
 MOST_PIXELS = 20_000_000
 """Largest number of pixels of a PNG file: four maps 16 cm wide at 600 pixels per inch. Drawing needs up to 50 bytes per pixel."""
 
-# Fonts that Matplotlib contains. STIX has Greek letters, fractions and mathematical symbols, DejaVu Serif the superscripts that
-# STIX lacks.
-_FAMILY, _MATHS = ["STIXGeneral", "DejaVu Serif", "serif"], "stix"
+# Fonts of texts, which Matplotlib contains. STIX has Greek letters, fractions and mathematical symbols. DejaVu Serif has
+# superscripts that STIX lacks.
+_FAMILY = ["STIXGeneral", "DejaVu Serif", "serif"]
+# Fonts of formulas.
+_MATHS = "stix"
+# Settings of Matplotlib while a file is saved.
 _FILE_OPTIONS: Any = {
     # Text in SVG files stays text. Programs without the STIX fonts show it in another font of about the same width.
     "svg.fonttype": "none",
     "font.serif": ["STIXGeneral", "Times New Roman", "Times", "Liberation Serif", "DejaVu Serif"],
+    # PDF files contain TrueType fonts, whose text can be selected and edited.
     "pdf.fonttype": 42,
     # Elements have the same names in every file.
     "svg.hashsalt": "escape-explorer",
@@ -70,26 +74,26 @@ def new_figure(style: FigureStyle, height: float, title: str = "", *, equal: boo
 
 
 def write_below(figure: Figure, lines: Iterable[str], style: FigureStyle, size: float | None = None) -> None:
-    """Write lines below all panels, wrapped to the width of the figure. `size` is the font size in points."""
-    size = size or style.small_size
-    letters = int(_LETTERS_PER_EM * style.inches * POINTS_PER_INCH / size)
+    """Write lines below all panels, wrapped to the width of the figure. `size` is the font size in points, by default small."""
+    font_size = style.small_size if size is None else size
+    letters = int(_LETTERS_PER_EM * style.inches * POINTS_PER_INCH / font_size)
     text = "\n".join(fill(line, letters, break_on_hyphens=False) for line in lines)
-    figure.supxlabel(text, x=_GAP / style.inches, ha="left", fontsize=size, color=LIGHT.text)
+    figure.supxlabel(text, x=_GAP / style.inches, ha="left", fontsize=font_size, color=LIGHT.text)
 
 
 def fit_height(figure: Figure) -> None:
-    """Fit the height of a figure to its panels and the lines below, whose sizes follow from the width of the figure."""
+    """Fit the height of a figure to its panels and the lines below them. Their sizes follow from the width of the figure."""
     figure.draw_without_rendering()
     panels = Bbox.union([box for axes in figure.axes if (box := axes.get_tightbbox()) is not None])
-    lines = sum(text.get_window_extent().height for text in figure.texts)
+    text_height = sum(text.get_window_extent().height for text in figure.texts)
     gaps = 2 + len(figure.texts)
-    figure.set_figheight((panels.height + lines) / figure.dpi + gaps * _GAP)
+    figure.set_figheight((panels.height + text_height) / figure.dpi + gaps * _GAP)
 
 
-def label_axes(axes: Axes, across: str, up: str, style: FigureStyle = SCREEN) -> None:
-    """Name both axes."""
-    axes.set_xlabel(across, fontsize=style.font_size)
-    axes.set_ylabel(up, fontsize=style.font_size)
+def label_axes(axes: Axes, x_label: str, y_label: str, style: FigureStyle = SCREEN) -> None:
+    """Label both axes."""
+    axes.set_xlabel(x_label, fontsize=style.font_size)
+    axes.set_ylabel(y_label, fontsize=style.font_size)
 
 
 def style_axes(
@@ -97,7 +101,7 @@ def style_axes(
 ) -> None:
     """Give axes a thin frame, short ticks, at most five intervals between ticks on linear axes, and optionally a faint grid.
 
-    `names` are those of both axes, and `title` is that of the panel, see `name_panel`.
+    `names` are the labels of the x axis and the y axis. `title` is the title of the panel, see `set_title`.
     """
     axes.tick_params(direction="out", labelsize=style.small_size, width=_FRAME, length=3.0, which="major")
     axes.tick_params(direction="out", width=0.6 * _FRAME, length=1.8, which="minor")
@@ -113,19 +117,19 @@ def style_axes(
     if names is not None:
         label_axes(axes, *names, style)
     if title:
-        name_panel(axes, title, style)
+        set_title(axes, title, style)
 
 
-def name_panel(axes: Axes, words: str, style: FigureStyle = SCREEN) -> None:
+def set_title(axes: Axes, title: str, style: FigureStyle = SCREEN) -> None:
     """Write the title of a panel above its left end, if the style has titles."""
     if style.titles:
-        axes.set_title(words, loc="left", fontsize=style.font_size, color=LIGHT.text, pad=4.0)
+        axes.set_title(title, loc="left", fontsize=style.font_size, color=LIGHT.text, pad=4.0)
 
 
-def name_panels(panels: Iterable[Axes], words: Sequence[str]) -> None:
-    """Title panels with (a), (b), … and their words."""
-    for letter, axes, word in zip("abcdefghi", panels, words, strict=False):
-        name_panel(axes, f"({letter}) {word}")
+def set_titles(panels: Iterable[Axes], titles: Sequence[str]) -> None:
+    """Write the titles of panels after the letters (a), (b), …."""
+    for letter, axes, title in zip("abcdefghi", panels, titles, strict=False):
+        set_title(axes, f"({letter}) {title}")
 
 
 def legend_handles(entries: Iterable[Entry]) -> list[Artist]:
@@ -149,9 +153,9 @@ _HANDLES = {Mark.PATCH: _patch, Mark.LINE: _line, Mark.CHESSBOARD: _chessboard}
 
 
 def add_figure_legend(figure: Figure, handles: Sequence[Artist], style: FigureStyle = SCREEN, columns: int | None = None) -> None:
-    """Add one legend for the whole figure, below all panels, by default in one row."""
-    columns = columns or len(handles)
-    _colour_text(figure.legend(handles=list(handles), loc="outside lower center", ncols=columns, **_legend_style(style)))
+    """Add a legend for the whole figure below all panels, by default in one row."""
+    column_count = len(handles) if columns is None else columns
+    _colour_text(figure.legend(handles=list(handles), loc="outside lower center", ncols=column_count, **_legend_style(style)))
 
 
 def below(axes: Axes, depth: float, left: float = 0.0) -> Transform:
@@ -170,7 +174,7 @@ def add_legend_below(axes: Axes, handles: Sequence[Artist], place: tuple[float, 
     handles
         Handles of the legend entries.
     place
-        Upper left corner of the legend: distances left of and below the lower left corner of the panel, in points.
+        Upper left corner of the legend: distances to the left of, and below, the lower left corner of the panel, in points.
     width
         Available width in points. Longer entries are wrapped.
     style
@@ -184,17 +188,18 @@ def add_legend_below(axes: Axes, handles: Sequence[Artist], place: tuple[float, 
     names = [str(handle.get_label()) for handle in handles]
     for columns in range(min(len(names), _MOST_COLUMNS), 0, -1):
         legend = axes.legend(list(handles), names, ncols=columns, **options)
-        share = width * figure_of(axes).dpi / POINTS_PER_INCH / legend.get_window_extent().width
-        if share >= 1.0:
+        available_share = width * figure_of(axes).dpi / POINTS_PER_INCH / legend.get_window_extent().width
+        if available_share >= 1.0:
             break
     else:
-        names = [fill(name, max(1, int(share * max(map(len, names))))) for name in names]
+        # Even a single column is too wide.
+        names = [fill(name, max(1, int(available_share * max(map(len, names))))) for name in names]
         legend = axes.legend(list(handles), names, **options)
     _colour_text(legend)
 
 
 def size_in_points(axes: Axes) -> tuple[float, float]:
-    """Return the width and height of a panel."""
+    """Return the width and height of a panel, in points."""
     box, scale = axes.get_window_extent(), POINTS_PER_INCH / figure_of(axes).dpi
     return float(box.width * scale), float(box.height * scale)
 
@@ -262,17 +267,17 @@ def save_figure(figure: Figure, format: FigureFormat, facts: Mapping[str, str]) 
     file = BytesIO()
     with rc_context(_FILE_OPTIONS):
         figure.savefig(file, format=format, dpi=figure.dpi, metadata=_metadata(format, facts))
-    # The layout stays for the next file.
+    # Another file of the figure has the same layout.
     figure.set_layout_engine("none")
     return file.getvalue()
 
 
 def _check_pixels(figure: Figure) -> None:
     width, height = figure.get_size_inches()
-    most = math.sqrt(MOST_PIXELS / (width * height))
-    if figure.dpi > most:
+    largest_dpi = math.sqrt(MOST_PIXELS / (width * height))
+    if figure.dpi > largest_dpi:
         size = f"{width * CM_PER_INCH:.3g} × {height * CM_PER_INCH:.3g} cm"
-        raise ValueError(f"dpi={figure.dpi:g}: must be at most {math.floor(most)} for a figure of {size}")
+        raise ValueError(f"dpi={figure.dpi:g}: must be at most {math.floor(largest_dpi)} for a figure of {size}")
 
 
 def _metadata(format: FigureFormat, facts: Mapping[str, str]) -> dict[str, str | None]:

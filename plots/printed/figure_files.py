@@ -30,7 +30,7 @@ def map_figure_bytes(
 ) -> bytes:
     """Return the file of some pictures of a map, with the map's provenance in the metadata.
 
-    For parameters and exceptions see `plots.printed.map_figure.draw_map_figure` and `plots.printed.figure_axes.save_figure`.
+    For parameters and exceptions, see `plots.printed.map_figure.draw_map_figure` and `plots.printed.figure_axes.save_figure`.
     """
     from plots.printed.map_figure import draw_map_figure
 

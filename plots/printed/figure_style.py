@@ -10,7 +10,10 @@ LEGAL = {"width": (4.0, 100.0, "cm"), "dpi": (50.0, 1200.0, "pixels per inch"), 
 """Smallest value, largest value and unit of each number of a style."""
 
 CM_PER_INCH = 2.54
+"""Centimetres in an inch."""
+
 POINTS_PER_INCH = 72.0
+"""Points in an inch."""
 
 
 class FigureFormat(StrEnum):
@@ -32,7 +35,7 @@ class FigureStyle:
     dpi
         Pixels per inch of PNG files, 50 to 1200.
     font_size
-        Font size of axis labels in points, 4 to 30; all other font sizes are in proportion.
+        Font size of axis labels in points, 4 to 30. All other font sizes are proportional to it.
     titles
         Whether panels have titles, and the figure has a title and provenance.
 
@@ -79,8 +82,9 @@ class FigureStyle:
 
     def columns(self, panels: int) -> int:
         """Return the number of columns of square panels, each wide enough for its legend."""
-        most = max(1, int(self.inches * POINTS_PER_INCH // (_LEAST_PANEL * self.font_size)))
-        rows = math.ceil(panels / most)
+        most_columns = max(1, int(self.inches * POINTS_PER_INCH // (_LEAST_PANEL * self.font_size)))
+        rows = math.ceil(panels / most_columns)
+        # Rows of equal length.
         return math.ceil(panels / rows)
 
 

@@ -27,18 +27,18 @@ from plots.printed.figure_axes import (
     figure_of,
     fit_height,
     legend_handles,
-    name_panel,
     new_figure,
     set_font,
+    set_title,
     size_in_points,
     write_below,
 )
 from plots.printed.figure_style import POINTS_PER_INCH, SCREEN, FigureStyle
 from plots.printed.window_axes import draw_limits, draw_pixels, draw_strokes, mark_starts, show_window
 
-# Distance from a map to the text below its axis label, in units of the font size.
+# Distance from a map to the next element below the axis label, in units of the font size.
 _BELOW_AXIS = 3.7
-# Distance from a colour bar to the text below its labels, in units of the font size.
+# Distance from a colour bar to the next element below the labels of the bar, in units of the font size.
 _BELOW_BAR = 3.4
 # Distance from a map to the left edge of its legend, in units of the font size.
 _LEFT_OF_AXIS = 3.0
@@ -64,7 +64,7 @@ def draw_map_figure(
     starts: Sequence[tuple[float, float]] = (),
     times: TimeScale | None = None,
 ) -> Figure:
-    """Draw pictures of a map in rows, each with title, axes, curves and legend, and the provenance below all pictures.
+    """Draw pictures of a map in rows. Each has a title, axes, curves and a legend. The provenance is below all pictures.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ def draw_map_figure(
     analyses
         Results of the layers.
     starts
-        (x, ordinate) of each chosen orbit. Starts are numbered from 1; starts outside the window are counted but not drawn.
+        (x, ordinate) of each chosen orbit. Starts are numbered from 1. Starts outside the window are counted but not drawn.
     times
         Scale of the escape times; None for `fitted_scale`.
 
@@ -90,11 +90,11 @@ def draw_map_figure(
     """
     if not pictures:
         raise ValueError(f"pictures={pictures!r}: must be at least one of {', '.join(TITLES)}")
-    times = times or fitted_scale(frame)
+    time_scale = times or fitted_scale(frame)
     columns = style.columns(len(pictures))
     rows = math.ceil(len(pictures) / columns)
     figure = new_figure(style, rows * _ROW_HEIGHT * style.width / columns, equal=True)
-    # Texts are measured at low resolution, because Matplotlib allocates all pixels of the figure to measure a text.
+    # Measure texts at low resolution, because Matplotlib allocates all pixels of the figure to measure a text.
     figure.set_dpi(POINTS_PER_INCH)
     grid = figure.subplots(rows, columns, squeeze=False).ravel().tolist()
     for axes in grid[len(pictures) :]:
@@ -102,9 +102,9 @@ def draw_map_figure(
     for axes, picture in zip(grid, pictures, strict=False):
         axes.set_label(picture)
         axes.set_box_aspect(1.0)
-        draw_picture(axes, frame, picture, palette, analyses, times, style)
+        draw_picture(axes, frame, picture, palette, analyses, time_scale, style)
         mark_starts(axes, starts, palette, frame.spec.find_window(), style)
-        _explain_picture(axes, frame, picture, palette, analyses, times, style.inches / columns, style)
+        _explain_picture(axes, frame, picture, palette, analyses, time_scale, style.inches / columns, style)
     if style.titles:
         write_below(figure, [provenance_line(frame)], style, style.smallest_size)
     set_font(figure)
@@ -123,7 +123,8 @@ def draw_picture(
     style: FigureStyle = SCREEN,
 ) -> None:
     """Draw title, pixels, curves and axes of one of `TITLES`. `times` is the scale of the escape times."""
-    spec, window = frame.spec, frame.spec.find_window()
+    spec = frame.spec
+    window = spec.find_window()
     draw_pixels(axes, picture_pixels(frame, picture, palette, analyses, times), window, window)
     draw_limits(axes, spec.potential, spec.plane, spec.energy, window, palette.channels)
     for name, result in analyses.items():
@@ -132,7 +133,7 @@ def draw_picture(
             draw_strokes(axes, over.strokes(result), window, palette)
     show_window(axes, window, *spec.plane.axis_symbols, style)
     letters = int(_LETTERS_PER_EM * size_in_points(axes)[0] / style.font_size)
-    name_panel(axes, textwrap.fill(TITLES[picture], max(1, letters)), style)
+    set_title(axes, textwrap.fill(TITLES[picture], max(1, letters)), style)
 
 
 def _explain_picture(
@@ -145,13 +146,13 @@ def _explain_picture(
     width: float,
     style: FigureStyle,
 ) -> None:
-    """Draw colour bar and legend below a map in a column `width` inches wide."""
+    """Draw the colour bar and the legend below a map, in a column that is `width` inches wide."""
     depth = _BELOW_AXIS * style.font_size
     legend = map_legend(picture, ShownMap.of(frame, palette, analyses, times))
     if legend.scale is not None:
-        bar = axes.inset_axes((0.0, -_BAR_HEIGHT, 1.0, _BAR_HEIGHT), transform=below(axes, depth))
-        add_colour_bar(figure_of(axes), legend.scale, style, cax=bar, orientation="horizontal")
-        bar.get_xticklabels()[-1].set_horizontalalignment("right")
+        bar_axes = axes.inset_axes((0.0, -_BAR_HEIGHT, 1.0, _BAR_HEIGHT), transform=below(axes, depth))
+        add_colour_bar(figure_of(axes), legend.scale, style, cax=bar_axes, orientation="horizontal")
+        bar_axes.get_xticklabels()[-1].set_horizontalalignment("right")
         depth += _BELOW_BAR * style.font_size
     handles = legend_handles([*legend.entries, *legend.others])
     # Matplotlib gives curves without a label names such as "_child0".
@@ -178,5 +179,5 @@ def _inner_ticks(scale: ColourScale) -> list[float]:
     if not scale.is_logarithmic:
         return [float(f"{0.5 * (scale.low + scale.high):.3g}")]
     powers = [10.0**k for k in range(math.ceil(math.log10(scale.low)), math.floor(math.log10(scale.high)) + 1)]
-    room = (scale.high / scale.low) ** _BETWEEN_TICKS
-    return [power for power in powers if scale.low * room < power < scale.high / room]
+    least_ratio = (scale.high / scale.low) ** _BETWEEN_TICKS
+    return [power for power in powers if scale.low * least_ratio < power < scale.high / least_ratio]

@@ -19,8 +19,8 @@ from plots.pictures.palette import THRESHOLD, Palette
 from plots.printed.figure_axes import (
     add_figure_legend,
     add_panel_legend,
-    name_panel,
     new_figure,
+    set_title,
     style_axes,
     write_below,
 )
@@ -28,14 +28,15 @@ from plots.printed.figure_style import SCREEN, FigureStyle
 from plots.printed.potential_figure import draw_well
 from plots.printed.window_axes import draw_curve, draw_limits, draw_pixels, show_window
 
-# Height of the figure with two columns, in units of its width.
+# Height of the figure with two columns, in units of the width.
 _HEIGHT = 0.58
-# Height with one column.
+# Height of the figure with one column, in units of the width.
 _HEIGHT_OF_COLUMN = 1.9
 # Lower end of the axis of time, in units of time.
 _EARLIEST_TIME = 0.01
+# Name of the panel of the paths.
 _PATH = "path"
-# The Lyapunov exponent repeats what SALI shows.
+# The quantities with a panel. The Lyapunov exponent has none, because it repeats what SALI shows.
 _PRINTED = {quantity.name: quantity for quantity in ORBIT_QUANTITIES if quantity.name != "exponent"}
 
 
@@ -55,8 +56,8 @@ def draw_orbits_figure(
     title = f"{'Orbit' if len(orbits) == 1 else 'Orbits'} at h = {', '.join(_energies(orbits))}"
     figure = new_figure(style, style.width * (_HEIGHT_OF_COLUMN if one_column else _HEIGHT), title)
     if one_column:
-        column: list[list[Any]] = [[_PATH], *([name] for name in _PRINTED)]
-        panels = figure.subplot_mosaic(column, height_ratios=[2, *([1] * len(_PRINTED))])
+        rows: list[list[Any]] = [[_PATH], *([name] for name in _PRINTED)]
+        panels = figure.subplot_mosaic(rows, height_ratios=[2, *([1] * len(_PRINTED))])
     else:
         panels = figure.subplot_mosaic([[_PATH, name] for name in _PRINTED])
     draw_path(panels[_PATH], potential, orbits, palette, style)
@@ -92,13 +93,13 @@ def _energies(orbits: Sequence[OrbitCurves]) -> list[str]:
 def draw_path(
     axes: Axes, potential: Potential, orbits: Sequence[OrbitCurves], palette: Palette, style: FigureStyle = SCREEN
 ) -> None:
-    """Draw paths as lines, or long paths shaded by density, with the exits at the highest energy of the orbits."""
-    widest = max(orbits, key=lambda curves: curves.orbit.energy)
-    window = widest.window
+    """Draw paths as lines, long paths as density images, and the exits at the highest energy of the orbits."""
+    highest = max(orbits, key=lambda curves: curves.orbit.energy)
+    window = highest.window
     _draw_paths(axes, orbits, window, palette)
-    draw_limits(axes, potential, SPACE, widest.orbit.energy, window, palette.channels)
+    draw_limits(axes, potential, SPACE, highest.orbit.energy, window, palette.channels)
     show_window(axes, window, "x", "y", style, equal=True)
-    name_panel(axes, "Path", style)
+    set_title(axes, "Path", style)
 
 
 def _draw_paths(axes: Axes, orbits: Sequence[OrbitCurves], window: Window, palette: Palette) -> None:
@@ -106,6 +107,7 @@ def _draw_paths(axes: Axes, orbits: Sequence[OrbitCurves], window: Window, palet
         if curves.visits is None:
             draw_curve(axes, [np.column_stack(curves.path)], window, colors=colour, linewidths=1.0)
         else:
+            # `draw_pixels` takes row 0 on top.
             pixels = curves.shaded(colour)[::-1]
             draw_pixels(axes, pixels.view(np.uint8).reshape(*pixels.shape, 4), curves.window, window)
 

@@ -13,10 +13,11 @@ from engine.systems.review.potential_review import critical_energies
 from plots.pictures.palette import LIGHT, Palette
 from plots.printed.window_axes import draw_curve, draw_limits
 
-# Equipotentials in units of the depth of the well, from its bottom: dense inside the well, sparse outside.
+# Levels of equipotentials above the bottom of the well, in units of the depth of the well: dense inside the well, sparse outside.
 _LEVELS = (-6.0, -4.0, -2.0, -1.0, 0.0, 0.15, 0.3, 0.5, 0.7, 0.85, 1.25, 1.6, 2.2, 3.0, 4.5, 6.5, 9.0)
+# Levels of equipotentials inside the well, in the same units.
 _INNER_LEVELS = (0.1, 0.3, 0.5, 0.7, 0.9)
-# Side of the panels in units of the side of the interior.
+# Side of a panel, in units of the width of the interior.
 _ENLARGED = 1.35
 
 
@@ -36,13 +37,14 @@ def draw_well(axes: Axes, potential: Potential, energy: float, window: Window, p
 
 
 def draw_pieces(axes: Axes, pieces: list[np.ndarray], colour: str, width: float) -> None:
-    """Draw a curve that consists of pieces, each (n, 2) points."""
+    """Draw a curve that consists of pieces, each of shape (n, 2)."""
     for piece in pieces:
         axes.plot(*piece.T, color=colour, linewidth=width)
 
 
 def enlarge(window: Window) -> Window:
     """Return a square window around a window, larger by a margin."""
-    across, up = 0.5 * (window.x_low + window.x_high), 0.5 * (window.ordinate_low + window.ordinate_high)
+    x = 0.5 * (window.x_low + window.x_high)
+    ordinate = 0.5 * (window.ordinate_low + window.ordinate_high)
     half = 0.5 * _ENLARGED * window.width
-    return Window(across - half, across + half, up - half, up + half)
+    return Window(x - half, x + half, ordinate - half, ordinate + half)

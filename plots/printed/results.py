@@ -28,18 +28,23 @@ from plots.pictures.orbit_curves import compute_orbit_curves
 from plots.pictures.orbit_quantities import ORBIT_QUANTITIES
 from plots.pictures.palette import LIGHT, PALETTES, Entry, Palette, rgba
 from plots.printed.curve_figures import draw_decay_laws, draw_escape_times, draw_line, draw_measure, draw_shares
-from plots.printed.figure_axes import RENDER_LOCK, add_panel_legend, label_axes, legend_handles, name_panel, set_font, style_axes
+from plots.printed.figure_axes import RENDER_LOCK, add_panel_legend, label_axes, legend_handles, set_font, set_title, style_axes
 from plots.printed.map_figure import draw_picture
 from plots.printed.orbit_figure import draw_path, draw_quantity
 from plots.printed.potential_figure import draw_equipotentials, enlarge
 from plots.printed.window_axes import draw_limits, draw_pixels, draw_strokes, show_window
 
-_INCHES, _NOTEBOOK_DPI = (4.6, 4.0), 72.0
+# Width and height of a picture, in inches.
+_INCHES = (4.6, 4.0)
+# Pixels per inch of a picture in a notebook.
+_NOTEBOOK_DPI = 72.0
 # Position of the legend of a map in shares of the axes: the middle, below the label of the horizontal axis.
 _BELOW_AXES = (0.5, -0.13)
 _SIDE_BY_SIDE = "display:flex;gap:1em;flex-wrap:wrap;align-items:flex-start"
-# On logarithmic axes, which cannot show 0, smaller values are drawn at 10⁻¹⁶.
-_MOST_DECADES = 16
+# Smaller values are drawn here on logarithmic axes, because these cannot show 0.
+_LOG_FLOOR = 1e-16
+# Number of parameters of each `_draw…` function before its options: the result, the axes and the palette.
+_FIXED_PARAMETERS = 3
 
 
 class NoPictureError(TypeError):
@@ -50,10 +55,10 @@ def plot_result(result: Result, ax: Axes | None = None, *, palette: str = "paper
     """Draw a result, as described in `engine.foundations.result.Result.plot`."""
     if palette not in PALETTES:
         raise ValueError(f"palette={palette!r}: must be one of {', '.join(PALETTES)}")
-    legal = list(inspect.signature(_draw.dispatch(type(result))).parameters)[3:]
+    legal = list(inspect.signature(_draw.dispatch(type(result))).parameters)[_FIXED_PARAMETERS:]
     if unknown := [name for name in options if name not in legal]:
-        legal_here = f"the picture of {type(result).__name__} has {', '.join(['palette', *legal])}"
-        raise TypeError(f"{unknown[0]}: no such option; {legal_here}")
+        options_text = f"the picture of {type(result).__name__} has {', '.join(['palette', *legal])}"
+        raise TypeError(f"{unknown[0]}: no such option; {options_text}")
     if ax is None:
         from matplotlib import pyplot
 
@@ -65,10 +70,10 @@ def plot_result(result: Result, ax: Axes | None = None, *, palette: str = "paper
 
 
 def to_html(result: Result) -> str:
-    """Return the HTML that notebooks show: a picture if there is one, a sentence on the result, and the numbers of the result."""
+    """Return the HTML for notebooks: a picture if there is one, a sentence about the result, and the numbers of the result."""
     describe = getattr(result, "describe", None)
-    shown = result.shown_numbers().items()
-    rows = "".join(f"<tr><th>{html.escape(name)}</th><td>{html.escape(value)}</td></tr>" for name, value in shown)
+    numbers = result.shown_numbers().items()
+    rows = "".join(f"<tr><th>{html.escape(name)}</th><td>{html.escape(value)}</td></tr>" for name, value in numbers)
     sentence = f"<p>{html.escape(describe())}</p>" if describe is not None else ""
     return (
         f"<div><strong>{type(result).__name__}</strong>{sentence}<div style='{_SIDE_BY_SIDE}'>"
@@ -115,15 +120,16 @@ def _draw(result: Result, axes: Axes, palette: Palette) -> None:
     if chart is None:
         raise NoPictureError(f"{type(result).__name__} has no picture; its numbers are in to_pandas()")
     columns = result.columns()
-    x, y = columns[chart.x], columns[chart.y]
+    x = columns[chart.x]
+    y = columns[chart.y]
     if chart.by_channel:
         axes.bar(list(map(str, x)), y, color=[palette.channels[channel - 1] for channel in x])
-        style_axes(axes, names=(chart.across, chart.up))
+        style_axes(axes, names=(chart.x_label, chart.y_label))
     else:
-        shown = np.maximum(y, 10.0**-_MOST_DECADES) if "y" in chart.logarithmic else y
-        draw_line(axes, x, shown, chart.across, chart.up, logarithmic=chart.logarithmic)
+        drawn_y = np.maximum(y, _LOG_FLOOR) if "y" in chart.logarithmic else y
+        draw_line(axes, x, drawn_y, chart.x_label, chart.y_label, logarithmic=chart.logarithmic)
     if chart.title:
-        name_panel(axes, chart.title.format(**result.numbers()))
+        set_title(axes, chart.title.format(**result.numbers()))
 
 
 def _draw_layer(layer: Layer, result: Result, axes: Axes, palette: Palette) -> None:
@@ -133,18 +139,20 @@ def _draw_layer(layer: Layer, result: Result, axes: Axes, palette: Palette) -> N
     panel = _panel(axes, window)
     if layer.pixels is not None:
         codes = layer.pixels.codes(result, None)
-        draw_pixels(panel, rgba([*layer.pixels.colours(palette)])[codes][::-1], window, window)
+        pixels = rgba([*layer.pixels.colours(palette)])[codes]
+        # `draw_pixels` takes row 0 on top.
+        draw_pixels(panel, pixels[::-1], window, shown=window)
         if entries := layer.pixels.entries(result, palette):
             _add_legend_below(panel, entries)
     draw_limits(panel, spec.potential, spec.plane, spec.energy, window, palette.channels)
     if layer.over is not None and layer.over.strokes is not None:
         draw_strokes(panel, layer.over.strokes(result), window, palette)
     show_window(panel, window, *spec.plane.axis_symbols)
-    name_panel(panel, layer.title)
+    set_title(panel, layer.title)
 
 
 def _panel(axes: Axes, window: Window) -> Axes:
-    """Add axes for drawings in shares of a window behind `axes`, which have the coordinates of the window."""
+    """Give `axes` the coordinates of a window, and return new axes behind them, for drawings in shares of the window."""
     panel = axes.inset_axes((0.0, 0.0, 1.0, 1.0), zorder=-1.0)
     axes.set_xlim(window.x_low, window.x_high)
     axes.set_ylim(window.ordinate_low, window.ordinate_high)
@@ -174,9 +182,11 @@ def _draw_orbit(result: Orbit, axes: Axes, palette: Palette, *, show: str = "pat
         raise NoPictureError("this orbit has no potential, so its exits are unknown")
     curves = compute_orbit_curves(result.potential, result, with_visits=show == "path")
     if show == "path":
+        # The axes are square until `draw_path` has given the panel the aspect of the window.
         axes.set_box_aspect(1.0)
-        draw_path(_panel(axes, curves.window), result.potential, [curves], palette)
-        axes.set_box_aspect(axes.child_axes[-1].get_box_aspect())
+        panel = _panel(axes, curves.window)
+        draw_path(panel, result.potential, [curves], palette)
+        axes.set_box_aspect(panel.get_box_aspect())
         return
     quantity = next((one for one in ORBIT_QUANTITIES if one.name == show), None)
     if quantity is None:
@@ -189,8 +199,9 @@ def _draw_sampled_orbits(result: SampledOrbits, axes: Axes, palette: Palette) ->
     entries = []
     for fate in np.unique(result.fate).tolist():
         entries.append(palette.entry(fate, result.outcomes))
-        # A NaN ends each path.
-        x, y = (np.pad(path[result.fate == fate], ((0, 0), (0, 1)), constant_values=np.nan) for path in (result.x, result.y))
+        # A NaN after each path separates the paths.
+        has_fate = result.fate == fate
+        x, y = (np.pad(paths[has_fate], ((0, 0), (0, 1)), constant_values=np.nan) for paths in (result.x, result.y))
         axes.plot(x.ravel(), y.ravel(), color=entries[-1].colour, linewidth=0.8)
     axes.set_aspect("equal")
     style_axes(axes, names=("x", "y"), title="Paths")
@@ -227,16 +238,17 @@ def _draw_review(result: PotentialReview, axes: Axes, palette: Palette) -> None:
 
 @_draw.register
 def _draw_sweep(result: Sweep, axes: Axes, palette: Palette, *, measure: str | None = None) -> None:
-    drawn = {SHARES.name: SHARES} | {panel.name: panel for panel in CURVE_PANELS if is_measured(panel, result)}
-    if "share" not in result.dataset:
-        del drawn[SHARES.name]
-    if not drawn:
+    measures = {panel.name: panel for panel in CURVE_PANELS if is_measured(panel, result)}
+    if "share" in result.dataset:
+        measures = {SHARES.name: SHARES} | measures
+    if not measures:
         raise NoPictureError("a sweep without numbers against the energy or a parameter has no picture")
-    if measure is not None and measure not in drawn:
-        raise ValueError(f"measure={measure!r}: must be one of {', '.join(drawn)}")
-    chosen = measure or next(iter(drawn))
+    if measure is not None and measure not in measures:
+        raise ValueError(f"measure={measure!r}: must be one of {', '.join(measures)}")
+    # By default, the first measure.
+    chosen = measure or next(iter(measures))
     if chosen != SHARES.name:
-        draw_measure(axes, result, drawn[chosen])
+        draw_measure(axes, result, measures[chosen])
         return
     draw_shares(axes, result.values, result["share"], result.outcomes)
     label_axes(axes, result.symbol, "percentage of starts")
@@ -245,7 +257,9 @@ def _draw_sweep(result: Sweep, axes: Axes, palette: Palette, *, measure: str | N
 
 @_draw.register
 def _draw_laws(result: DecayLaws, axes: Axes, palette: Palette) -> None:
-    draw_decay_laws(axes, result, float(max(result.times[-1:], default=10.0)))
+    # The time axis ends at the last escape; without escapes, at 10.
+    t_max = float(result.times[-1]) if result.times.size else 10.0
+    draw_decay_laws(axes, result, t_max)
     label_axes(axes, "t", "S(t)")
 
 
@@ -257,4 +271,5 @@ def _draw_statistics(result: EscapeStatistics, axes: Axes, palette: Palette) -> 
 @_draw.register
 def _draw_uncertainty(result: UncertaintyExponent, axes: Axes, palette: Palette) -> None:
     draw_line(axes, result.separations, result.shares, "ε", "share of uncertain pairs", logarithmic="xy")
-    axes.plot(result.separations, result.amplitude * result.separations**result.exponent, "--", color=LIGHT.text, linewidth=1.2)
+    fitted_shares = result.amplitude * result.separations**result.exponent
+    axes.plot(result.separations, fitted_shares, "--", color=LIGHT.text, linewidth=1.2)

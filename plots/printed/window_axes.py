@@ -1,7 +1,7 @@
 """Draw in axes that show a window of a plane: pixels, curves, exits, curves of layers, and marks of starts.
 
-Everything is drawn in shares of the window, from 0 to 1, because in a deep zoom the transform from plane coordinates to pixels
-would lose all digits.
+The coordinates of a drawing are shares of the window, from 0 to 1. In a deep zoom, the transform of coordinates of the plane to
+pixels would lose all digits.
 """
 
 from __future__ import annotations
@@ -30,13 +30,15 @@ from plots.printed.figure_style import SCREEN, FigureStyle
 _LETTER_WIDTH = 0.5
 # Space between tick labels, in units of the font size.
 _BETWEEN_LABELS = 1.0
+# Dashes of exits without colours.
 _EXIT_DASHES = (0, (2.0, 1.5))
 # Width of the curves of layers in a file, relative to the width on the page.
 _LINE_SCALE = 0.6
+# Drawing order of halos: over pixels, below curves.
 _HALO_ORDER = 1.5
 # Curves are cut at this distance outside the window, as a share of the window.
 _RIM = 0.02
-# The number of a start is written inward within this distance of the right and upper edge of the picture, as a share of its side.
+# Width of the rim at the right and the upper edge, as a share of the side, where numbers of starts are on the inner side.
 _EDGE = 0.06
 
 
@@ -56,15 +58,15 @@ def draw_limits(
 ) -> None:
     """Draw the limiting curve of a slice and, on (x, y), the known Lyapunov orbits.
 
-    The orbits have the colours of their channels, or without colours are black and dashed.
+    Without `channel_colours`, the orbits are black and dashed.
     """
-    limit: dict[str, Any] = {"colors": LIGHT.limiting_curve, "linewidths": 1.0}
-    draw_curve(axes, trace_zero_velocity_curve(potential, plane, energy, shown), shown, "limiting curve", **limit)
+    limit_style: dict[str, Any] = {"colors": LIGHT.limiting_curve, "linewidths": 1.0}
+    draw_curve(axes, trace_zero_velocity_curve(potential, plane, energy, shown), shown, "limiting curve", **limit_style)
     h = common_energy(energy)
     orbits = find_known_exits(potential, h) if plane.shows_positions and h is not None else ()
     if channel_colours is None:
         paths = [orbit.half_path for orbit in orbits]
-        draw_curve(axes, paths, shown, "Lyapunov orbits", linestyles=[_EXIT_DASHES], **limit)
+        draw_curve(axes, paths, shown, "Lyapunov orbits", linestyles=[_EXIT_DASHES], **limit_style)
         return
     for orbit in orbits:
         style: dict[str, Any] = {"colors": channel_colours[orbit.channel - 1], "linewidths": 2.2}
@@ -85,14 +87,14 @@ def draw_strokes(axes: Axes, strokes: Sequence[Stroke], shown: Window, palette: 
 def draw_curve(
     axes: Axes, pieces: Iterable[np.ndarray], shown: Window, label: str = "", *, halo: bool = False, **style: Any
 ) -> None:
-    """Draw a curve that consists of pieces, as far as the window shows it.
+    """Draw the part of a curve that is inside the window. The curve consists of pieces.
 
     Parameters
     ----------
     axes
         Axes that show `shown`.
     pieces
-        Pieces, each (n, 2) points of the plane. Pieces of a single point are skipped.
+        Points of each piece in the plane, of shape (n, 2). Pieces of a single point are skipped.
     shown
         Window of the axes.
     label
@@ -102,15 +104,16 @@ def draw_curve(
     style
         Properties of `matplotlib.collections.LineCollection`.
     """
-    # Matplotlib clips lines after the transform to pixels, which has too few digits for lines far outside a deep zoom.
+    # Matplotlib clips lines after the transform to pixels. Far outside a deep zoom, this transform has too few digits.
     lines = [shapely.LineString(_shares(shown, piece)) for piece in pieces if len(piece) > 1]
-    visible = shapely.get_parts(shapely.clip_by_rect(lines, -_RIM, -_RIM, 1.0 + _RIM, 1.0 + _RIM))
-    if not len(visible):
+    visible_parts = shapely.get_parts(shapely.clip_by_rect(lines, -_RIM, -_RIM, 1.0 + _RIM, 1.0 + _RIM))
+    if not len(visible_parts):
         return
     if halo:
         style["path_effects"] = [withStroke(linewidth=1.8 * style["linewidths"], foreground=LIGHT.halo)]
     axes.add_collection(
-        LineCollection([shapely.get_coordinates(part) for part in visible], label=label, **({"zorder": 2} | style)), autolim=False
+        LineCollection([shapely.get_coordinates(part) for part in visible_parts], label=label, **({"zorder": 2} | style)),
+        autolim=False,
     )
 
 
@@ -127,19 +130,21 @@ def mark_starts(
         for colour, width in ((LIGHT.halo, 7.0), (MARK_EDGE, 4.8), (palette.orbits[(number - 1) % len(palette.orbits)], 2.4)):
             size: dict[str, Any] = {"markersize": scale * (9.6 + width), "markeredgewidth": scale * width}
             axes.plot(x, y, "+", color=colour, zorder=3, **size)
-        right, high = x > 1.0 - _EDGE, y > 1.0 - _EDGE
-        aside = (-6.0 * scale if right else 6.0 * scale, -3.6 * scale if high else 3.6 * scale)
+        is_right, is_high = x > 1.0 - _EDGE, y > 1.0 - _EDGE
+        offset = (-6.0 * scale if is_right else 6.0 * scale, -3.6 * scale if is_high else 3.6 * scale)
         axes.annotate(
-            str(number), (x, y), aside, textcoords="offset points",
-            ha="right" if right else "left", va="top" if high else "bottom", fontsize=style.font_size, color=LIGHT.text, zorder=4,
+            str(number), (x, y), offset, textcoords="offset points",
+            ha="right" if is_right else "left", va="top" if is_high else "bottom",
+            fontsize=style.font_size, color=LIGHT.text, zorder=4,
             path_effects=[withStroke(linewidth=4.0, foreground=LIGHT.halo)],
         )  # fmt: skip
 
 
-def show_window(axes: Axes, shown: Window, across: str, up: str, style: FigureStyle = SCREEN, *, equal: bool = False) -> None:
+def show_window(axes: Axes, shown: Window, x_name: str, y_name: str, style: FigureStyle = SCREEN, *, equal: bool = False) -> None:
     """Set limits, ticks and names of axes that show a window. `equal` gives both axes the same scale."""
     style_axes(axes, style)
-    x, y = label_axis(across, shown.x_low, shown.x_high), label_axis(up, shown.ordinate_low, shown.ordinate_high)
+    x = label_axis(x_name, shown.x_low, shown.x_high)
+    y = label_axis(y_name, shown.ordinate_low, shown.ordinate_high)
     axes.set_xticks(*zip(*_spaced(x.ticks, size_in_points(axes)[0] / style.small_size), strict=True))
     axes.set_yticks(*zip(*y.ticks, strict=True))
     axes.set_xlim(0.0, 1.0)
@@ -150,18 +155,18 @@ def show_window(axes: Axes, shown: Window, across: str, up: str, style: FigureSt
 
 
 def _spaced(ticks: list[tuple[float, str]], width: float) -> list[tuple[float, str]]:
-    """Select every k-th tick so that the labels do not touch. `width` is in units of their font size."""
-    needed = sum(_LETTER_WIDTH * len(label) + _BETWEEN_LABELS for _, label in ticks)
-    return ticks[:: max(1, math.ceil(needed / width))]
+    """Select every k-th tick so that the labels do not touch. `width` of the axis is in units of the font size of the labels."""
+    needed_width = sum(_LETTER_WIDTH * len(label) + _BETWEEN_LABELS for _, label in ticks)
+    return ticks[:: max(1, math.ceil(needed_width / width))]
 
 
 def _shares(shown: Window, points: np.ndarray) -> np.ndarray:
-    """Convert (n, 2) points of the plane to shares of a window's width and height."""
+    """Convert points of the plane, of shape (n, 2), to shares of a window's width and height."""
     low, high = _corners(shown)
     shares: np.ndarray = (points - low) / (high - low)
     return shares
 
 
 def _corners(window: Window) -> np.ndarray:
-    """Return the lower left and the upper right corner, (2, 2)."""
+    """Return the lower left and the upper right corner, of shape (2, 2)."""
     return np.array([[window.x_low, window.ordinate_low], [window.x_high, window.ordinate_high]])

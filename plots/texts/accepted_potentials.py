@@ -10,17 +10,17 @@ from engine.systems.review.energy_ranges import HIGHEST_SHOWN
 from plots.pictures.palette import PAPER
 
 
-def refusal(found: PotentialReview) -> str | None:
+def refusal(review: PotentialReview) -> str | None:
     """Return the reason why the page cannot show a potential; None if it can."""
-    if found.refusal is not None:
-        return found.refusal
-    potential = found.potential
+    if review.refusal is not None:
+        return review.refusal
+    potential = review.potential
     for kind, count in Counter(outcome.kind for outcome in potential.outcomes).items():
         if count > (most := len(PAPER.of_kinds[kind.key])):
             return f"It has {count} {kind.word}s; the page has colours for {most}."
     if potential.escape_radius is None and abs(potential.well.energy_at(HIGHEST_SHOWN)) > LARGEST_NUMBER:
-        return f"Its escape energy is {found.escape_energy:.6g}; the page shows energies up to {LARGEST_NUMBER:g}."
-    extreme = max(abs(found.energies.low), abs(found.energies.high))
-    if extreme > LARGEST_NUMBER:
-        return f"Its energies reach {extreme:.6g}; the page shows energies up to {LARGEST_NUMBER:g}."
+        return f"Its escape energy is {review.escape_energy:.6g}; the page shows energies up to {LARGEST_NUMBER:g}."
+    largest_energy = max(abs(review.energies.low), abs(review.energies.high))
+    if largest_energy > LARGEST_NUMBER:
+        return f"Its energies reach {largest_energy:.6g}; the page shows energies up to {LARGEST_NUMBER:g}."
     return None

@@ -1,4 +1,4 @@
-"""Write results as files: maps and other datasets as NetCDF, orbits as CSV, and a Python script that reproduces both."""
+"""Write results as files: datasets as NetCDF, orbits and curves as CSV, and a Python script that reproduces a map and orbits."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ _COLUMNS = ("t", "x", "y", "px", "py", "sali", "lyapunov_exponent", "r2")
 def netcdf_bytes(frame: EscapeMap, analyses: MapAnalyses = NO_ANALYSES) -> bytes:
     """Return the NetCDF file of `EscapeMap.to_xarray` with the variables of `MapAnalyses.add_to`."""
     dataset = analyses.add_to(frame.to_xarray())
-    # Shuffling and compression reduce a map to a quarter of its size, and it is written faster.
+    # Shuffling and compression reduce a map to a quarter of its size, and make writing faster.
     return dataset_bytes(dataset, {name: {"zlib": True, "complevel": 1, "shuffle": True} for name in dataset.data_vars})
 
 
 def dataset_bytes(dataset: xr.Dataset, encoding: Mapping[Any, Any] | None = None) -> bytes:
-    """Return the NetCDF-4 file of a dataset, with `encoding` as in xarray; without the extra ``files``, a plain NetCDF 3 file."""
+    """Return the NetCDF-4 file of a dataset, with `encoding` as in xarray. Without the extra ``files``, it is a NetCDF 3 file."""
     if find_spec("h5netcdf") is None:
         return bytes(dataset.to_netcdf(engine="scipy"))
     return bytes(dataset.to_netcdf(engine="h5netcdf", encoding=encoding))
@@ -40,16 +40,16 @@ def dataset_bytes(dataset: xr.Dataset, encoding: Mapping[Any, Any] | None = None
 def orbits_csv(orbits: Sequence[Orbit], most_rows: int = MOST_ROWS, verdicts: Sequence[OrbitVerdict] = ()) -> str:
     """Return a CSV table of orbits, numbered from 1: orbit, t, x, y, px, py, sali, lyapunov_exponent and r2 at full precision.
 
-    Comment lines (#) at the top contain start, energy and verdict of each orbit, and tell which samples are listed.
+    Comment lines (#) at the top contain start, energy and verdict of each orbit, and say which samples are listed.
 
     Parameters
     ----------
     orbits
-        The orbits; an empty sequence gives an empty table.
+        The orbits. An empty sequence gives an empty table.
     most_rows
-        Largest number of rows, at least 1 per orbit. Of longer orbits every k-th sample is listed.
+        Largest number of rows, at least 1 per orbit. From longer orbits, every k-th sample is listed.
     verdicts
-        One per orbit; by default those of `engine.judge_orbit` without Birkhoff digits.
+        A verdict for each orbit; by default, the verdict of `engine.judge_orbit` without Birkhoff digits.
 
     Raises
     ------
@@ -150,15 +150,16 @@ def _potential_expression(system: System) -> tuple[str, str]:
     if system.parameters and not system.entry.is_well:
         return "System", f"System({system.case!r}, parameters={dict(system.parameters)!r}).potential"
     parameters = ", ".join(f"{name}={value!r}" for name, value in system.well_parameters.items())
-    changed = f".with_parameters({parameters})" if parameters else ""
+    calls = f".with_parameters({parameters})" if parameters else ""
     rotation = system.value_of("rotation") if system.entry.is_well else 0.0
-    changed += f".in_rotating_frame({rotation!r})" if rotation else ""
+    if rotation:
+        calls += f".in_rotating_frame({rotation!r})"
     if system.case == TYPED:
         letters = f", parameters={system.letter_parameters!r}" if system.letter_parameters else ""
-        return "parse_formula", f"parse_formula({system.formula!r}{letters}){changed}"
+        return "parse_formula", f"parse_formula({system.formula!r}{letters}){calls}"
     if system.case in CASES:
-        return "CASES", f"CASES[{system.case!r}]{changed}"
-    return "POTENTIALS", f"POTENTIALS[{system.case!r}]{changed}"
+        return "CASES", f"CASES[{system.case!r}]{calls}"
+    return "POTENTIALS", f"POTENTIALS[{system.case!r}]{calls}"
 
 
 def _state(start: Sequence[float]) -> str:

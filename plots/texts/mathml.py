@@ -8,14 +8,17 @@ from xml.etree import ElementTree
 from engine import Potential
 from engine.expressions.nodes import Expression, from_terms
 from engine.systems.forms.form import Form
-from plots.texts.mathml_elements import digits, number, op, raised, row, var
+from plots.texts.mathml_elements import digits, number, op, row, var, write_power
 from plots.texts.mathml_expressions import signed_parts
 
-_SPOKEN = {"+": "plus", "−": "minus", "=": "equals", "∂": "partial", "˙": "dot", "¨": "double dot"}
+# Words for operators and dots.
+_SPOKEN_SIGNS = {"+": "plus", "−": "minus", "=": "equals", "∂": "partial", "˙": "dot", "¨": "double dot"}
+# Words for exponents.
 _POWERS = {"2": "squared", "3": "cubed"}
 
 
-_INTEGRAL = {False: "Energy integral", True: "Jacobi integral"}
+# Names of the integral, by whether the frame rotates.
+_INTEGRALS = {False: "Energy integral", True: "Jacobi integral"}
 
 
 def equations(potential: Potential) -> str:
@@ -24,8 +27,8 @@ def equations(potential: Potential) -> str:
         **_hamiltonian(potential),
         "Effective potential" if potential.rotation else "Potential": [_potential(potential)],
         "Equations of motion": [_motion(axis, potential) for axis in ("x", "y")],
-        _INTEGRAL[bool(potential.rotation)]: [
-            _energy(potential, 0.5 * potential.mass, *(raised(_above(axis, "˙"), 2) for axis in "xy")) + op("=") + var("h")
+        _INTEGRALS[bool(potential.rotation)]: [
+            _energy(potential, 0.5 * potential.mass, *(write_power(_above(axis, "˙"), 2) for axis in "xy")) + op("=") + var("h")
         ],
         **_exits(potential),
     }
@@ -37,10 +40,10 @@ def equations(potential: Potential) -> str:
 def potential_formula(potential: Potential) -> str:
     """Return V(x, y) = … as text with one MathML element for each term, because browsers do not break long MathML elements."""
     first, *others = _signed_terms(potential.form)
-    # By default a sign at the start of an element is spaced as a unary sign.
+    # By default, a sign at the start of an element has the space of a unary sign.
     terms = [first, *(term.replace("<mo>", "<mo form='infix'>", 1) for term in others)]
-    shown = " ".join(f"<math aria-hidden='true'>{part}</math>" for part in (_at_point(potential) + op("="), *terms))
-    return f"<span role='math' aria-label='{_spoken(_potential(potential))}'>{shown}</span>"
+    elements = " ".join(f"<math aria-hidden='true'>{part}</math>" for part in (_at_point(potential) + op("="), *terms))
+    return f"<span role='math' aria-label='{_spoken(_potential(potential))}'>{elements}</span>"
 
 
 def _potential(potential: Potential) -> str:
@@ -57,7 +60,7 @@ def _at_point(potential: Potential) -> str:
 
 
 def _hamiltonian(potential: Potential) -> dict[str, list[str]]:
-    """Return H in momenta, or nothing in a rotating frame, where the Jacobi integral in velocities is enough."""
+    """Return H in momenta; nothing in a rotating frame, where the Jacobi integral in velocities is enough."""
     if potential.rotation:
         return {}
     squares = _momentum_squared("x"), _momentum_squared("y")
@@ -75,7 +78,7 @@ def _exits(potential: Potential) -> dict[str, list[str]]:
 
 
 def _motion(axis: str, potential: Potential) -> str:
-    """Return mass times acceleration = −∂V/∂axis, with the derivative written out, and the Coriolis term in a rotating frame."""
+    """Return mass × acceleration = −∂V/∂axis, with the derivative written out, or with the Coriolis term in a rotating frame."""
     force = potential.form.force("xy".index(axis))
     partial = f"<mfrac>{row(op('∂') + var(potential_symbol(potential)))}{row(op('∂') + var(axis))}</mfrac>"
     mass = "" if potential.mass == 1.0 else number(potential.mass)
@@ -104,7 +107,7 @@ def _sum(form: Form) -> str:
 
 
 def _signed_terms(form: Form) -> list[str]:
-    """Return the terms with their signs; the first has no plus sign."""
+    """Return the terms with their signs. The first term has no plus sign."""
     definition = form.definition
     expression = definition if isinstance(definition, Expression) else from_terms({(i, j): c for i, j, c in definition})
     first, *others = signed_parts(expression)
@@ -131,7 +134,7 @@ def _words(node: ElementTree.Element) -> str:
     if node.tag in ("msub", "msubsup"):
         return " ".join((parts[0], "sub", parts[1], *(_POWERS[power] for power in parts[2:])))
     text = (node.text or "").strip().replace("√", " square root of ").strip()
-    return " ".join([_SPOKEN.get(text, text), *parts]).strip()
+    return " ".join([_SPOKEN_SIGNS.get(text, text), *parts]).strip()
 
 
 def _above(name: str, dots: str) -> str:

@@ -6,7 +6,7 @@ from math import isqrt
 
 from engine.expressions.text import short_fraction
 
-# Numbers this close to a short fraction, or to the square root of a short fraction, are written as such.
+# Largest distance of a number, or of its square, from a short fraction in whose place the fraction is written.
 _ROUNDING = 1e-10
 COORDINATE_DIGITS = 4
 """Significant digits of coordinates that are decimal numbers."""
@@ -29,12 +29,12 @@ def number(value: float, shown: int = COORDINATE_DIGITS) -> str:
 
 def _root(number: int) -> str:
     """Return the square root of an integer, with square factors taken out."""
-    outside = max(k for k in range(1, isqrt(number) + 1) if number % k**2 == 0)
-    inside = number // outside**2
-    if inside == 1:
-        return digits(outside)
+    root_factor = max(k for k in range(1, isqrt(number) + 1) if number % k**2 == 0)
+    radicand = number // root_factor**2
+    if radicand == 1:
+        return digits(root_factor)
     # Some browsers do not draw the sign of <msqrt> without a mathematical font.
-    return digits(f"√{inside}" if outside == 1 else f"{outside}√{inside}")
+    return digits(f"√{radicand}" if root_factor == 1 else f"{root_factor}√{radicand}")
 
 
 def var(name: str) -> str:
@@ -57,6 +57,6 @@ def row(formula: str) -> str:
     return f"<mrow>{formula}</mrow>"
 
 
-def raised(base: str, power: int) -> str:
-    """Return a base raised to a power of at least 0; empty for the power 0."""
+def write_power(base: str, power: int) -> str:
+    """Return a base to a power of at least 0; empty for the power 0."""
     return "" if power == 0 else base if power == 1 else f"<msup>{base}{digits(power)}</msup>"

@@ -9,21 +9,21 @@ from plots.texts.mathml_elements import COEFFICIENT_DIGITS, digits, number, op, 
 
 def signed_parts(expression: Expression) -> list[str]:
     """Return the terms of a sum, each preceded by its sign."""
-    whole = expression if isinstance(expression, Sum) else Sum(0.0, ((expression, 1.0),))
-    parts = [_signed(c, part) for part, c in whole.terms]
-    if whole.constant or not parts:
-        parts.append(op("−" if whole.constant < 0.0 else "+") + number(abs(whole.constant), COEFFICIENT_DIGITS))
+    total = expression if isinstance(expression, Sum) else Sum(0.0, ((expression, 1.0),))
+    parts = [_signed(c, part) for part, c in total.terms]
+    if total.constant or not parts:
+        parts.append(op("−" if total.constant < 0.0 else "+") + number(abs(total.constant), COEFFICIENT_DIGITS))
     return parts
 
 
 def _signed(coefficient: float, part: Expression) -> str:
     factors = part.factors if isinstance(part, Product) else ((part, 1.0),)
     factors = tuple(sorted(factors, key=lambda factor: _place(factor[0])))
-    above = "".join(_raised(base, exponent) for base, exponent in factors if exponent > 0.0)
-    below = "".join(_raised(base, -exponent) for base, exponent in factors if exponent < 0.0)
-    size = "" if abs(coefficient) == 1.0 and above else number(abs(coefficient), COEFFICIENT_DIGITS)
-    written = f"<mfrac>{row(size + above)}{row(below)}</mfrac>" if below else size + above
-    return op("−" if coefficient < 0.0 else "+") + written
+    numerator = "".join(_write_power(base, exponent) for base, exponent in factors if exponent > 0.0)
+    denominator = "".join(_write_power(base, -exponent) for base, exponent in factors if exponent < 0.0)
+    magnitude = "" if abs(coefficient) == 1.0 and numerator else number(abs(coefficient), COEFFICIENT_DIGITS)
+    fraction = f"<mfrac>{row(magnitude + numerator)}{row(denominator)}</mfrac>" if denominator else magnitude + numerator
+    return op("−" if coefficient < 0.0 else "+") + fraction
 
 
 def _place(base: Expression) -> int:
@@ -31,7 +31,7 @@ def _place(base: Expression) -> int:
     return 0 if isinstance(base, CoordinateNode) else 2 if isinstance(base, Function) else 1
 
 
-def _raised(base: Expression, exponent: float) -> str:
+def _write_power(base: Expression, exponent: float) -> str:
     match base:
         case CoordinateNode(axis):
             written = var("xy"[axis])

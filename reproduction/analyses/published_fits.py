@@ -77,7 +77,7 @@ class PaperFits:
     direct
         Fit of Nde/N0, the share of direct escapes.
     highest_energy
-        End of the energy range of the fits, which begins at the escape energy. Dimensionless.
+        Upper end of the energy range of the fits (dimensionless). The range begins at the escape energy.
     """
 
     escaped: HyperbolicTangent

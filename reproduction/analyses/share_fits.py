@@ -12,14 +12,15 @@ from scipy import optimize, special
 from engine.results import Sweep
 from reproduction.analyses.published_fits import PAPER_FITS, HyperbolicTangent, Polynomial, ShareCurve
 
+# Confidence level of the intervals.
 _CONFIDENCE = 0.95
-# Shares are limited to this distance from 0 and 1 for the initial guess, where the inverse of the curve diverges.
+# Smallest distance of shares from 0 and 1 in the initial guess, because the inverse of the curve diverges at 0 and 1.
 _SATURATION = 0.01
 # Smallest number of shares strictly between 0 and 1 that determine the slope of the curve.
 _MIN_UNSATURATED = 3
 # Tolerance of the least-squares solver, at the level of rounding.
 _TOLERANCE = 1e-14
-# An energy with a larger leverage determines a parameter alone and has no residual.
+# Largest leverage of an energy. With a larger leverage, the energy alone determines a parameter, and has no residual.
 _MAX_LEVERAGE = 1.0 - 1e-9
 
 
@@ -30,7 +31,7 @@ class Deviation:
     Attributes
     ----------
     largest
-        Curve minus data at the energy of the largest difference; 0.01 is one percentage point.
+        Curve minus data at the energy of the largest difference. A value of 0.01 is one percentage point.
     energy
         h of the largest difference.
     rms
@@ -124,14 +125,14 @@ def fit_escape_shares(h: np.ndarray, shares: np.ndarray) -> ShareFit:
     Parameters
     ----------
     h
-        (m,) different energies, dimensionless, 4 or more.
+        At least 4 different energies (dimensionless), of shape (m,).
     shares
-        (m,) Ne/N0 at each energy.
+        Ne/N0 at each energy, of shape (m,).
 
     Returns
     -------
-    The `ShareFit`; its parameters are NaN if fewer than 3 shares lie strictly between 0 and 1, which leaves the slope
-    undetermined.
+    The `ShareFit`. Its parameters are NaN if fewer than 3 shares are strictly between 0 and 1, because these would not determine
+    the slope.
     """
     if np.count_nonzero((shares > 0.0) & (shares < 1.0)) < _MIN_UNSATURATED:
         return _build_fit(HyperbolicTangent(np.nan, np.nan), np.full(2, np.nan), h, shares)
@@ -143,8 +144,8 @@ def fit_escape_shares(h: np.ndarray, shares: np.ndarray) -> ShareFit:
 def fit_direct_shares(h: np.ndarray, shares: np.ndarray, degree: int) -> ShareFit:
     """Fit Nde/N0 = c0 + c1 h + … by least squares, as Zotos (2014) does with degree 3 (I, II) and 2 (III).
 
-    Weights and intervals are those of `fit_escape_shares`. At least `degree` + 3 energies are needed. Outside the data the
-    polynomial can leave the range 0 to 1.
+    Weights and intervals are those of `fit_escape_shares`. At least `degree` + 3 energies are needed. Outside the range of the
+    data, the polynomial can be below 0 or above 1.
     """
     coefficients, half_widths = _fit(lambda polynomial: polynomial, shares, degree, h, shares)
     return _build_fit(Polynomial(tuple(coefficients)), half_widths, h, shares)
@@ -160,29 +161,29 @@ def measure_deviation(curve: Callable[[Any], Any], h: np.ndarray, shares: np.nda
 def _fit(
     curve: Callable[[np.ndarray], np.ndarray], guess: np.ndarray, degree: int, h: np.ndarray, shares: np.ndarray
 ) -> tuple[list[float], np.ndarray]:
-    """Fit `curve` of a polynomial in h to shares; return the coefficients, lowest power first, and their intervals' half widths.
+    """Fit `curve` of a polynomial in h to shares. Return the coefficients, lowest power first, and the intervals' half widths.
 
     The fit begins with the polynomial closest to `guess`, of shape (m,).
     """
     powers = np.vander(h, degree + 1, increasing=True)
-    found = optimize.least_squares(
+    solution = optimize.least_squares(
         lambda parameters: curve(powers @ parameters) - shares, np.linalg.lstsq(powers, guess)[0], "3-point", method="lm",
         x_scale="jac", xtol=_TOLERANCE, ftol=_TOLERANCE, gtol=_TOLERANCE,
     )  # fmt: skip
-    return found.x.tolist(), _find_half_widths(found.jac, found.fun)
+    return solution.x.tolist(), _find_half_widths(solution.jac, solution.fun)
 
 
 def _find_half_widths(jacobian: np.ndarray, residuals: np.ndarray) -> np.ndarray:
     """Return the half widths of the intervals of p parameters, given the Jacobian J of shape (m, p).
 
-    Their covariance is the sandwich (JᵀJ)⁻¹ Jᵀ diag(r² / (1 − leverage)²) J (JᵀJ)⁻¹.
+    The covariance of the parameters is the sandwich (JᵀJ)⁻¹ Jᵀ diag(r² / (1 − leverage)²) J (JᵀJ)⁻¹.
     """
-    count, parameters = jacobian.shape
+    energy_count, parameter_count = jacobian.shape
     inverse = np.linalg.pinv(jacobian)
     leverage = np.sum(jacobian.T * inverse, axis=0)
-    if leverage.max() > _MAX_LEVERAGE or np.linalg.matrix_rank(jacobian) < parameters:
-        return np.full(parameters, np.inf)
-    quantile = special.stdtrit(count - parameters, 0.5 * (1.0 + _CONFIDENCE))
+    if leverage.max() > _MAX_LEVERAGE or np.linalg.matrix_rank(jacobian) < parameter_count:
+        return np.full(parameter_count, np.inf)
+    quantile = special.stdtrit(energy_count - parameter_count, 0.5 * (1.0 + _CONFIDENCE))
     half_widths: np.ndarray = quantile * np.linalg.norm(inverse * (residuals / (1.0 - leverage)), axis=1)
     return half_widths
 

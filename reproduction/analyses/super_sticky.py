@@ -1,6 +1,6 @@
 """Search for super-sticky orbits: chaotic orbits that are bounded until t_max and escape long after (Zotos 2014, section 4.3).
 
-Super-sticky orbits stay near the outermost invariant tori, move through chains of islands and cantori, and escape late or not
+Super-sticky orbits stay near the outermost invariant tori, move through chains of islands and cantori, and escape late, or not
 within any practical integration time.
 """
 
@@ -20,8 +20,8 @@ from engine.results import RegularityMap
 class SuperStickySearch:
     """The chaotic bounded starts of a map, integrated beyond its t_max.
 
-    The starts are ordered row by row. Of two mirror images in a symmetric map both are listed, but only one is integrated: the
-    other escapes at the same time through the opposite exit.
+    The starts are ordered row by row. Both of two mirror images in a symmetric map are listed, but only one is integrated: its
+    mirror image escapes at the same time through the opposite exit.
 
     Attributes
     ----------
@@ -30,11 +30,11 @@ class SuperStickySearch:
     bounded
         Number of regular and chaotic starts that are bounded until the map's t_max.
     x, ordinate
-        (n,) coordinates of the starts on the plane.
+        Coordinates of the starts on the plane, each of shape (n,).
     states
-        (n, 4) x, y, px, py of the starts.
+        x, y, px, py of the starts, of shape (n, 4).
     fate, escape_time, crossings
-        (n,) as in `engine.results.Outcomes`, since the start; `Fate.BOUNDED` for orbits that do not escape by `t_max`.
+        As in `engine.results.Outcomes`, each of shape (n,). The fate is `Fate.BOUNDED` for orbits that do not escape by `t_max`.
     images
         Number of starts per integrated orbit: 2 for a mirror symmetric map, else 1.
     t_max
@@ -60,17 +60,19 @@ class SuperStickySearch:
     @property
     def escapers(self) -> np.ndarray:
         """Array indices of the escaping orbits, of shape (m,), by escape time."""
-        escaped = np.flatnonzero(self.fate >= 1)
-        in_order: np.ndarray = escaped[np.argsort(self.escape_time[escaped], kind="stable")]
-        return in_order
+        escapers = np.flatnonzero(self.fate >= 1)
+        sorted_escapers: np.ndarray = escapers[np.argsort(self.escape_time[escapers], kind="stable")]
+        return sorted_escapers
 
     def describe(self) -> str:
         """Describe the result in two sentences."""
         if not self.fate.size:
             return f"None of the {self.bounded} bounded starts is chaotic."
-        counted = ", both mirror images counted" if self.images > 1 else ""
-        found = f"{self.fate.size} of the {self.bounded} bounded starts are chaotic ({100 * self.chaotic_share:.1f} %{counted})."
-        return f"{found} {self._describe_escapers()}"
+        counting = ", both mirror images counted" if self.images > 1 else ""
+        sentence = (
+            f"{self.fate.size} of the {self.bounded} bounded starts are chaotic ({100 * self.chaotic_share:.1f} %{counting})."
+        )
+        return f"{sentence} {self._describe_escapers()}"
 
     def _describe_escapers(self) -> str:
         escapers = self.escapers
@@ -103,8 +105,8 @@ def find_super_sticky_orbits(
 
     Returns
     -------
-    `SuperStickySearch`, identical to the bit for every executor. After such long times rounding errors have grown to order 1, so
-    that rounding determines which orbit escapes when, but not how many escape.
+    `SuperStickySearch`, identical to the bit for every executor. After such long times, rounding errors have grown to order 1:
+    rounding determines which orbit escapes when, but not how many orbits escape.
 
     Raises
     ------
@@ -117,15 +119,16 @@ def find_super_sticky_orbits(
     x, ordinate = escape_map.coordinates(pixels)
     states = spec.start_states(x, ordinate)
     mirror = MirrorPixels(spec, escape_map.x, escape_map.ordinate)
-    firsts = mirror.firsts_of(pixels)
-    integrated = np.isin(pixels, firsts)
-    found = classify_orbits(spec.potential, spec.common_energy, states[integrated], t_max, execution=execution)
+    # Of two mirror images, the first is integrated.
+    first_pixels = mirror.firsts_of(pixels)
+    is_integrated = np.isin(pixels, first_pixels)
+    outcomes = classify_orbits(spec.potential, spec.common_energy, states[is_integrated], t_max, execution=execution)
     execution.raise_if_cancelled()
-    place = np.searchsorted(firsts, np.minimum(pixels, mirror.partner[pixels]))
-    fate = found.fate[place]
+    outcome_index = np.searchsorted(first_pixels, np.minimum(pixels, mirror.partner[pixels]))
+    fate = outcomes.fate[outcome_index]
     if mirror.symmetric:
-        fate = np.where(integrated, fate, spec.potential.well.mirror_channels[fate])
+        fate = np.where(is_integrated, fate, spec.potential.well.mirror_channels[fate])
     return SuperStickySearch(
         spec, int(np.count_nonzero(escape_map.fate == Fate.BOUNDED)), x, ordinate, states, fate,
-        found.escape_time[place], found.crossings[place], images=2 if mirror.symmetric else 1, t_max=t_max,
+        outcomes.escape_time[outcome_index], outcomes.crossings[outcome_index], images=2 if mirror.symmetric else 1, t_max=t_max,
     )  # fmt: skip

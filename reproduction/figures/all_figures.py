@@ -27,11 +27,11 @@ class FigureEntry:
     Attributes
     ----------
     name
-        Name, and stem of its files.
+        Name, which is the stem of the names of the files.
     caption
         Caption.
     draw
-        Draws the figure with maps of a cache, which may take minutes.
+        Draws the figure with maps of a cache. This may take minutes.
     """
 
     name: str
@@ -39,10 +39,11 @@ class FigureEntry:
     draw: Callable[[MapCache], Figure]
 
     def files(self, cache: MapCache) -> dict[str, bytes]:
-        """Draw the figure; return the content of its files by file name, with caption and quality in the metadata."""
-        figure, quality = self.draw(cache), cache.quality
-        keywords = f"{quality.name} quality, {quality.resolution} x {quality.resolution} starts, t_max {quality.t_max:g}"
-        facts = {"Title": self.name, "Description": self.caption, "Comment": keywords}
+        """Draw the figure. Return the content of its files, with caption and quality in the metadata, by file name."""
+        figure = self.draw(cache)
+        quality = cache.quality
+        comment = f"{quality.name} quality, {quality.resolution} x {quality.resolution} starts, t_max {quality.t_max:g}"
+        facts = {"Title": self.name, "Description": self.caption, "Comment": comment}
         return {f"{self.name}.{format}": save_figure(figure, format, facts) for format in (FigureFormat.PNG, FigureFormat.PDF)}
 
 
@@ -50,7 +51,7 @@ def _of_case(case: str) -> Sequence[FigureEntry]:
     low, high = plane_energies(case)
     channels = ("green", "red", "blue", "orange")[: CASES[case].channels]
     colours = ", ".join(["bounded grey", *(f"channel {k} {colour}" for k, colour in enumerate(channels, 1))])
-    speed = "darker is later; bounded grey"
+    times = "darker is later; bounded grey"
     rows: tuple[tuple[str, str, Callable[[str, MapCache], Figure]], ...] = (
         (
             "potential",
@@ -59,9 +60,9 @@ def _of_case(case: str) -> Sequence[FigureEntry]:
             draw_potential,
         ),
         ("basins-xy", f"basins of escape on (x, y) at nine energies: {colours}", _nine(Plane.X_Y, "basins")),
-        ("times-xy", f"escape times on (x, y) at nine energies: {speed}", _nine(Plane.X_Y, "times")),
+        ("times-xy", f"escape times on (x, y) at nine energies: {times}", _nine(Plane.X_Y, "times")),
         ("basins-xpx", f"basins of escape on (x, px) at nine energies: {colours}", _nine(Plane.X_PX, "basins")),
-        ("times-xpx", f"escape times on (x, px) at nine energies: {speed}", _nine(Plane.X_PX, "times")),
+        ("times-xpx", f"escape times on (x, px) at nine energies: {times}", _nine(Plane.X_PX, "times")),
         (
             "crossings-xpx",
             "upward crossings of y = 0 before the escape, on (x, px) at nine energies: 0 red, 1 blue, 2 magenta, 3 to 10 "
@@ -77,7 +78,7 @@ def _of_case(case: str) -> Sequence[FigureEntry]:
         ),
         ("survival", "share of the starts that have not escaped, at three energies, with fitted laws", draw_survival),
     )
-    return [FigureEntry(f"{case}-{family}", f"Case {case}: {caption}", partial(draw, case)) for family, caption, draw in rows]
+    return [FigureEntry(f"{case}-{name}", f"Case {case}: {caption}", partial(draw, case)) for name, caption, draw in rows]
 
 
 def _nine(plane: Plane, picture: str) -> Callable[[str, MapCache], Figure]:

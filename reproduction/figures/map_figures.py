@@ -16,7 +16,7 @@ from plots.layers.map_images import picture_pixels
 from plots.layers.picture import ColourScale
 from plots.pictures.palette import PAPER
 from plots.pictures.time_scale import TimeScale, common_scale
-from plots.printed.figure_axes import add_figure_legend, label_axes, legend_handles, name_panel, new_figure
+from plots.printed.figure_axes import add_figure_legend, label_axes, legend_handles, new_figure, set_title
 from plots.printed.figure_style import SCREEN
 from plots.printed.map_figure import add_colour_bar
 from plots.printed.window_axes import draw_limits, draw_pixels, show_window
@@ -27,21 +27,26 @@ from reproduction.paper_ranges import nine_energies, plane_energies
 TITLES = {"basins": "basins of escape", "times": "escape times", "crossings": "upward crossings of $y = 0$ before the escape"}
 """Titles of the kinds of maps."""
 
+# Number of panels in a row and in a column.
 _SIDE = 3
 
 
 def draw_nine_maps(case: str, cache: MapCache, *, plane: Plane, picture: str) -> Figure:
     """Draw one picture of `TITLES` at the paper's nine energies, all in one window."""
     frames = [cache.map(case, plane, energy) for energy in nine_energies(case)]
-    shown, times = _common_window(frames), common_scale(frames)
+    window = _common_window(frames)
+    times = common_scale(frames)
     title = f"Case {case}, {plane_label(plane)} plane: {TITLES[picture]}"
     figure = new_figure(replace(SCREEN, width=26.9 if picture == "times" else 24.4), 26.4, title, equal=True)
     panels = figure.subplots(_SIDE, _SIDE, sharex=True, sharey=True)
     for axes, frame in zip(panels.flat, frames, strict=True):
-        draw_map_panel(axes, frame, picture, shown, times=times)
-        name_panel(axes, f"$h = {frame.spec.energy:.2f}$")
-        place = axes.get_subplotspec()
-        label_axes(axes, axes.get_xlabel() if place.is_last_row() else "", axes.get_ylabel() if place.is_first_col() else "")
+        draw_map_panel(axes, frame, picture, window, times=times)
+        set_title(axes, f"$h = {frame.spec.energy:.2f}$")
+        # Only the outer panels keep their labels.
+        position = axes.get_subplotspec()
+        x_label = axes.get_xlabel() if position.is_last_row() else ""
+        y_label = axes.get_ylabel() if position.is_first_col() else ""
+        label_axes(axes, x_label, y_label)
     if picture == "times":
         scale = ColourScale(times.low, times.high, PAPER.escape_time)
         bar = add_colour_bar(figure, scale, ax=panels.ravel().tolist(), shrink=0.75, aspect=34, pad=0.015, extend="both")
@@ -86,7 +91,7 @@ def draw_map_panel(
     shown
         Window of the panel.
     times
-        Upper end of the scale of escape times; None for the map's own.
+        Scale of the escape times; None for the scale that fits the map.
     analyses
         Regularity of bounded orbits, if the picture shows it.
     equal
@@ -94,14 +99,15 @@ def draw_map_panel(
     """
     spec = frame.spec
     pixels = picture_pixels(frame, picture, PAPER, analyses, times)
-    white = frame.fate == Fate.OUTSIDE
+    is_white = frame.fate == Fate.OUTSIDE
     if picture == "characters":
-        white |= frame.fate > Fate.BOUNDED
-    pixels[::-1][white] = 0
+        is_white |= frame.fate > Fate.BOUNDED
+    # Row 0 of the pixels is on top, and row 0 of the map is lowest. Transparent pixels look white.
+    pixels[::-1][is_white] = 0
     draw_pixels(axes, pixels, spec.find_window(), shown)
     draw_limits(axes, spec.potential, spec.plane, spec.energy, shown)
-    across, up = map(axis_label, spec.plane.axis_names)
-    show_window(axes, shown, across, up, equal=equal)
+    x_name, y_name = map(axis_label, spec.plane.axis_names)
+    show_window(axes, shown, x_name, y_name, equal=equal)
 
 
 def _common_window(frames: Sequence[EscapeMap]) -> Window:

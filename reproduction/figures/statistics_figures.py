@@ -14,7 +14,7 @@ from engine import Plane, compute_statistics, fit_decay_laws
 from engine.results import EscapeStatistics
 from plots.pictures.palette import LIGHT, MEASURED, PAPER, THRESHOLD
 from plots.printed.curve_figures import draw_decay_laws, draw_shares
-from plots.printed.figure_axes import add_panel_legend, label_axes, name_panels, new_figure, style_axes
+from plots.printed.figure_axes import add_panel_legend, label_axes, new_figure, set_titles, style_axes
 from plots.printed.figure_style import SCREEN
 from reproduction.analyses.share_fits import CaseFit, fit_case
 from reproduction.map_cache import MapCache
@@ -27,10 +27,11 @@ MOST_CROSSINGS = 40
 FEWEST_REMAINING = 50
 """Smallest number of remaining starts for which p_n is drawn. With fewer, p_n depends on the grid."""
 
-# First index of the part of the colour scale of escape times that contrasts with white.
+# First index of the colours of escape times that contrast with white.
 _LIGHTEST = 50
-# Last index of this part.
+# Last index of the colours of escape times.
 _DARKEST = 255
+# Number of points of a fitted curve.
 _SAMPLES = 400
 
 
@@ -45,40 +46,41 @@ def draw_statistics(case: str, cache: MapCache) -> Figure:
     crossings = {energy: compute_statistics(cache.map(case, Plane.X_PX, energy)) for energy in nine_energies(case)}
     _draw_crossings(panels[2], panels[3], crossings)
     after = "after $n$ crossings"
-    name_panels(panels, ["escaping starts", "direct escapes", f"escapes {after}", f"probability of escape {after}"])
+    set_titles(panels, ["escaping starts", "direct escapes", f"escapes {after}", f"probability of escape {after}"])
     return figure
 
 
 def _draw_fits(axes: Axes, fit: CaseFit) -> None:
     h = fit.h
-    fine = np.linspace(h[0], h[-1], _SAMPLES)
+    energies = np.linspace(h[0], h[-1], _SAMPLES)
     axes.plot(h, fit.shares, "o", color=MEASURED, markersize=3.6, label="computed")
-    axes.plot(fine, fit.published(fine), color=THRESHOLD, linewidth=1.5, linestyle="--", label="the paper's fit")
+    axes.plot(energies, fit.published(energies), color=THRESHOLD, linewidth=1.5, linestyle="--", label="the paper's fit")
     if fit.fitted.determined:
-        axes.plot(fine, fit.fitted.curve(fine), color=LIGHT.text, linewidth=1.2, label="this fit")
+        axes.plot(energies, fit.fitted.curve(energies), color=LIGHT.text, linewidth=1.2, label="this fit")
     axes.set_xlim(h[0], h[-1])
     style_axes(axes, grid=True)
     add_panel_legend(axes, "lower right")
 
 
-def _draw_crossings(shares: Axes, chances: Axes, statistics: Mapping[float, EscapeStatistics]) -> None:
-    """Draw both panels against n, with one line per energy, darker for lower energies."""
-    places = np.linspace(_DARKEST, _LIGHTEST, len(statistics)).astype(int)
-    for (energy, counted), place in zip(statistics.items(), places, strict=True):
-        style: dict[str, Any] = {"color": PAPER.escape_time[place], "linewidth": 1.2, "marker": "o", "markersize": 2.4}
+def _draw_crossings(share_axes: Axes, probability_axes: Axes, statistics: Mapping[float, EscapeStatistics]) -> None:
+    """Draw both panels against n, with a line for each energy. Lower energies have darker lines."""
+    colour_indices = np.linspace(_DARKEST, _LIGHTEST, len(statistics)).astype(int)
+    for (energy, counted), colour_index in zip(statistics.items(), colour_indices, strict=True):
+        style: dict[str, Any] = {"color": PAPER.escape_time[colour_index], "linewidth": 1.2, "marker": "o", "markersize": 2.4}
         escapes = counted.crossing_counts[: MOST_CROSSINGS + 1]
         remaining = counted.decided - np.cumsum(escapes) + escapes
         with np.errstate(divide="ignore"):
-            logarithm = np.where(escapes > 0, np.log10(escapes / counted.starts), np.nan)
-        n, chance = np.arange(escapes.size), counted.escape_probabilities[: escapes.size]
-        shares.plot(n, logarithm, label=f"$h = {energy:.2f}$", **style)
-        chances.plot(n, np.where(remaining >= FEWEST_REMAINING, chance, np.nan), **style)
-    label_axes(shares, "$n$", r"$\log_{10}(dN_n/N_0)$")
-    label_axes(chances, "$n$", "$p_n$")
-    for axes in (shares, chances):
+            log_shares = np.where(escapes > 0, np.log10(escapes / counted.starts), np.nan)
+        n = np.arange(escapes.size)
+        probabilities = np.where(remaining >= FEWEST_REMAINING, counted.escape_probabilities[: escapes.size], np.nan)
+        share_axes.plot(n, log_shares, label=f"$h = {energy:.2f}$", **style)
+        probability_axes.plot(n, probabilities, **style)
+    label_axes(share_axes, "$n$", r"$\log_{10}(dN_n/N_0)$")
+    label_axes(probability_axes, "$n$", "$p_n$")
+    for axes in (share_axes, probability_axes):
         axes.set_xlim(-0.5, MOST_CROSSINGS + 0.5)
         style_axes(axes, grid=True)
-    add_panel_legend(shares, "upper right", columns=3)
+    add_panel_legend(share_axes, "upper right", columns=3)
 
 
 def draw_percentages(case: str, cache: MapCache) -> Figure:
@@ -90,13 +92,13 @@ def draw_percentages(case: str, cache: MapCache) -> Figure:
         table = cache.curves(case, plane)
         draw_shares(axes, table.values, table["share"], table.outcomes)
         label_axes(axes, "$h$", "percentage of starts" if axes is panels[0] else "")
-    name_panels(panels, [f"the {plane_label(plane)} plane" for plane in planes])
+    set_titles(panels, [f"the {plane_label(plane)} plane" for plane in planes])
     add_panel_legend(panels[1], "center right")
     return figure
 
 
 def draw_survival(case: str, cache: MapCache) -> Figure:
-    """Draw the share of remaining starts on (x, px) against time, in one panel per energy."""
+    """Draw the share of remaining starts on (x, px) against time, with a panel for each energy."""
     energies = three_energies(case)
     figure = new_figure(
         replace(SCREEN, width=32.0), 11.7, f"Case {case}, {plane_label(Plane.X_PX)} plane: share of the starts not yet escaped"
@@ -106,5 +108,5 @@ def draw_survival(case: str, cache: MapCache) -> Figure:
         statistics = compute_statistics(cache.map(case, Plane.X_PX, energy))
         draw_decay_laws(axes, fit_decay_laws(statistics), cache.quality.t_max)
         label_axes(axes, "$t$", "$S(t)$" if axes is panels[0] else "")
-    name_panels(panels, [f"$h = {energy:.2f}$" for energy in energies])
+    set_titles(panels, [f"$h = {energy:.2f}$" for energy in energies])
     return figure

@@ -18,8 +18,8 @@ from plots.printed.figure_axes import (
     add_panel_legend,
     label_axes,
     legend_handles,
-    name_panels,
     new_figure,
+    set_titles,
     style_axes,
 )
 from plots.printed.figure_style import SCREEN
@@ -33,12 +33,13 @@ from reproduction.sample_orbits import find_lyapunov_r2
 LONGEST_DRAWN = 4e6
 """Latest escape time of a drawn orbit. Integration takes a second per 1e5 time units."""
 
-# Number of time intervals in each panel for which minimum and maximum of R² are drawn.
+# Number of intervals of time in each panel. Minimum and maximum of R² in each interval are drawn.
 _INTERVALS = 1000
 # Number of samples in each interval. R² oscillates with a period of about π, so the samples cover all phases.
 _SAMPLES = 1000
 # Share of the time before the escape that the second panel shows.
 _LAST = 0.01
+# Unit of the axis of time of the first panel.
 _TIME_UNIT = 1e5
 # Upper end of the axis of R², in units of R² at the exits, with room for the legend.
 _ABOVE = 1.4
@@ -59,44 +60,44 @@ def draw_characters(cache: MapCache) -> Figure:
 def draw_super_sticky(cache: MapCache) -> Figure:
     """Draw R²(t) of an orbit that escapes long after the paper's 1e5 time units: over the whole orbit, and at its end."""
     search = cache.super_sticky()
-    place = find_shown(search)
-    figure = new_figure(SCREEN, 12.2, f"Case {STICKY_CASE}, $h = {STICKY_ENERGY}$: {_describe(search, place)}")
+    index = find_shown(search)
+    figure = new_figure(SCREEN, 12.2, f"Case {STICKY_CASE}, $h = {STICKY_ENERGY}$: {_describe(search, index)}")
     panels = list(figure.subplots(1, 2, sharey=True, width_ratios=(2, 1)))
-    if place is not None:
-        end = float(search.escape_time[place])
-        _draw_history(panels[0], _sample_r2(search, place, 0.0, cache), end, search.spec.t_max)
-        _draw_departure(panels[1], _sample_r2(search, place, (1.0 - _LAST) * end, cache), end)
+    if index is not None:
+        end = float(search.escape_time[index])
+        _draw_history(panels[0], _sample_r2(search, index, 0.0, cache), end, search.spec.t_max)
+        _draw_departure(panels[1], _sample_r2(search, index, (1.0 - _LAST) * end, cache), end)
     for axes in panels:
         _draw_exits(axes, search)
         style_axes(axes)
     label_axes(panels[0], "$t / 10^5$", "$R^2 = x^2 + y^2$")
     label_axes(panels[1], r"$t - t_{\mathrm{esc}}$", "")
-    name_panels(panels, ["from the start to the escape", "the last hundredth of the time"])
+    set_titles(panels, ["from the start to the escape", "the last hundredth of the time"])
     add_panel_legend(panels[0], "upper right")
     return figure
 
 
 def find_shown(search: SuperStickySearch) -> int | None:
-    """Return the index of the last orbit that escapes by `LONGEST_DRAWN`, else of the first escaping orbit; None without any."""
+    """Return the index of the last orbit that escapes by `LONGEST_DRAWN`, else of the first to escape; None without escapes."""
     escapers = search.escapers
     if not escapers.size:
         return None
-    early = escapers[search.escape_time[escapers] <= LONGEST_DRAWN]
-    return int(early[-1] if early.size else escapers[0])
+    early_escapers = escapers[search.escape_time[escapers] <= LONGEST_DRAWN]
+    return int(early_escapers[-1] if early_escapers.size else escapers[0])
 
 
-def _sample_r2(search: SuperStickySearch, place: int, begin: float, cache: MapCache) -> np.ndarray:
+def _sample_r2(search: SuperStickySearch, index: int, begin: float, cache: MapCache) -> np.ndarray:
     """Return R² of an orbit from a time until the escape, of shape (intervals, samples)."""
-    times = np.linspace(begin, search.escape_time[place], _INTERVALS * _SAMPLES)
-    orbits = sample_orbits(search.spec.potential, search.states[place : place + 1], times, execution=cache.execution)
+    times = np.linspace(begin, search.escape_time[index], _INTERVALS * _SAMPLES)
+    orbits = sample_orbits(search.spec.potential, search.states[index : index + 1], times, execution=cache.execution)
     r2: np.ndarray = (orbits.x**2 + orbits.y**2).reshape(_INTERVALS, _SAMPLES)
     return r2
 
 
-def _describe(search: SuperStickySearch, place: int | None) -> str:
-    if place is None:
+def _describe(search: SuperStickySearch, index: int | None) -> str:
+    if index is None:
         return f"no chaotic orbit of this map escapes by {search.t_max / 1e6:g} million time units"
-    return f"an orbit that escapes through exit {search.fate[place]} at $t = {search.escape_time[place]:.0f}$"
+    return f"an orbit that escapes through exit {search.fate[index]} at $t = {search.escape_time[index]:.0f}$"
 
 
 def _draw_history(axes: Axes, r2: np.ndarray, end: float, t_max: float) -> None:
@@ -113,9 +114,10 @@ def _draw_departure(axes: Axes, r2: np.ndarray, end: float) -> None:
 
 def _draw_band(axes: Axes, r2: np.ndarray, begin: float, end: float) -> None:
     """Draw the minimum and maximum of R² in each interval."""
-    ends = np.linspace(begin, end, len(r2) + 1)
-    least, greatest = (np.append(side, side[-1]) for side in (r2.min(axis=1), r2.max(axis=1)))
-    axes.fill_between(ends, least, greatest, step="post", color=MEASURED, linewidth=0.2)
+    edges = np.linspace(begin, end, len(r2) + 1)
+    # With step="post", the value at the last edge is not drawn.
+    lowest, highest = (np.append(values, values[-1]) for values in (r2.min(axis=1), r2.max(axis=1)))
+    axes.fill_between(edges, lowest, highest, step="post", color=MEASURED, linewidth=0.2)
 
 
 def _draw_exits(axes: Axes, search: SuperStickySearch) -> None:

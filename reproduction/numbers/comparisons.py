@@ -24,6 +24,7 @@ POINTS = 2.0
 PERCENT = 2.0
 """Largest difference of other numbers that agree, in percent."""
 
+# Quantities whose stated values determine the window.
 _WINDOW_QUANTITIES = (Quantity.ESCAPED_BY, Quantity.BOUNDED)
 
 
@@ -36,10 +37,10 @@ class Comparison:
     stated
         The number in the paper.
     computed
-        Computed values in the unit of the paper, one per energy; of Lyapunov orbits, the smallest and the largest R². Shares are
-        relative to the starts inside. NaN if there is no value.
+        Computed values in the unit of the paper, one for each energy; for Lyapunov orbits, the smallest and the largest R².
+        Shares are relative to the starts inside. A missing value is NaN.
     windows
-        For each energy the window that best explains the stated shares; empty if the number needs no window.
+        For each energy, the window that best explains the stated shares; empty if the number needs no window.
     counted
         Computed shares in these windows, with starts outside counted.
     reason
@@ -55,22 +56,22 @@ class Comparison:
     @property
     def difference(self) -> float:
         """Largest difference computed − stated (the last for `RISES_TO`); 0 if a stated bound holds, NaN without a value."""
-        return _furthest(self.stated, self.computed)
+        return _largest_difference(self.stated, self.computed)
 
     @property
     def counted_difference(self) -> float:
         """Largest difference when starts outside count; NaN if the number needs no window."""
-        return _furthest(self.stated, self.counted)
+        return _largest_difference(self.stated, self.counted)
 
     @property
     def agrees(self) -> bool:
         """Whether the difference is within `POINTS` for shares, or `PERCENT` for other numbers."""
-        return _small(self.stated, self.difference)
+        return _is_small(self.stated, self.difference)
 
     @property
     def agrees_when_counted(self) -> bool:
-        """Whether the difference is within these limits when starts outside count."""
-        return _small(self.stated, self.counted_difference)
+        """Whether the difference is within the limits of `agrees` when starts outside count."""
+        return _is_small(self.stated, self.counted_difference)
 
 
 def compare_all(
@@ -92,14 +93,16 @@ def compare_all(
     concurrent.futures.CancelledError
         If the cache is cancelled.
     """
-    measures, windows = Measures(cache, search), _Windows(cache, numbers)
+    measures = Measures(cache, search)
+    windows = _Windows(cache, numbers)
     return tuple(_compare(number, measures, windows) for number in numbers)
 
 
 def _compare(number: StatedNumber, measures: Measures, windows: _Windows) -> Comparison:
     """Compare one number. The reason is computed only if there is a difference."""
-    fitted = tuple(windows.fit(number, energy) for energy in number.energies) if number.needs_window else ()
-    row = Comparison(number, measures.values(number), fitted, tuple(_count(number, window) for window in fitted))
+    fitted_windows = tuple(windows.fit(number, energy) for energy in number.energies) if number.needs_window else ()
+    counted = tuple(_count(number, window) for window in fitted_windows)
+    row = Comparison(number, measures.values(number), fitted_windows, counted)
     return row if row.agrees else replace(row, reason=explain(measures, number))
 
 
@@ -132,9 +135,10 @@ class _Windows:
         return self.windows[key]
 
 
-def _furthest(stated: StatedNumber, values: tuple[float, ...]) -> float:
-    differences = np.array(values)[-1 if stated.relation is Relation.RISES_TO else 0 :] - stated.value
-    differences = differences[~np.isnan(differences)]
+def _largest_difference(stated: StatedNumber, values: tuple[float, ...]) -> float:
+    # A quantity that rises to the stated value must reach it only at the last energy.
+    compared_values = np.array(values[-1:] if stated.relation is Relation.RISES_TO else values)
+    differences = compared_values[~np.isnan(compared_values)] - stated.value
     if not differences.size:
         return float("nan")
     if stated.relation is Relation.MORE_THAN:
@@ -144,5 +148,5 @@ def _furthest(stated: StatedNumber, values: tuple[float, ...]) -> float:
     return float(differences[np.argmax(np.abs(differences))])
 
 
-def _small(stated: StatedNumber, difference: float) -> bool:
+def _is_small(stated: StatedNumber, difference: float) -> bool:
     return abs(difference) <= (POINTS if stated.is_share else PERCENT / 100.0 * stated.value)

@@ -29,19 +29,19 @@ def share_in_basins(frame: EscapeMap, *, count_outside: bool = False) -> float:
     frame
         A complete map.
     count_outside
-        Whether starts outside count as escaped through the exit beyond which they lie. Otherwise they are neither starts nor
+        Whether starts outside count as escaped through the exit beyond which they are. Otherwise, they are neither starts nor
         neighbours.
     """
     fate = np.where(frame.fate == Fate.OUTSIDE, frame.outside, frame.fate) if count_outside else frame.fate
-    counts = fate >= Fate.BOUNDED
-    lowest, highest = neighbouring_fates(fate, counts, frame.spec.potential.channels)
-    return 100.0 * float(np.mean((lowest == highest)[counts] & (fate[counts] >= 1)))
+    is_counted = fate >= Fate.BOUNDED
+    lowest, highest = neighbouring_fates(fate, is_counted, frame.spec.potential.channels)
+    return 100.0 * float(np.mean((lowest == highest)[is_counted] & (fate[is_counted] >= 1)))
 
 
 def share_next_to_all_basins(frame: EscapeMap) -> float:
-    """Return the percentage of starts on a basin boundary within `BOUNDARY_PIXELS` of all boundaries; 100 for Wada basins.
+    """Return the percentage of the starts on a basin boundary that are within `BOUNDARY_PIXELS` of all boundaries.
 
-    The value is 0 if the basins do not touch, and NaN for fewer than three basins.
+    The value is 100 for Wada basins, 0 if the basins do not touch, and NaN for fewer than three basins.
     """
     test = compute_wada_test(frame)
     if not test.is_applicable:
@@ -67,6 +67,6 @@ def _median_time_next_to(frame: EscapeMap, fate: Fate) -> float:
     """Return the median escape time of the neighbours of the starts with a fate."""
     from scipy import ndimage
 
-    near = ndimage.binary_dilation(frame.fate == fate, np.ones(_NEIGHBOURHOOD))
-    times = frame.escape_time[near & (frame.fate >= 1)]
+    is_near = ndimage.binary_dilation(frame.fate == fate, np.ones(_NEIGHBOURHOOD))
+    times = frame.escape_time[is_near & (frame.fate >= 1)]
     return float(np.median(times)) if times.size else float("nan")

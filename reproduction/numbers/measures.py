@@ -38,7 +38,7 @@ class Measures:
         return _MEASURES[number.quantity](self, number)
 
     def maps(self, number: StatedNumber) -> list[EscapeMap]:
-        """Return the maps of a number, one per energy."""
+        """Return the maps of a number, one for each energy."""
         assert number.plane is not None
         return [self.cache.map(number.case, number.plane, energy) for energy in number.energies]
 
@@ -67,7 +67,7 @@ def counted_codes(number: StatedNumber) -> tuple[int, ...]:
 
 
 Measure = Callable[[Measures, StatedNumber], tuple[float, ...]]
-"""Computes the values of a number."""
+"""Computes the values of a number from maps and searches."""
 
 
 def _of_each_map(measure: Callable[[EscapeMap], float]) -> Measure:

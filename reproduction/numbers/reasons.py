@@ -16,7 +16,7 @@ from reproduction.numbers.stated_numbers import Quantity, StatedNumber
 
 
 def explain(measures: Measures, number: StatedNumber) -> str:
-    """Return the remark of a number with its fields, which are names of `FACTS`, filled in."""
+    """Return the remark of a number. The fields in braces, which are names of `FACTS`, are filled in."""
     names = [name for _, name, _, _ in Formatter().parse(number.remark) if name]
     return number.remark.format(**{name: FACTS[name](measures, number) for name in names})
 
@@ -29,8 +29,8 @@ def _late_escapes(measures: Measures, number: StatedNumber) -> float:
 def _bounded_at(time: float) -> Callable[[Measures, StatedNumber], float]:
     def measure(measures: Measures, number: StatedNumber) -> float:
         frame = measures.maps(number)[0]
-        inside = frame.interior
-        return 100.0 * float(np.mean((frame.fate[inside] == Fate.BOUNDED) | (frame.escape_time[inside] > time)))
+        fate, escape_time = frame.fate[frame.interior], frame.escape_time[frame.interior]
+        return 100.0 * float(np.mean((fate == Fate.BOUNDED) | (escape_time > time)))
 
     return measure
 

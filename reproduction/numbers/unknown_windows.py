@@ -15,12 +15,12 @@ from engine import EscapeMap, Fate, MapSpec, Window, compute_map
 from reproduction.map_cache import MapCache
 
 LARGEST_HALF_SIDE = 3.0
-"""Largest half side of a tried window, about three times that of the interior."""
+"""Largest half side of a tried window: about three times the half side of the interior."""
 
 STEP = 0.05
 """Step between the half sides of windows."""
 
-# Pixels per side that determine shares of areas to a few tenths of a percentage point.
+# Number of pixels per side. It determines shares of areas to a few tenths of a percentage point.
 _SIDE = 400
 # Integration time close to 0, because only the positions of starts are needed.
 _INSTANT = 1e-9
@@ -76,18 +76,23 @@ def fit_window(
     enough
         Largest acceptable difference, in percentage points.
     """
-    outside, spec, whole = _Outside.of(interior.spec), interior.spec, interior.spec.find_window()
-    sides = _edges(max(-whole.x_low, whole.x_high, -whole.ordinate_low, whole.ordinate_high))
-    squares = [Window(-side, side, -side, side) for side in sides]
-    best, difference = _best(squares, outside, interior.fractions(), stated)
+    spec = interior.spec
+    outside = _Outside.of(spec)
+    inner = spec.find_window()
+    half_sides = _edges(max(-inner.x_low, inner.x_high, -inner.ordinate_low, inner.ordinate_high))
+    squares = [Window(-side, side, -side, side) for side in half_sides]
+    best_window, difference = _best(squares, outside, interior.fractions(), stated)
     if difference > enough:
-        least = max(-whole.x_low, -whole.ordinate_low, whole.ordinate_high)
-        moved = [Window(-side, right, -side, side) for side in _edges(least) for right in _edges(whole.x_high)]
-        other, smaller = _best(moved, outside, interior.fractions(), stated)
-        best = other if smaller <= enough else best
-    counted = cache.map(case, spec.plane, spec.energy, best)
-    exists = np.count_nonzero(counted.fate != Fate.FORBIDDEN)
-    return FittedWindow(best, float(np.count_nonzero(counted.fate == Fate.OUTSIDE) / exists), counted)
+        # The right edge is a parameter of its own.
+        least_half_side = max(-inner.x_low, -inner.ordinate_low, inner.ordinate_high)
+        right_edges = _edges(inner.x_high)
+        rectangles = [Window(-side, right, -side, side) for side in _edges(least_half_side) for right in right_edges]
+        best_rectangle, difference = _best(rectangles, outside, interior.fractions(), stated)
+        if difference <= enough:
+            best_window = best_rectangle
+    counted = cache.map(case, spec.plane, spec.energy, best_window)
+    start_count = np.count_nonzero(counted.fate != Fate.FORBIDDEN)
+    return FittedWindow(best_window, float(np.count_nonzero(counted.fate == Fate.OUTSIDE) / start_count), counted)
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,10 +107,10 @@ class _Outside:
     @classmethod
     def of(cls, spec: MapSpec) -> _Outside:
         square = Window(-LARGEST_HALF_SIDE, LARGEST_HALF_SIDE, -LARGEST_HALF_SIDE, LARGEST_HALF_SIDE)
-        wide = compute_map(replace(spec, resolution=(_SIDE, _SIDE), window=square, t_max=_INSTANT, use_evidence=False))
-        rows, columns = np.nonzero(wide.fate == Fate.OUTSIDE)
-        channel = wide.outside[rows, columns].astype(np.intp)
-        return cls(int(np.count_nonzero(wide.interior)), channel, wide.x[columns], wide.ordinate[rows])
+        frame = compute_map(replace(spec, resolution=(_SIDE, _SIDE), window=square, t_max=_INSTANT, use_evidence=False))
+        rows, columns = np.nonzero(frame.fate == Fate.OUTSIDE)
+        channel = frame.outside[rows, columns].astype(np.intp)
+        return cls(int(np.count_nonzero(frame.interior)), channel, frame.x[columns], frame.ordinate[rows])
 
     def count(self, window: Window) -> np.ndarray:
         """Return the numbers of starts outside in a window by exit, of shape (exits + 1,). Entry 0 is 0."""
@@ -115,7 +120,7 @@ class _Outside:
 
 
 def _edges(least: float) -> list[float]:
-    """Return the multiples of `STEP`, beginning with the smallest that contains the interior."""
+    """Return the multiples of `STEP` from the first that is at least `least` to `LARGEST_HALF_SIDE`."""
     steps = np.arange(np.ceil(least / STEP), round(LARGEST_HALF_SIDE / STEP) + 1)
     edges: list[float] = (STEP * steps).round(6).tolist()
     return edges
@@ -126,17 +131,17 @@ def _best(
 ) -> tuple[Window, float]:
     """Return the window with the smallest maximal difference, and this difference."""
     differences = [_largest_difference(outside.count(window), outside.inside, fractions, stated) for window in windows]
-    place = int(np.argmin(differences))
-    return windows[place], differences[place]
+    index = int(np.argmin(differences))
+    return windows[index], differences[index]
 
 
 def _largest_difference(
     outside: np.ndarray, inside: int, fractions: Mapping[int, float], stated: Mapping[tuple[int, ...], float]
 ) -> float:
-    whole = inside + outside.sum()
+    total = inside + outside.sum()
 
     def share(code: int) -> float:
-        beyond = outside[code] if 0 < code < outside.size else 0
-        return float(100.0 * (inside * fractions[code] + beyond) / whole)
+        outside_count = outside[code] if 0 < code < outside.size else 0
+        return float(100.0 * (inside * fractions[code] + outside_count) / total)
 
     return max(abs(sum(map(share, codes)) - value) for codes, value in stated.items())

@@ -15,7 +15,7 @@ ISLAND_PIXELS = 2
 LATE = 0.01
 """Share of the escaping orbits that count as late."""
 
-# Limit of the integration time of the pairs, in time units of the well.
+# Limit of the total integration time of the pairs, in time units of the well.
 _WORK = 1e7
 
 
@@ -43,28 +43,29 @@ def outcome_share(frame: EscapeMap, *codes: int) -> float:
 
 def bounded_share_beside(frame: EscapeMap, sign: int) -> float:
     """Return the percentage of the interior starts with x of this sign, 1 or −1, whose orbits are bounded."""
-    beside = frame.interior & (sign * frame.x > 0.0)
-    return 100.0 * float(np.mean(frame.fate[beside] == Fate.BOUNDED))
+    has_sign = frame.interior & (sign * frame.x > 0.0)
+    return 100.0 * float(np.mean(frame.fate[has_sign] == Fate.BOUNDED))
 
 
 def end_times(frame: EscapeMap) -> EndTimes:
     """Return the median times to the end inside basins and at their boundaries."""
     fate = frame.fate
     lowest, highest = neighbouring_fates(fate, frame.interior, len(frame.spec.outcomes))
-    at_basins = (fate > Fate.BOUNDED) & (lowest > Fate.BOUNDED)
-    times = [frame.escape_time[at_basins & place] for place in (lowest == highest, lowest < highest)]
+    has_ended = (fate > Fate.BOUNDED) & (lowest > Fate.BOUNDED)
+    regions = (lowest == highest, lowest < highest)
+    times = [frame.escape_time[has_ended & region] for region in regions]
     return EndTimes(*(float(np.median(each)) if each.size else float("nan") for each in times))
 
 
 def share_next_to_islands(frame: EscapeMap, *, late: bool) -> float:
-    """Return the percentage of ending starts, or of late ones, that lie within `ISLAND_PIXELS` of a bounded start."""
+    """Return the percentage of ending orbits, or of late ones, whose starts are within `ISLAND_PIXELS` of a bounded start."""
     from scipy import ndimage
 
-    near = ndimage.distance_transform_edt(frame.fate != Fate.BOUNDED) <= ISLAND_PIXELS
-    ended = frame.fate > Fate.BOUNDED
+    is_near_island = ndimage.distance_transform_edt(frame.fate != Fate.BOUNDED) <= ISLAND_PIXELS
+    has_ended = frame.fate > Fate.BOUNDED
     if late:
-        ended &= frame.escape_time >= np.quantile(frame.escape_time[ended], 1.0 - LATE)
-    return 100.0 * float(np.mean(near[ended]))
+        has_ended &= frame.escape_time >= np.quantile(frame.escape_time[has_ended], 1.0 - LATE)
+    return 100.0 * float(np.mean(is_near_island[has_ended]))
 
 
 def boundary_exponent(frame: EscapeMap) -> float:

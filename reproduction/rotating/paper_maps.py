@@ -1,6 +1,6 @@
-"""Choose maps of systems in rotating frames, and of systems with bodies, that papers study.
+"""Choose maps of the systems in rotating frames, and with bodies, that papers study.
 
-We could not look up the papers' planes, windows and grids.
+Planes, windows and grids are our choice, because we could not look up those of the papers.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from engine import POTENTIALS, Coordinate, MapSpec, Plane, Potential, Slice, Win
 BODY_RADII = (1e-5, 1e-4, 1e-3, 1e-2)
 """Radii of both bodies of the Copenhagen problem, in units of their distance."""
 
-# Pixels per side.
+# Number of pixels per side.
 _SIDE = 150
-# Pixels per side around the Moon, where islands are small.
+# Number of pixels per side around the Moon, where islands are small.
 _SIDE_AT_MOON = 300
-# In units of time of the system.
+# Integration time, in units of time of the system.
 _T_MAX = 1e3
-# In units of time of the system. Orbits around the Moon end soon.
+# Integration time around the Moon, where orbits end soon, in units of time of the system.
 _T_MAX_AT_MOON = 1e2
 
 _RETROGRADE = Slice(Coordinate.X, Coordinate.Y, fixed=((Coordinate.BETA, -0.5 * np.pi),))
@@ -63,26 +63,31 @@ def copenhagen(radius: float) -> Potential:
 
 def _earth_moon() -> tuple[PaperMap, ...]:
     names = {-1.108: "both necks closed", -1.1055: "L1 open", -1.102: "L1 open", -1.0985: "L1 open", -1.085: "both open"}
-    moon, size = POTENTIALS["Earth-Moon"], (_SIDE_AT_MOON, _SIDE_AT_MOON)
-    specs = {h: MapSpec(moon, Plane.X_PX, h, size, t_max=_T_MAX_AT_MOON) for h in names}
+    potential = POTENTIALS["Earth-Moon"]
+    resolution = (_SIDE_AT_MOON, _SIDE_AT_MOON)
+    specs = {h: MapSpec(potential, Plane.X_PX, h, resolution, t_max=_T_MAX_AT_MOON) for h in names}
     return tuple(PaperMap(f"{names[h]}, h = −{-h}", spec) for h, spec in specs.items())
 
 
 def _copenhagen() -> tuple[PaperMap, ...]:
-    window, size = Window(-2.0, 2.0, -2.0, 2.0), (_SIDE, _SIDE)
-    specs = {radius: MapSpec(copenhagen(radius), _RETROGRADE, -1.6, size, window, t_max=_T_MAX) for radius in BODY_RADII}
+    window = Window(-2.0, 2.0, -2.0, 2.0)
+    resolution = (_SIDE, _SIDE)
+    specs = {radius: MapSpec(copenhagen(radius), _RETROGRADE, -1.6, resolution, window, t_max=_T_MAX) for radius in BODY_RADII}
     return tuple(PaperMap(f"radius {radius:.5f}".rstrip("0"), spec) for radius, spec in specs.items())
 
 
 def _star_cluster() -> tuple[PaperMap, ...]:
-    cluster, size = POTENTIALS["Star cluster"], (_SIDE, _SIDE)
-    return tuple(PaperMap(f"h = −{-h}", MapSpec(cluster, Plane.X_PX, h, size, t_max=_T_MAX)) for h in (-1.85, -1.75, -1.5))
+    potential = POTENTIALS["Star cluster"]
+    specs = {h: MapSpec(potential, Plane.X_PX, h, (_SIDE, _SIDE), t_max=_T_MAX) for h in (-1.85, -1.75, -1.5)}
+    return tuple(PaperMap(f"h = −{-h}", spec) for h, spec in specs.items())
 
 
 def _four_hills() -> tuple[PaperMap, ...]:
-    hills, size, window = four_hills(), (_SIDE, _SIDE), Window(-2.5, 2.5, -0.6, 0.6)
+    potential = four_hills()
+    resolution = (_SIDE, _SIDE)
+    window = Window(-2.5, 2.5, -0.6, 0.6)
     energies = {share: share * float(np.exp(-2.0)) for share in (0.3, 0.6, 0.9, 1.2)}
-    specs = {share: MapSpec(hills, Plane.X_PX, h, size, window, t_max=_T_MAX) for share, h in energies.items()}
+    specs = {share: MapSpec(potential, Plane.X_PX, h, resolution, window, t_max=_T_MAX) for share, h in energies.items()}
     return tuple(PaperMap(f"h = {share}/e²", spec) for share, spec in specs.items())
 
 

@@ -1,4 +1,4 @@
-"""Print a table for each system, with numbers of the maps that are compared with papers.
+"""Print a table for each system, with numbers of its maps for the comparison with papers.
 
 Run: python -m reproduction.rotating.tables
 """

@@ -8,15 +8,15 @@ from reproduction.map_cache import MapCache
 from reproduction.notation import write_rows
 from reproduction.paper_ranges import STICKY_CASE, nine_energies
 
-# Number of late escapes in the list.
+# Number of late escapes in the table.
 _LIST_LENGTH = 20
 
-_CHAOTIC = """\
+_CHAOTIC_INTRODUCTION = """\
 Cases I and II on (x, px), {side} × {side} starts; energies without bounded starts are left out. Orbits are bounded if they are
 inside at t = {t_max}, and chaotic if SALI is at most 1e-7 by then. The chaotic ones are continued to t = {search_t_max}. Orbits
 that are enclosed by invariant tori never leave; where some leave, the others may do so later."""
 
-_SEARCH = """\
+_SEARCH_INTRODUCTION = """\
 Case III at h = {h:g} on (x, px), {side} × {side} starts. {found} {stays} have not escaped by then.
 
 The paper states that all escape by 3.5e6, and shows one that escapes through exit 2 at about 851 000. At such times rounding
@@ -25,29 +25,29 @@ of escapes does not."""
 
 
 def write_late_escapes(cache: MapCache) -> str:
-    """Return a table of the bounded orbits of I and II: how many are chaotic, and how many of these leave later."""
+    """Return a table of the bounded orbits of I and II: how many are chaotic, and how many chaotic orbits leave later."""
     cases = [case for case in CASES if case != STICKY_CASE]
     searches = [(case, h, cache.late_escapes(case, h)) for case in cases for h in nine_energies(case)]
     rows = [(case, f"{h:g}", *_describe_late(search)) for case, h, search in searches if search.bounded]
     quality = cache.quality
-    intro = _CHAOTIC.format(
+    introduction = _CHAOTIC_INTRODUCTION.format(
         side=quality.classified_resolution, t_max=f"{quality.t_max:g}", search_t_max=f"{quality.search_t_max:g}"
     )
-    heads = ("case", "h", "bounded", "chaotic", "chaotic share", "of these leave", "last escape")
-    return "\n\n".join([intro, write_rows(heads, rows)])
+    headings = ("case", "h", "bounded", "chaotic", "chaotic share", "of these leave", "last escape")
+    return "\n\n".join([introduction, write_rows(headings, rows)])
 
 
 def _describe_late(search: SuperStickySearch) -> tuple[str, ...]:
     """Return the cells of the row of one energy."""
     escapers = search.escapers
-    last = f"{search.escape_time[escapers[-1]]:.4g}" if escapers.size else "none"
+    last_time = f"{search.escape_time[escapers[-1]]:.4g}" if escapers.size else "none"
     share = f"{100.0 * search.chaotic_share:.1f} %"
-    return str(search.bounded), str(search.fate.size), share, str(escapers.size), last
+    return str(search.bounded), str(search.fate.size), share, str(escapers.size), last_time
 
 
 def write_super_sticky(search: SuperStickySearch) -> str:
     """Return a summary of the search for super-sticky orbits, and a table of the last escapes."""
-    places = search.escapers[-_LIST_LENGTH:]
+    last_escapers = search.escapers[-_LIST_LENGTH:]
     rows = [
         (
             f"{search.escape_time[k]:.0f}",
@@ -56,9 +56,11 @@ def write_super_sticky(search: SuperStickySearch) -> str:
             f"{search.x[k]:.6f}",
             f"{search.ordinate[k]:.6f}",
         )
-        for k in places
+        for k in last_escapers
     ]
     stays = search.fate.size - search.escapers.size
-    intro = _SEARCH.format(h=search.spec.energy, side=search.spec.resolution[0], found=search.describe(), stays=stays)
-    heads = ("escape time", "channel", "upward crossings", "x", "px")
-    return "\n\n".join([intro, write_rows(heads, rows)]) if rows else intro
+    introduction = _SEARCH_INTRODUCTION.format(
+        h=search.spec.energy, side=search.spec.resolution[0], found=search.describe(), stays=stays
+    )
+    headings = ("escape time", "channel", "upward crossings", "x", "px")
+    return "\n\n".join([introduction, write_rows(headings, rows)]) if rows else introduction

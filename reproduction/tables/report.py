@@ -20,7 +20,9 @@ from reproduction.numbers.unknown_windows import STEP
 from reproduction.tables.fit_sections import write_fits, write_laws
 from reproduction.tables.late_sections import write_late_escapes, write_super_sticky
 
-_HEADS = ("quantity", "h", "paper", "computed, inside", "difference", "best window", "computed in it", "reason")
+# Headings of the tables of the report.
+_HEADINGS = ("quantity", "h", "paper", "computed, inside", "difference", "best window", "computed in it", "reason")
+# Headings of the CSV table.
 _COLUMNS = (
     "case", "plane", "h", "what", "relation", "stated", "unit", "computed", "difference", "needs_window", "agrees",
     "half_side", "right_edge", "outside_share", "counted", "counted_difference", "agrees_when_counted", "derivation", "reason",
@@ -35,7 +37,7 @@ def write_report(cache: MapCache, search: SuperStickySearch, rows: tuple[Compari
     Parameters
     ----------
     cache
-        Source of the maps; the report states their quality.
+        Source of the maps. The report states the quality of the maps.
     search
         Search for super-sticky orbits of case III at h = 0.26.
     rows
@@ -48,8 +50,8 @@ def write_report(cache: MapCache, search: SuperStickySearch, rows: tuple[Compari
     """
     parts = ["# Comparison with the numbers of the paper", _introduce(cache, search), "## Summary", describe_verdict(rows)]
     for case, potential in CASES.items():
-        mine = [row for row in rows if row.stated.case == case]
-        parts += [f"## Case {case}: {potential.channels} channels", write_rows(_HEADS, map(_page_row, mine))]
+        case_rows = [row for row in rows if row.stated.case == case]
+        parts += [f"## Case {case}: {potential.channels} channels", write_rows(_HEADINGS, map(_page_row, case_rows))]
     parts += ["## Fits", write_fits(cache), "## Late escapes", write_laws(cache)]
     parts += ["## Chaotic bounded orbits", write_late_escapes(cache), "## Super-sticky orbits", write_super_sticky(search)]
     parts += ["## Open points of the paper", _OPEN]
@@ -57,19 +59,21 @@ def write_report(cache: MapCache, search: SuperStickySearch, rows: tuple[Compari
 
 
 def describe_verdict(rows: Sequence[Comparison]) -> str:
-    """Summarize how many of the stated numbers are reproduced, and list the rest."""
+    """Say how many of the stated numbers are reproduced, and list the window-independent numbers that are not."""
     shares = [row for row in rows if row.stated.is_share]
-    free, bound = ([row for row in shares if row.stated.needs_window is needs] for needs in (False, True))
-    others = [row for row in rows if not row.stated.is_share]
-    found, inside = _count(free), _count(bound)
-    counted = sum(row.agrees or row.agrees_when_counted for row in bound)
+    free_shares = [row for row in shares if not row.stated.needs_window]
+    window_shares = [row for row in shares if row.stated.needs_window]
+    other_numbers = [row for row in rows if not row.stated.is_share]
+    counted = sum(row.agrees or row.agrees_when_counted for row in window_shares)
     sentences = (
-        f"**Of the {len(free)} percentages that do not depend on a window, {found} agree within {POINTS:g} percentage points.** "
-        f"Of the {len(bound)} that depend on a window that is not stated, {inside} agree for the starts inside alone, "
+        f"**Of the {len(free_shares)} percentages that do not depend on a window, {_count_agreeing(free_shares)} agree within "
+        f"{POINTS:g} percentage points.** "
+        f"Of the {len(window_shares)} that depend on a window that is not stated, {_count_agreeing(window_shares)} agree for the "
+        f"starts inside alone, "
         f"and {counted} if starts outside are counted in the best window. "
-        f"Of the {len(others)} other numbers, {_count(others)} agree within {PERCENT:g} %."
+        f"Of the {len(other_numbers)} other numbers, {_count_agreeing(other_numbers)} agree within {PERCENT:g} %."
     )
-    failing = [row for row in (*free, *others) if not row.agrees]
+    failing = [row for row in (*free_shares, *other_numbers) if not row.agrees]
     lines = [
         f"- {_describe_place(row.stated)}: {_value(row.stated)} {'derived' if row.stated.derivation else 'stated'}, "
         f"{_computed(row)} computed. {row.reason}".rstrip()
@@ -86,20 +90,22 @@ def write_table(rows: Sequence[Comparison]) -> str:
     table = csv.writer(text, lineterminator="\n")
     table.writerow(_COLUMNS)
     for row in rows:
-        for place, value in enumerate(row.computed):
-            table.writerow(_table_row(row, place, value))
+        for index, value in enumerate(row.computed):
+            table.writerow(_table_row(row, index, value))
     return text.getvalue()
 
 
-def _table_row(row: Comparison, place: int, value: float) -> tuple[object, ...]:
-    stated, window = row.stated, row.windows[place] if row.windows else None
-    by_energy = len(row.computed) == len(stated.energies)
+def _table_row(row: Comparison, index: int, value: float) -> tuple[object, ...]:
+    """Return the CSV row of one computed value."""
+    stated = row.stated
+    window = row.windows[index] if row.windows else None
+    is_by_energy = len(row.computed) == len(stated.energies)
     return (
-        stated.case, stated.plane.title if stated.plane else "", stated.energies[place] if by_energy else stated.at,
+        stated.case, stated.plane.title if stated.plane else "", stated.energies[index] if is_by_energy else stated.at,
         _describe_quantity(stated), stated.relation.value, f"{stated.value:.6g}", _unit(stated), _cell(value),
         _cell(row.difference), int(stated.needs_window), int(row.agrees),
         *(("",) * 6 if window is None else (
-            f"{window.half_side:g}", f"{window.window.x_high:g}", f"{window.outside_share:.4g}", f"{row.counted[place]:.6g}",
+            f"{window.half_side:g}", f"{window.window.x_high:g}", f"{window.outside_share:.4g}", f"{row.counted[index]:.6g}",
             f"{row.counted_difference:.6g}", int(row.agrees_when_counted),
         )),
         stated.derivation, row.reason,
@@ -152,13 +158,13 @@ def _describe_windows(row: Comparison) -> str:
 
 
 def _explain(row: Comparison) -> str:
-    """Return the reason for a difference."""
+    """Return the reasons for a difference, also for the fitted windows."""
     reasons = [row.reason] if row.reason else []
     if any(fitted.window.x_high != fitted.half_side for fitted in row.windows):
         reasons.append(f"No square centred on the origin is within {POINTS:g} points.")
     if row.windows:
-        near = f"within {POINTS:g}" if row.agrees_when_counted else f"still {abs(row.counted_difference):.1f}"
-        reasons.append(f"With starts outside counted the difference is {near} points.")
+        distance = f"within {POINTS:g}" if row.agrees_when_counted else f"still {abs(row.counted_difference):.1f}"
+        reasons.append(f"With starts outside counted the difference is {distance} points.")
     return " ".join(reasons)
 
 
@@ -186,12 +192,13 @@ def _value(stated: StatedNumber) -> str:
 def _computed(row: Comparison) -> str:
     """Return the range of the computed values, or many different values with their energies."""
     form, unit = ("{:.1f}", " %") if row.stated.is_share else ("{:.4g}", "")
-    whole, energies = _range(row.computed, form), row.stated.energies
-    if " to " not in whole or len(row.computed) < _SHORTEST_LIST:
-        return whole + unit
+    value_range = _range(row.computed, form)
+    is_single = " to " not in value_range
+    if is_single or len(row.computed) < _SHORTEST_LIST:
+        return value_range + unit
     values = ("none" if np.isnan(value) else form.format(value) for value in row.computed)
-    listed = ", ".join(f"{value} at {energy:g}" for value, energy in zip(values, energies, strict=True))
-    return f"{whole}{unit} ({listed})"
+    listed = ", ".join(f"{value} at {energy:g}" for value, energy in zip(values, row.stated.energies, strict=True))
+    return f"{value_range}{unit} ({listed})"
 
 
 def _range(values: Sequence[float], form: str) -> str:
@@ -211,7 +218,7 @@ def _unit(stated: StatedNumber) -> str:
     return "%" if stated.is_share else "1"
 
 
-def _count(rows: Sequence[Comparison]) -> int:
+def _count_agreeing(rows: Sequence[Comparison]) -> int:
     return sum(row.agrees for row in rows)
 
 

@@ -1,9 +1,9 @@
 """One message for all changes that a callback makes to a document.
 
-This replaces ``bokeh.server.session.ServerSession._send_pending_patches``, which sends a message for each change, and for each
-message collects all models of the document. The first frame of a map has 17 changes, which take 16 ms as separate messages and
-3 ms as one message, after which the browser paints once. The protocol allows any number of changes in a message. Bokeh also
-serializes in a thread and waits for it, which gains nothing while threads compete for the interpreter lock.
+This replaces ``bokeh.server.session.ServerSession._send_pending_patches``, which sends a message for each change, and
+collects all models of the document for each message. The first frame of a map has 17 changes. As separate messages they take
+16 ms; as one message they take 3 ms, and the browser paints once. The protocol allows any number of changes in a message. Bokeh
+also serializes in a thread and waits for this thread, which gains nothing while threads compete for the interpreter lock.
 
 The change for upstream is ``batched_patches.patch``.
 """

@@ -1,4 +1,4 @@
-"""The player of many orbits in the visitor's browser, which draws the starts, integrates the orbits and paints them."""
+"""The player of many orbits. The visitor's browser draws the starts, integrates the orbits and paints them."""
 
 from __future__ import annotations
 

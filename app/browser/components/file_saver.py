@@ -9,7 +9,7 @@ from panel.custom import JSComponent
 
 # Bokeh does not register classes whose name starts with an underscore in the browser.
 class FileSaver(JSComponent):
-    """Sends files to the browser; the component has no size, but must be on the page."""
+    """Sends files to the browser. The component has no size, but must be on the page."""
 
     _esm = Path(__file__).with_suffix(".js")
 

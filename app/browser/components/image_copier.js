@@ -1,7 +1,7 @@
 // @ts-check
 /**
- * A button that copies an image. Browsers allow copying only during the click, when there is no image yet: the clipboard gets a
- * promise of the image that the server makes and sends.
+ * A button that copies an image. Browsers allow copying only during the click, before the server has made the image: the
+ * clipboard gets a promise of the image.
  *
  * @param {{model: any, el: HTMLElement}} component
  */
@@ -13,7 +13,7 @@ export function render({model, el}) {
   let deliver = null
   button.addEventListener("click", async () => {
     if (deliver) return
-    // navigator.clipboard is missing over http, except on localhost, and ClipboardItem in some browsers.
+    // Over http, except on localhost, navigator.clipboard is missing. Some browsers have no ClipboardItem.
     if (!navigator.clipboard?.write || !globalThis.ClipboardItem) {
       model.send_msg({copied: false})
       return

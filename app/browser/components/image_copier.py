@@ -16,9 +16,9 @@ class ImageCopier(JSComponent):
     Parameters
     ----------
     on_wanted
-        Handles a click, without the session's lock; `send` must follow.
+        Handles a click, without the session's lock, and must lead to a call of `send`.
     on_copied
-        Handles whether the image could be copied.
+        Takes whether the browser has copied the image.
     **options
         Parameters of the component.
     """

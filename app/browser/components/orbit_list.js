@@ -8,25 +8,25 @@ export function render({model, el}) {
   el.className = "orbit-numbers"
   el.setAttribute("role", "radiogroup")
   el.setAttribute("aria-label", model.label)
-  const add_row = () => {
+  const addRow = () => {
     const [row, radio] = [document.createElement("label"), document.createElement("input")]
-    const place = el.children.length
+    const index = el.children.length
     Object.assign(radio, {type: "radio", name: "orbit"})
-    radio.addEventListener("change", () => model.send_msg({chosen: place}))
-    row.style.setProperty("--orbit", `var(--orbit-${place + 1})`)
+    radio.addEventListener("change", () => model.send_msg({chosen: index}))
+    row.style.setProperty("--orbit", `var(--orbit-${index + 1})`)
     row.append(radio, document.createElement("span"))
     el.append(row)
   }
   const follow = () => {
     while (el.children.length > model.rows.length) el.lastElementChild?.remove()
-    while (el.children.length < model.rows.length) add_row()
-    for (const [place, text] of model.rows.entries()) {
-      const row = /** @type {HTMLElement} */ (el.children[place])
+    while (el.children.length < model.rows.length) addRow()
+    for (const [index, text] of model.rows.entries()) {
+      const row = /** @type {HTMLElement} */ (el.children[index])
       const [radio, label] = /** @type {any} */ (row.children)
-      radio.checked = place === model.chosen
+      radio.checked = index === model.chosen
       radio.setAttribute("aria-label", text)
       row.title = text
-      label.textContent = String(place + 1)
+      label.textContent = String(index + 1)
     }
   }
   model.on(["rows", "chosen"], follow)

@@ -1,6 +1,6 @@
 """The list of orbits, by number.
 
-Radio buttons of Bokeh fail if their choice changes while their view is being built, as when a click opens the tab.
+Bokeh's radio buttons fail if the chosen button changes while their view is being built, as when a click opens the tab.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from panel.custom import JSComponent
 
 
 class OrbitList(JSComponent):
-    """Radio buttons in a line, each with the colour of an orbit, given by the CSS variables --orbit-1 and so on.
+    """Radio buttons in a line, in the colours of the orbits. The CSS variables --orbit-1, --orbit-2, … define these colours.
 
     Parameters
     ----------

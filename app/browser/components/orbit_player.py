@@ -1,4 +1,4 @@
-"""The player of the time along the orbits, which the browser drags or plays in steps and reports."""
+"""The player of the time along the orbits. The browser drags or plays the time in steps, and reports it."""
 
 from __future__ import annotations
 

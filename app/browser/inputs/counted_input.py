@@ -13,8 +13,8 @@ from panel.custom import JSComponent
 class CountedInput(JSComponent):
     """An input whose browser part uses `CountedValue` in counted_value.js.
 
-    Widgets of Bokeh show each value of the server at once, even over a value that is being typed. Panel drops a typed value while
-    an earlier action that sets another value is waiting.
+    Bokeh's widgets would show each value of the server at once, even over a value that is being typed. Panel would drop a typed
+    value while an earlier action that sets another value is waiting.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 // @ts-check
 /**
- * The value of an input. Sent values are numbered. A value from the server with a smaller number than the last sent is older
- * than the value in the input, and is ignored.
+ * The value of an input. Sent values are numbered. A value from the server whose number is smaller than the last sent number
+ * is older than the value in the input, and is ignored.
  */
 export class CountedValue {
   /**

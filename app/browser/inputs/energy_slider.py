@@ -1,4 +1,4 @@
-"""The slider of the energy, which reports to the engine in the browser while it moves, and to the server when it is released."""
+"""The slider of the energy. It reports to the engine in the browser while it moves, and to the server when it is released."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from app.browser.inputs.counted_input import CountedInput, finite_number
 from app.browser.javascript import component_code
 
 SHOWN = "energyshown"
-"""Browser event with the energy of the pictures until the server has received it."""
+"""Browser event with the energy that the pictures show before the server has received it."""
 
 
 class EnergySlider(CountedInput):

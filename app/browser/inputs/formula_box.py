@@ -11,7 +11,7 @@ from app.browser.inputs.counted_input import CountedInput
 from app.browser.javascript import component_code
 
 LONGEST_TYPED = 4000
-"""Largest length of a text, in characters. The lower limit for formulas is checked later: a message explains it, a box cuts."""
+"""Largest length of a text, in characters: larger than the limit for formulas, because the box cuts without a message."""
 
 
 class FormulaBox(CountedInput):

@@ -26,18 +26,18 @@ export function render({model, el}) {
   const writeBoth = (/** @type {number} */ number) => [rail, box].forEach(input => write(input, number))
   const value = new CountedValue(model, () => box.valueAsNumber, writeBoth)
   // While a number is typed, the text may not be a number yet.
-  const is_legal = () => Number.isFinite(box.valueAsNumber) && !box.validity.rangeUnderflow && !box.validity.rangeOverflow
+  const isLegal = () => Number.isFinite(box.valueAsNumber) && !box.validity.rangeUnderflow && !box.validity.rangeOverflow
   rail.addEventListener("input", () => {
     write(box, rail.valueAsNumber)
     value.change()
   })
   box.addEventListener("input", () => {
-    if (!is_legal()) return
+    if (!isLegal()) return
     write(rail, box.valueAsNumber)
     value.change()
   })
   box.addEventListener("blur", () => {
-    if (!is_legal()) box.valueAsNumber = model.shown.value
+    if (!isLegal()) box.valueAsNumber = model.shown.value
   })
   for (const event of ["pointerup", "pointercancel", "blur"]) rail.addEventListener(event, () => value.finish())
   box.addEventListener("blur", () => value.finish())

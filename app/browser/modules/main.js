@@ -10,7 +10,7 @@ import {Pool, workerCount} from "./workers/pool.js"
 import {setPresent} from "./gestures/present.js"
 import {Preview} from "./gestures/preview.js"
 
-/** A module with a vector instruction, as small as possible. */
+/** The smallest module with a vector instruction. */
 // prettier-ignore
 const SIMD = Uint8Array.of(
   0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3,
@@ -42,11 +42,12 @@ export function start(model, el) {
   const frames = new Frames(pool, workerCount(), (view, pixels, moving) => preview.show(view, pixels, moving))
   /** @type {Preview} */
   const preview = new Preview(find, findSource, frames, new Overlay(el))
-  const tell = (/** @type {number} */ energy) => document.dispatchEvent(new CustomEvent("energyshown", {detail: energy}))
+  const announceEnergy = (/** @type {number} */ energy) =>
+    document.dispatchEvent(new CustomEvent("energyshown", {detail: energy}))
   const player = new Player(
     energy => {
       preview.showEnergy(energy)
-      tell(energy)
+      announceEnergy(energy)
     },
     energy => {
       preview.release()
@@ -61,39 +62,44 @@ export function start(model, el) {
   )
   document.addEventListener("energydragged", event => preview.showEnergy(/** @type {CustomEvent} */ (event).detail))
   document.addEventListener("energyreleased", () => preview.release())
+  // The last system and its compiled modules.
   /** @type {{system: import("./engine/system.js").System, modules: import("./engine/integrator.js").Modules} | null} */
-  let known = null
-  const tellPresent = () => {
-    const [colours, labels] = [() => model.view.colours ?? [], () => model.view.labels ?? []]
+  let compiled = null
+  const updatePresent = () => {
+    const colours = () => model.view.colours ?? []
+    const labels = () => model.view.labels ?? []
     setPresent(
-      known && model.view.system === known.system.key ? {...known, scene: () => preview.scene, colours, labels, host: el} : null,
+      compiled && model.view.system === compiled.system.key
+        ? {...compiled, scene: () => preview.scene, colours, labels, host: el}
+        : null,
     )
   }
   const receiveView = () => {
     if (!model.view.system) return
     preview.setView(model.view)
-    tellPresent()
+    updatePresent()
   }
   const receiveSystem = async () => {
     if (!model.system.key) return
     const {key} = model.system
     const modules = {kernels: await kernels, system: await WebAssembly.compile(model.system.module)}
+    // Another system may have come during the compilation.
     if (model.system.key !== key) return
     const {module: _, ...system} = model.system
-    for (const user of [card, preview]) user.setSystem(system, modules)
-    known = {system, modules}
-    tellPresent()
+    for (const part of [card, preview]) part.setSystem(system, modules)
+    compiled = {system, modules}
+    updatePresent()
   }
-  const obey = () => {
+  const runCommand = () => {
     const {name, energy, low, high} = model.command
     if (name === "play") player.start(energy, low, high)
     else player.stop()
   }
   model.on("view", receiveView)
   model.on("system", receiveSystem)
-  model.on("command", obey)
+  model.on("command", runCommand)
   receiveView()
   void receiveSystem()
-  if (model.command.name === "play") obey()
+  if (model.command.name === "play") runCommand()
   document.dispatchEvent(new Event("energyasked"))
 }

@@ -4,24 +4,24 @@
 const SUPERSCRIPTS = "⁰¹²³⁴⁵⁶⁷⁸⁹"
 
 /**
- * A number with some significant digits, such as "1.9 × 10⁻¹²".
+ * Write a number with some significant digits, such as "1.9 × 10⁻¹²".
  *
  * @param {number} value
  * @param {number} [digits]
  */
 export function number(value, digits = 4) {
-  const size = Math.abs(value)
-  if (size > 0 && (size < 1e-4 || size >= 10 ** (digits + 1))) return power(value, digits)
-  return groups(String(Number(value.toPrecision(digits))).replace("-", "−"))
+  const magnitude = Math.abs(value)
+  if (magnitude > 0 && (magnitude < 1e-4 || magnitude >= 10 ** (digits + 1))) return withPower(value, digits)
+  return groupDigits(String(Number(value.toPrecision(digits))).replace("-", "−"))
 }
 
-/** A whole number. @param {number} value */
+/** Write a whole number. @param {number} value */
 export function count(value) {
-  return groups(String(Math.round(value)).replace("-", "−"))
+  return groupDigits(String(Math.round(value)).replace("-", "−"))
 }
 
 /**
- * A share of 1, as a percentage.
+ * Write a share of 1 as a percentage.
  *
  * @param {number} value
  * @param {number} [digits]
@@ -36,19 +36,21 @@ export function share(value) {
 }
 
 /**
+ * Write a number as a multiple of a power of ten.
+ *
  * @param {number} value
  * @param {number} digits
  */
-function power(value, digits) {
+function withPower(value, digits) {
   const [mantissa, exponent] = value.toExponential(digits - 1).split("e")
-  const raised = exponent
+  const superscript = exponent
     .replace("+", "")
     .replace("-", "⁻")
     .replace(/\d/g, digit => SUPERSCRIPTS[Number(digit)])
-  return `${String(Number(mantissa)).replace("-", "−")} × 10${raised}`
+  return `${String(Number(mantissa)).replace("-", "−")} × 10${superscript}`
 }
 
-/** @param {string} text */
-function groups(text) {
-  return text.replace(/^(−?)(\d{4,})/, (_, sign, whole) => sign + whole.replace(/\B(?=(\d{3})+$)/g, "\u202f"))
+/** Separate groups of three digits. @param {string} text */
+function groupDigits(text) {
+  return text.replace(/^(−?)(\d{4,})/, (_, sign, digits) => sign + digits.replace(/\B(?=(\d{3})+$)/g, "\u202f"))
 }

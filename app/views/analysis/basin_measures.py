@@ -25,7 +25,7 @@ DESCRIBED_MEASURES: tuple[Measure, ...] = tuple(measure for measure in MEASURES.
 
 
 def counts_in_box(measure: Measure) -> bool:
-    """Whether a measure counts the starts in the box; other measures name what they count in `place`."""
+    """Whether a measure counts the starts in the box. The `place` of any other measure says what it counts."""
     return not measure.place
 
 
@@ -34,12 +34,12 @@ _UNDEFINED = "Not defined for this map."
 
 
 class BasinMeasuresView:
-    """Shows a table with the numbers of each measure, whose descriptions open on demand, and charts.
+    """Shows charts, and a table of the numbers of each measure with descriptions that open on demand.
 
     Parameters
     ----------
     state
-        View state, whose box is the region of the measures.
+        View state. Its box is the region of the measures.
     on_measure
         Computes the slow measure of this name.
     on_copy
@@ -54,7 +54,8 @@ class BasinMeasuresView:
         self.copy = copy_button(self._rows, on_copy)
         self._sentences: dict[str, str] = {}
         self._results: dict[str, Result] = {}
-        self.survival, self.uncertainty = SurvivalChart(), PairsChart()
+        self.survival = SurvivalChart()
+        self.uncertainty = PairsChart()
         self._charts: dict[type, Any] = {DecayLaws: self.survival, UncertaintyExponent: self.uncertainty}
         state.follow(self._follow_box, "box")
 
@@ -92,7 +93,7 @@ class BasinMeasuresView:
         self._put(name, sentence)
 
     def build(self) -> list[pn.viewable.Viewable]:
-        """Make the content of the section."""
+        """Return the content of the section."""
         texts = pn.Column(self.text, self.whole, self.copy, *self.buttons.values(), margin=0)
         return [texts, self.survival.build(), self.uncertainty.build()]
 
@@ -112,8 +113,8 @@ class BasinMeasuresView:
 
     def _rows(self) -> list[tuple[str, str, str]]:
         """Return the numbers of all measures, at full precision."""
-        found = [(one.title, self._results[one.name]) for one in DESCRIBED_MEASURES if one.name in self._results]
-        return [row for title, result in found for row in number_rows(title, result.numbers())]
+        results = [(one.title, self._results[one.name]) for one in DESCRIBED_MEASURES if one.name in self._results]
+        return [row for title, result in results for row in number_rows(title, result.numbers())]
 
     def _write(self) -> None:
         region = "In the box drawn on the maps" if self.whole.visible else "In the whole view"
@@ -125,9 +126,9 @@ class BasinMeasuresView:
 
 
 def _rows_of(measure: Measure, result: Any, sentence: str) -> str:
-    """Return the title of a measure with its meaning, and a row for each number; without numbers, its description."""
-    shown = [] if result is None else [(quantity.label, _value(quantity, result)) for quantity in measure.quantities]
-    numbers = {label: text for label, text in shown if label and text}
+    """Return the title and meaning of a measure, and a row for each number; without numbers, the description of the measure."""
+    texts = [] if result is None else [(quantity.label, _value(quantity, result)) for quantity in measure.quantities]
+    numbers = {label: text for label, text in texts if label and text}
     details = f" <button type='button' class='term' popovertarget='told-{measure.name}'>details</button>"
     place = f", {measure.place}" if measure.place else ""
     description = "" if numbers else f"<br>{escape(sentence)}"
@@ -138,8 +139,8 @@ def _rows_of(measure: Measure, result: Any, sentence: str) -> str:
 
 def _value(quantity: Quantity, result: Any) -> str:
     """Return a number with its error or its interval; empty if the number is not known."""
-    found = quantity.read(result)
-    value, *bars = found if isinstance(found, tuple) else (found,)
+    reading = quantity.read(result)
+    value, *bars = reading if isinstance(reading, tuple) else (reading,)
     if not math.isfinite(value):
         return ""
     match bars:

@@ -1,8 +1,7 @@
-"""Curves of measures against energy or a parameter, on which a click opens the map at a value."""
+"""Curves of measures against the energy or a parameter. A click on a curve opens the map at this value."""
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -35,10 +34,10 @@ STOP = "Stop"
 """Label of the button while the curves are computed."""
 
 SWEPT_VALUES = 25
-"""Number of evenly spaced energies, or values of a parameter, of the curves."""
+"""Number of evenly spaced values of the energy or the parameter."""
 
 REFINED_VALUES = 8
-"""Number of further values, where the shares change most."""
+"""Number of further values, placed where the shares change most."""
 
 _VALUES = SWEPT_VALUES + REFINED_VALUES
 HINT = f"The shares and each measure at {_VALUES} values, closer together where the shares change: a minute or more."
@@ -65,7 +64,7 @@ class CurvesView:
     on_value
         Opens the map at the energy or parameter value of a clicked point.
     later
-        Wraps a function to run in a later iteration of the event loop, for the making of the figures.
+        Wraps a function that makes a figure, so that it runs in a later iteration of the event loop.
     """
 
     def __init__(
@@ -82,15 +81,15 @@ class CurvesView:
         self.button = button(START, on_sweep, width=180, align="end")
         self.against = pn.widgets.Select(label="Against", options={"h": "h"}, value="h", width=80)
         self.text = TextPane(HINT, name="sweep", margin=(4, 10), sizing_mode="stretch_width", css_classes=["whole-row"])
-        self._axis = Range1d(0.0, 1.0)
+        self._x_range = Range1d(0.0, 1.0)
         # Automatic ranges would cause warnings in the browser until there are numbers.
-        self._values = {
+        self._y_ranges = {
             panel.name: Range1d(*(_FIRST_DECADES if panel.curve.logarithmic else (0.0, panel.curve.least_top)))
             for panel in CURVE_PANELS
         }
         self.points = ColumnDataSource(_NO_POINTS, name="curve_points")
         self._shares = ColumnDataSource(_NO_SHARES, name="share_curves")
-        self._here = Span(location=0.0, dimension="height", line_color=MARK_EDGE, line_dash="dotted")
+        self._mark_line = Span(location=0.0, dimension="height", line_color=MARK_EDGE, line_dash="dotted")
         self._legend = TextPane(margin=(0, 10))
         self._figures: list[figure] = []
         self._panels_in_turns = InTurns(
@@ -112,9 +111,9 @@ class CurvesView:
         self.against.options = {"h": "h"} | {plain_symbol(symbol_of(name)): name for name in system.parameter_names}
 
     def _mark(self) -> None:
-        """Mark the energy in view, or the system's own value of the parameter."""
+        """Mark the energy of the view, or the value of the parameter in the system of the view."""
         name = "h" if self.shown is None else self.shown.name
-        self._here.location = self._state.energy if name == "h" else self._state.system.value_of(name)
+        self._mark_line.location = self._state.energy if name == "h" else self._state.system.value_of(name)
 
     def show_running(self, running: bool) -> None:
         """Label the button with its next action."""
@@ -151,7 +150,7 @@ class CurvesView:
         }
         requested = curves.dataset.attrs["requested"]
         if len(requested) > 1:
-            set_range(self._axis, requested[0], requested[-1])
+            set_range(self._x_range, requested[0], requested[-1])
         self._name_axes()
         self._mark()
         self._scale_values(curves)
@@ -159,13 +158,14 @@ class CurvesView:
         self._legend.object = legend(entries)
 
     def _scale_values(self, curves: Sweep) -> None:
-        """Fit the vertical ranges to the numbers; the range of the shares is fixed."""
+        """Fit the vertical ranges to the numbers, except the fixed range of the shares."""
         for panel in CURVE_PANELS:
-            numbers, axis = find_numbers(panel, curves), self._values[panel.name]
+            numbers = find_numbers(panel, curves)
+            y_range = self._y_ranges[panel.name]
             if not panel.curve.logarithmic:
-                set_range(axis, 0.0, 1.05 * max([*numbers, panel.curve.least_top]))
+                set_range(y_range, 0.0, 1.05 * max([*numbers, panel.curve.least_top]))
             elif numbers.size:
-                set_decades(axis, float(numbers.min()), float(numbers.max()))
+                set_decades(y_range, float(numbers.min()), float(numbers.max()))
 
     def say(self, sentence: str) -> None:
         """Show why there are no curves."""
@@ -182,7 +182,7 @@ class CurvesView:
         return [Entry("bounded", palette.bounded), *palette.end_entries(outcomes)]
 
     def build(self) -> list[pn.viewable.Viewable]:
-        """Make the button and the container of the figures, which the first curves add."""
+        """Return the button, the text, and the container of the figures. The first curves add the figures."""
         row = flex_row(self.against, self.button, gap="8px", align="end")
         row.css_classes = ["whole-row"]
         return [row, self.text, self._plots]
@@ -194,7 +194,7 @@ class CurvesView:
         return self._with_key(self._draw_panel(panel), _make_key(panel))
 
     def _with_key(self, plot: figure, key: pn.viewable.Viewable) -> list[pn.viewable.Viewable]:
-        plot.add_layout(self._here)
+        plot.add_layout(self._mark_line)
         self._figures.append(plot)
         self._name_axes()
         pane = FigurePane(plot, {Tap: lambda event: self.open_near(event.x)})
@@ -209,7 +209,7 @@ class CurvesView:
                 plot.xaxis.axis_label = self.shown.symbol
 
     def _draw_shares(self) -> figure:
-        plot = square_figure(SHARES.name, SHARES.title, x_axis_label=" ", x_range=self._axis, y_range=Range1d(0.0, 1.0))
+        plot = square_figure(SHARES.name, SHARES.title, x_axis_label=" ", x_range=self._x_range, y_range=Range1d(0.0, 1.0))
         shares = plot.add_glyph(self._shares, MultiLine(line_color="colour", line_width=2, line_dash="dash"))
         plot.add_tools(chart_hover(_SHARES_TEXT, [shares], line_policy="nearest"))
         return plot
@@ -217,7 +217,7 @@ class CurvesView:
     def _draw_panel(self, panel: Measure) -> figure:
         scale = {"y_axis_type": "log"} if panel.curve.logarithmic else {}
         plot = square_figure(
-            panel.name, panel.title, x_axis_label=" ", x_range=self._axis, y_range=self._values[panel.name], **scale
+            panel.name, panel.title, x_axis_label=" ", x_range=self._x_range, y_range=self._y_ranges[panel.name], **scale
         )
         for (name, label), colour in zip(panel.labels.items(), NUMBER_COLOURS, strict=False):
             low, high = f"{name}_low", f"{name}_high"
@@ -247,12 +247,13 @@ def _make_key(panel: Measure) -> pn.viewable.Viewable:
 
 
 def _progress(curves: Sweep, seconds: float) -> str:
-    """Return what the curves show and, until they are complete, the time left at the pace of the past `seconds`."""
+    """Return what the curves show. For incomplete curves, estimate the time left from the past `seconds`."""
     request = curves.dataset.attrs
-    done, total = curves.values.size, request["count"]
+    done = curves.values.size
+    total = request["count"]
     energy = f" at h = {format_number(request['energy'], 6)}" if request["along"] else ""
     where = f"values of {curves.symbol} on {request['plane']}{energy}"
     if curves.complete:
         return f"{total} {where}. Click a curve to open the map there."
-    left = seconds * (total - done) / done if done else math.inf
-    return f"{done} of {total} {where} …" + (f" about {format_whole(left)} s left" if left < math.inf else "")
+    time_left = f" about {format_whole(seconds * (total - done) / done)} s left" if done else ""
+    return f"{done} of {total} {where} …{time_left}"

@@ -28,43 +28,43 @@ class PairsChart:
     """Draws the uncertain share against separation with the fitted power law, while there is a result."""
 
     def __init__(self) -> None:
-        self._separations, self._uncertain = Range1d(1e-10, 1.0), Range1d(1e-3, 1.0)
+        self._x_range = Range1d(1e-10, 1.0)
+        self._y_range = Range1d(1e-3, 1.0)
         self.pairs = ColumnDataSource(_NO_PAIRS, name="pairs")
         self._line = ColumnDataSource({"separation": [], "share": []}, name="exponent_line")
         self.view = pn.Column(margin=0, sizing_mode="stretch_width", visible=False)
 
-    def show(self, found: UncertaintyExponent | None) -> None:
-        """Show the shares and the fit; None hides the chart."""
-        self.view.visible = found is not None
-        if found is None:
+    def show(self, fit: UncertaintyExponent | None) -> None:
+        """Show the shares and the power law; None hides the chart."""
+        self.view.visible = fit is not None
+        if fit is None:
             self.pairs.data, self._line.data = _NO_PAIRS, {"separation": [], "share": []}
             return
-        shares = found.shares
-        positive = shares > 0.0
-        low, high = found.share_intervals
+        shares = fit.shares
+        is_positive = shares > 0.0
+        low, high = fit.share_intervals
         self.pairs.data = {
-            "separation": found.separations[positive], "share": shares[positive],
-            "low": low[positive], "high": high[positive],
-            "colour": np.where(found.used[positive], MEASURED, SET_ASIDE),
-            "note": np.where(found.used[positive], "", "; not used for the exponent"),
+            "separation": fit.separations[is_positive], "share": shares[is_positive],
+            "low": low[is_positive], "high": high[is_positive],
+            "colour": np.where(fit.used[is_positive], MEASURED, SET_ASIDE),
+            "note": np.where(fit.used[is_positive], "", "; not used for the exponent"),
         }  # fmt: skip
-        ends = found.separations[found.used]
-        fitted = ends if np.isfinite(found.exponent) else ends[:0]
-        self._line.data = {"separation": fitted, "share": found.amplitude * fitted**found.exponent}
-        set_range(self._separations, 0.5 * float(found.separations.min()), 2.0 * float(found.separations.max()))
-        if positive.any():
-            set_decades(self._uncertain, float(shares[positive].min()), float(shares.max()))
+        fitted = fit.separations[fit.used] if np.isfinite(fit.exponent) else np.zeros(0)
+        self._line.data = {"separation": fitted, "share": fit.amplitude * fitted**fit.exponent}
+        set_range(self._x_range, 0.5 * float(fit.separations.min()), 2.0 * float(fit.separations.max()))
+        if is_positive.any():
+            set_decades(self._y_range, float(shares[is_positive].min()), float(shares.max()))
 
     def build(self) -> pn.viewable.Viewable:
-        """Make the chart."""
+        """Fill the view with the chart and return the view."""
         self.view.objects = [pn.pane.Bokeh(self.draw(), margin=0)]
         return self.view
 
     def draw(self) -> figure:
-        """Make the figure of the chart."""
+        """Return a new Bokeh figure of the chart."""
         plot = square_figure(
             "uncertainty", "Uncertain pairs of starts", x_axis_label="separation", y_axis_label="uncertain share",
-            x_range=self._separations, y_range=self._uncertain, x_axis_type="log", y_axis_type="log",
+            x_range=self._x_range, y_range=self._y_range, x_axis_type="log", y_axis_type="log",
         )  # fmt: skip
         style: dict[str, Any] = {"x": "separation", "y": "share"}
         plot.add_glyph(self._line, Line(line_color=LAW_COLOURS["power law"], line_width=2, **style))
@@ -75,40 +75,41 @@ class PairsChart:
 
 
 class SurvivalChart:
-    """Draws the share of survivors S(t) with the fitted laws, while there are escapes."""
+    """Draws the share of survivors S(t) with the fitted laws, once there are escapes."""
 
     def __init__(self) -> None:
-        self._times, self._survivors = Range1d(1.0, 100.0), Range1d(1e-3, 1.0)
+        self._x_range = Range1d(1.0, 100.0)
+        self._y_range = Range1d(1e-3, 1.0)
         self.steps = ColumnDataSource({"t": [], "share": []}, name="survival_steps")
         self._laws = {law: ColumnDataSource({"t": [], "share": []}, name=f"{law}_law") for law in LAW_COLOURS}
         self.view = pn.Column(margin=0, sizing_mode="stretch_width", visible=False)
 
     def show(self, laws: DecayLaws | None) -> None:
-        """Show S(t) with the fitted laws; None keeps the last S(t) and laws until the next are known."""
+        """Show S(t) with the fitted laws; None, which stands for a map without a result yet, keeps the chart of the last map."""
         if laws is None:
             return
         self.steps.data = {"t": laws.times, "share": laws.survival}
         self.view.visible = laws.times.size > 0
-        for fit, source in zip((laws.exponential, laws.power_law), self._laws.values(), strict=True):
+        for law, fit in {"exponential": laws.exponential, "power law": laws.power_law}.items():
             t, share = law_curve(fit) if fit is not None else ([], [])
-            source.data = {"t": t, "share": share}
-        seen = laws.survival > 0.0
-        if np.count_nonzero(seen) > 1 and laws.times[seen][-1] > 0.0:
-            latest = float(laws.times[seen][-1])
-            set_range(self._times, min(1.0, 0.1 * latest), 1.5 * latest)
-            set_decades(self._survivors, float(laws.survival[seen].min()), 1.0)
+            self._laws[law].data = {"t": t, "share": share}
+        is_positive = laws.survival > 0.0
+        if np.count_nonzero(is_positive) > 1 and laws.times[is_positive][-1] > 0.0:
+            latest = float(laws.times[is_positive][-1])
+            set_range(self._x_range, min(1.0, 0.1 * latest), 1.5 * latest)
+            set_decades(self._y_range, float(laws.survival[is_positive].min()), 1.0)
 
     def build(self) -> pn.viewable.Viewable:
-        """Make the chart with its legend."""
+        """Fill the view with the chart and its legend, and return the view."""
         entries = [Entry("starts", MEASURED), *(Entry(law, colour) for law, colour in LAW_COLOURS.items())]
         self.view.objects = [pn.pane.Bokeh(self.draw(), margin=0), TextPane(legend(entries), margin=(0, 10))]
         return self.view
 
     def draw(self) -> figure:
-        """Make the figure of the chart."""
+        """Return a new Bokeh figure of the chart."""
         plot = square_figure(
             "survival", "Still inside", x_axis_label="t", y_axis_label="share of the starts",
-            x_range=self._times, y_range=self._survivors, x_axis_type="log", y_axis_type="log",
+            x_range=self._x_range, y_range=self._y_range, x_axis_type="log", y_axis_type="log",
         )  # fmt: skip
         plot.add_glyph(self.steps, Step(x="t", y="share", line_color=MEASURED, line_width=2, mode="after"))
         # The hover tool finds lines, but not steps, so an invisible line joins the points.

@@ -25,10 +25,11 @@ from plots.pictures.palette import MOST_CHANNELS
 from plots.texts.accepted_potentials import refusal
 from plots.texts.mathml import potential_formula, potential_symbol
 
-# Ends of the sliders of parameters. Their boxes, links and the command line allow wider ranges.
+# Ends of the sliders of most parameters. Boxes, links and the command line allow wider ranges.
 _SLIDER_ENDS = (0.2, 2.0)
+# Ends of the other sliders.
 _OTHER_SLIDER_ENDS = {"rotation": (-1.0, 1.0)}
-# Distance of the ends of a letter's slider from 0; for values beyond half of it, the distance is twice the value.
+# Smallest distance of the ends of a letter's slider from 0. For a large initial value, the distance is twice this value.
 _LEAST_REACH = 2.0
 _PLACEHOLDER = "½(x² + y²) − x²y + y³/3"
 _HINT = (
@@ -36,11 +37,12 @@ _HINT = (
     "for example 0.5(x^2+y^2) - a x^2 y. “; well (1, 0)” moves the axes to the minimum near (1, 0); “; masses (8, 8)” "
     "is for masses of 8."
 )
-# Texts that buttons add to the formula: a term, or a clause after all terms.
+# Terms that buttons add to the formula, by label of the button.
 _TERMS = {"+ letter": " + a x y"}
+# Clauses that buttons add after all terms, by label of the button.
 _CLAUSES = {"+ body": "; centre (0, 0) 0.001", "+ escape radius": "; escape 10"}
 NEW_INTEGRATOR = "Press Enter to use it: an integrator for its form and its outcomes is compiled first, which takes some seconds."
-"""Note about a formula that the maps show only after Enter."""
+"""Note about a formula that the maps do not show before Enter is pressed."""
 
 _DEFINITION = "V = ½(ω₁²x² + ω₂²y²) + ε V₁, and Φ = V − ½Ω²(x² + y²) in a frame that rotates at the rate Ω"
 
@@ -65,7 +67,7 @@ class PotentialPanel:
 
     def __init__(self, used: SystemReview, propose: Propose) -> None:
         self._propose = propose
-        self._well: tuple[float, float] | None = None
+        self._offered_well: tuple[float, float] | None = None
         self.used = used
         """The review of the system of the maps."""
         self.shown = used.system
@@ -129,9 +131,9 @@ class PotentialPanel:
         """Show a slider for each letter of the formula. The slider of a letter that remains keeps its range."""
         letters = tuple(name for name in _parameter_names(system) if name not in WELL_PARAMETERS)
         if letters != tuple(self.letter_sliders):
-            before = self.letter_sliders
+            previous_sliders = self.letter_sliders
             self.letter_sliders = {
-                name: before.get(name) or self._make_letter_slider(name, system.value_of(name)) for name in letters
+                name: previous_sliders.get(name) or self._make_letter_slider(name, system.value_of(name)) for name in letters
             }
             self.letters.objects = list(self.letter_sliders.values())
         for name, slider in self.letter_sliders.items():
@@ -144,11 +146,11 @@ class PotentialPanel:
         self.show(used)
 
     def show(self, reviewed: SystemReview, note: str = _HINT) -> None:
-        """Show the properties of the system of the widgets, and a note, or the reason why the maps cannot show the system."""
+        """Show the properties of the system of the widgets. Add a note, or the reason why the maps cannot show the system."""
         problem = refusal(reviewed)
         self.typeset.object = potential_formula(reviewed.potential)
-        passed = f"<p>{_channels(reviewed)}</p><p class='quiet'>{escape(note)}</p>"
-        self._write(_alert(problem) if problem else passed)
+        accepted = f"<p>{_channels(reviewed)}</p><p class='quiet'>{escape(note)}</p>"
+        self._write(_alert(problem) if problem else accepted)
         self._offer(reviewed.well if problem else None)
         self.facts.object = _points(reviewed) + _remarks(reviewed)
 
@@ -170,7 +172,9 @@ class PotentialPanel:
         self.message.object = message + draft
 
     def _offer(self, well: tuple[float, float] | None) -> None:
-        self._well, self.move.visible = well, well is not None
+        """Offer to move the axes to a well; None offers nothing."""
+        self._offered_well = well
+        self.move.visible = well is not None
 
     def _choose(self, system: System) -> None:
         """Show a system in all widgets, and propose it."""
@@ -209,8 +213,8 @@ class PotentialPanel:
         self._propose(self.shown, done=done)
 
     def _move(self) -> None:
-        if self._well is not None:
-            x, y = self._well
+        if self._offered_well is not None:
+            x, y = self._offered_well
             typed = self.shown.as_typed
             self._choose(replace(typed, formula=f"{typed.formula}; well ({x:.6g}, {y:.6g})"))
 
@@ -231,9 +235,9 @@ def _text(system: System) -> str:
     return system.entry.formula
 
 
-def _typed(text: str, before: System) -> System:
-    """Return the system of a typed formula; parameters that the previous system also has keep their values."""
-    return System(TYPED, text, {name: before.value_of(name) for name in (*WELL_PARAMETERS, *_letters(text))})
+def _typed(text: str, previous: System) -> System:
+    """Return the system of a typed formula. Its parameters have their values in the previous system."""
+    return System(TYPED, text, {name: previous.value_of(name) for name in (*WELL_PARAMETERS, *_letters(text))})
 
 
 def _letters(text: str) -> tuple[str, ...]:

@@ -54,7 +54,7 @@ class StatisticsView:
     Parameters
     ----------
     state
-        View state, whose box a button removes.
+        View state. A button removes its box.
     results
         The results of the session.
     on_copy
@@ -79,7 +79,7 @@ class StatisticsView:
             self._count()
 
     def build(self) -> list[pn.viewable.Viewable]:
-        """Make the content of the section."""
+        """Return the content of the section."""
         prepare()
         self._times = _plot(_draw_times(), "histogram", "Escape times")
         _describe(self._times, _TIMES_TEXT)
@@ -101,17 +101,17 @@ class StatisticsView:
         self._show_probabilities(statistics.escape_probabilities[: len(_CROSSING_LABELS)])
 
     def _show_times(self, edges: np.ndarray, counts: np.ndarray) -> None:
-        drawn = self._times.handles
-        drawn["source"].data = {"left": edges[:-1], "right": edges[1:], "top": counts}
-        drawn["x_range"].update(start=edges[0], end=edges[-1])
-        drawn["xaxis"].ticker.ticks = _few_ticks(*edges[[0, -1]].tolist())
-        drawn["y_range"].update(start=0.0, end=1.05 * max(float(counts.max()), 1.0))
+        handles = self._times.handles
+        handles["source"].data = {"left": edges[:-1], "right": edges[1:], "top": counts}
+        handles["x_range"].update(start=edges[0], end=edges[-1])
+        handles["xaxis"].ticker.ticks = _few_ticks(*edges[[0, -1]].tolist())
+        handles["y_range"].update(start=0.0, end=1.05 * max(float(counts.max()), 1.0))
 
     def _show_probabilities(self, probabilities: np.ndarray) -> None:
-        shown = np.zeros(len(_CROSSING_LABELS))
-        shown[: len(probabilities)] = probabilities
-        self._probabilities.handles["source"].data = {CROSSINGS: _CROSSING_LABELS, PROBABILITY: shown}
-        self._probabilities.handles["y_range"].end = 1.05 * float(shown.max()) or 1.0
+        heights = np.zeros(len(_CROSSING_LABELS))
+        heights[: len(probabilities)] = probabilities
+        self._probabilities.handles["source"].data = {CROSSINGS: _CROSSING_LABELS, PROBABILITY: heights}
+        self._probabilities.handles["y_range"].end = 1.05 * float(heights.max()) if heights.any() else 1.0
 
     def _shares(self, statistics: EscapeStatistics) -> list[tuple[str, str, int]]:
         """Return name, colour and code of each fate in the table."""
@@ -191,21 +191,21 @@ def _simplify(plot: Any, _element: Any) -> None:
 
 
 def _few_ticks(low: float, high: float) -> list[float]:
-    """Return 1, 2 and 5 times the powers of ten from `low` to `high`, or only the powers if these are too many labels."""
+    """Return 1, 2 and 5 times the powers of ten from `low` to `high`; only the powers if these would be too many labels."""
     decades = [10.0**k for k in range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)]
-    fine, powers = ([m * ten for ten in decades for m in steps if low <= m * ten <= high] for steps in ((1, 2, 5), (1,)))
-    return fine if len(fine) <= _MOST_TICKS else powers
+    fine_ticks, powers = ([m * ten for ten in decades for m in steps if low <= m * ten <= high] for steps in ((1, 2, 5), (1,)))
+    return fine_ticks if len(fine_ticks) <= _MOST_TICKS else powers
 
 
 def _plot(element: hv.Element, name: str, title: str) -> Any:
-    """Return the plot of an element with its help text. Changing its data is 20 times faster than a new plot."""
+    """Return the plot of an element with its help text. New data for a plot are 20 times faster than a new plot."""
     plot = hv.renderer("bokeh").get_plot(element)
     plot.state.elements = [HTML(html=title_with_help(title, name))]
     return plot
 
 
 def _describe(plot: Any, text: str) -> None:
-    """Make the plot describe the bar under the mouse, also while the mouse is above a low bar."""
+    """Make the plot describe the bar under the mouse, also while the mouse is above the top of the bar."""
     plot.state.add_tools(chart_hover(text, [plot.handles["glyph_renderer"]], mode="vline"))
 
 
@@ -214,5 +214,5 @@ def _number(value: float) -> str:
 
 
 def prepare() -> None:
-    """Load the part of HoloViews that draws with Bokeh, which would delay the event loop too long."""
+    """Load the part of HoloViews that draws with Bokeh. Loading it on the event loop would delay other sessions."""
     hv.renderer("bokeh")

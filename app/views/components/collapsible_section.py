@@ -15,7 +15,7 @@ Build = Callable[[], Sequence[pn.viewable.Viewable]]
 
 
 class Stack:
-    """A column that shows one of several contents, or none. The page contains no other content of the column.
+    """A column that shows one of several contents, or none. The other contents are not on the page.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ class Stack:
         return self._column
 
     def show(self, name: str | None) -> None:
-        """Show a content in place of the present content; None for no content."""
+        """Replace the present content by another; None shows no content."""
         self.shown = name
         if name is not None and name not in self._contents:
             self._contents[name] = [*self._builds[name]()]
@@ -91,9 +91,9 @@ class Drawers(Stack):
     Parameters
     ----------
     drawers
-        Label of the button, title and builder of each drawer, by name; no label for a drawer with a button elsewhere.
+        Label of the button, title and builder of each drawer, by name. The label is empty if the button is elsewhere.
     on_show
-        Handles the opening or closing of a drawer, given whether a drawer is open now.
+        Called when a drawer opens or closes, with whether a drawer is open now.
     """
 
     def __init__(
@@ -108,13 +108,13 @@ class Drawers(Stack):
         self.buttons.param.watch(self._press, "value")
 
     def show(self, name: str | None) -> None:
-        """Open a drawer, and close any other; None closes all."""
-        before = self.shown
-        # All changes are sent in one message. Between two messages, a press would add a button to the button still marked.
+        """Open a drawer and close any other drawer; None closes all drawers."""
+        previous = self.shown
+        # Send all changes in one message. Between two messages, the user could press a button while the old button is marked.
         with pn.io.hold():
             super().show(name)
             self.buttons.param.update(value=self._marked_buttons(), css_classes=self._classes(is_open=name is not None))
-            if name != before:
+            if name != previous:
                 self._on_show(name is not None)
 
     def _press(self, event: Any) -> None:

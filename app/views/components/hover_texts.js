@@ -8,7 +8,7 @@ import {number} from "../../browser/modules/numbers.js"
  */
 
 /**
- * How the orbit of a pixel ends. A map describes codes beyond the names in its column "ends".
+ * Return how the orbit of a pixel ends. For codes beyond the names, the column "ends" of the map has the words.
  *
  * @param {number} code
  * @param {string[]} names
@@ -20,19 +20,19 @@ export function fateName(code, names, {ends}) {
 }
 
 /**
- * What is known of a pixel, in lines. A column whose layer is off, or not computed for the map, has another size.
+ * Return what is known of a pixel, in lines. The column of a layer that is off or not computed has another size than the map.
  *
  * @param {number} pixel
  * @param {{maps: Columns, compared: Columns}} columns  of the maps, and of the map of the other view
  * @param {{bounded: number, first: number, firstEvidence: number}} codes  of bounded orbits, first difference, first evidence
  * @param {{evidence: string[], layers: Record<string, string[]>, values: Record<string, string>, fates: string[]}} words
- *   of evidence and fates by code, of layers by column and code (empty if the map has its own), of numbers by column
+ *   of evidence and fates, by code; of layers, by column and code, or empty if the map has its own words; of numbers, by column
  */
 export function pixelDetails(pixel, {maps, compared}, codes, words) {
   const fates = maps.fate[0]
   const fate = fates[pixel]
   if (fate < codes.bounded) return ""
-  const known = (/** @type {any} */ image) => (image?.length === fates.length ? image[pixel] : undefined)
+  const valueIn = (/** @type {any} */ image) => (image?.length === fates.length ? image[pixel] : undefined)
   const time = maps.escape_time[0][pixel]
   const crossings = maps.crossings[0][pixel]
   const lines = [
@@ -41,15 +41,15 @@ export function pixelDetails(pixel, {maps, compared}, codes, words) {
       ? `${crossings} upward ${crossings === 1 ? "crossing" : "crossings"} of y = 0`
       : words.evidence[maps.crossing_class[0][pixel] - codes.firstEvidence],
     ...Object.entries(words.layers).map(([column, sentences]) => {
-      const ofMap = sentences.length ? sentences : maps[`${column}_words`][0]
-      return ofMap[known(maps[column][0])]
+      const layerWords = sentences.length ? sentences : maps[`${column}_words`][0]
+      return layerWords[valueIn(maps[column][0])]
     }),
     ...Object.entries(words.values).map(
-      ([column, name]) => Number.isFinite(known(maps[column][0])) && `${name} ${number(known(maps[column][0]))}`,
+      ([column, name]) => Number.isFinite(valueIn(maps[column][0])) && `${name} ${number(valueIn(maps[column][0]))}`,
     ),
-    known(maps.difference[0]) >= codes.first &&
+    valueIn(maps.difference[0]) >= codes.first &&
       isSamePlace(maps, compared) &&
-      `other view: ${fateName(known(compared.fate[0]), words.fates, compared)}`,
+      `other view: ${fateName(valueIn(compared.fate[0]), words.fates, compared)}`,
   ]
   return lines.filter(line => line).join("\n")
 }
@@ -60,7 +60,7 @@ function isSamePlace(one, other) {
 }
 
 /**
- * A coordinate with enough decimals to distinguish neighbouring pixels.
+ * Write a coordinate with enough decimals to distinguish neighbouring pixels.
  *
  * @param {number} value
  * @param {{start: number, end: number}} range

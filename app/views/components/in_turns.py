@@ -15,7 +15,7 @@ Make = Callable[[], Sequence[pn.viewable.Viewable]]
 
 
 class InTurns:
-    """Makes parts once they are needed, and lets the server serve other pages between two parts.
+    """Makes parts when they are needed. Between two parts, the server can serve other pages.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Legends, which say what each colour of a picture means."""
+"""Legends: what each colour of a picture means."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def legend_items(entries: Iterable[Entry]) -> str:
 
 
 def chips(entries: Iterable[Entry]) -> str:
-    """Return HTML of the entries of a narrow legend: each is a number or a word, with the whole label as tooltip.
+    """Return HTML of the entries of a narrow legend. Each entry is a number or a word, with the whole label as tooltip.
 
     Entries of a group stand side by side before their word.
     """
@@ -75,7 +75,7 @@ def _number(value: float) -> str:
 
 
 def _table(table: ColourTable) -> str:
-    """Return one line with the tones of each hue, whose tooltips explain them, and with the order of the tones."""
+    """Return a line with the tones of each hue, explained by tooltips, and with the order of the tones."""
     names = [escape(name) for name in table.names]
     hues = "".join(_hue(end, names, tones) for end, tones in zip(names, table.tones, strict=True))
     return f"{hues}<span>tones: from {', '.join(names)}</span>"

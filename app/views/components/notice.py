@@ -45,7 +45,7 @@ class Notice:
         return self._pane
 
     def show(self, sentence: str, picture: str = "") -> None:
-        """Show a message, below a picture (HTML), for `PASSING_SECONDS`."""
+        """Show a message for `PASSING_SECONDS`, with a picture (HTML) above the message."""
         self._pane.object = _passing(sentence, picture)
 
     def warn(self, sentence: str) -> None:
@@ -70,7 +70,7 @@ def show_passing_notice(document: Document, sentence: str) -> None:
 
 def watch_connection(document: Document) -> None:
     """Have the browser show `CONNECTION_LOST` when it loses the server."""
-    # The Bokeh model of the pane holds escaped HTML.
+    # The Bokeh model of the pane takes escaped HTML.
     args = {"name": NAME, "html": escape(_html(CONNECTION_LOST))}
     document.js_on_event("connection_lost", CustomJS(args=args, code=_ON_CONNECTION_LOST))
 
@@ -82,7 +82,7 @@ def _set_text(document: Document, html: str) -> None:
 
 
 def _passing(sentence: str, picture: str = "") -> str:
-    # The time makes a repeated message a change, which is shown again.
+    # The time makes a repeated message different, so the browser shows the message again.
     duration = f"style='animation-duration: {PASSING_SECONDS}s'"
     return _html(sentence, f"class='notice passing' {duration} data-time='{time.monotonic_ns()}'", picture=picture)
 

@@ -1,11 +1,11 @@
 // @ts-check
 /** Labels of an axis whose plain numbers would be too long. */
 
-/** Number of steps of a label in its unit: differences of close numbers are not more exact. */
+/** Number of steps of a label in its unit. Differences of close numbers are not more exact. */
 const STEPS = 100
 
 /**
- * The distance of a tick from a base, which a note below the picture states.
+ * Write the distance of a tick from a base. A note below the picture states the base.
  *
  * @param {number} tick
  * @param {number} base

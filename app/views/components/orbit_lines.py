@@ -1,4 +1,4 @@
-"""Lines of orbits, each in its colour: their order, opacity and data columns."""
+"""Order, opacity and data columns of the lines of orbits."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ Curve = tuple[np.ndarray, np.ndarray]
 
 # Opacity of the orbits that are not chosen.
 _OTHERS_ALPHA = 0.35
-# A curve that encloses nothing.
+# A curve that encloses no area, in place of a missing envelope.
 _NO_AREA = np.full(1, np.nan), np.full(1, np.nan)
 
 
 def in_front(orbits: Sequence[OrbitCurves | None], chosen: int) -> list[tuple[int, OrbitCurves]]:
-    """Return the known orbits, each with its place in the list; the chosen orbit is last, and so drawn over the others."""
+    """Return the known orbits, each with its place in the list. The chosen orbit is last, so it is drawn over the others."""
     known = [(slot, orbit) for slot, orbit in enumerate(orbits) if orbit is not None]
     return sorted(known, key=lambda item: item[0] == chosen)
 
@@ -58,13 +58,13 @@ def lines(name: str) -> ColumnDataSource:
 def band_columns(
     orbits: Sequence[tuple[int, OrbitCurves]], outlines: Sequence[Curve], alphas: Sequence[float]
 ) -> dict[str, list[Any]]:
-    """Return the columns of a data source with `MOST_ORBITS` envelopes, of which some have no points.
+    """Return the columns of a data source with `MOST_ORBITS` envelopes, some of them without points.
 
-    Their number must not change: Bokeh uses an index of the old envelopes on the new data, and fails if an envelope is missing.
+    Their number must not change: Bokeh uses an index of the old envelopes for the new ones, and fails if an envelope is missing.
     """
     missing = MOST_ORBITS - len(orbits)
-    shown = [outline if outline[0].size else _NO_AREA for outline in outlines] + [_NO_AREA] * missing
-    columns = line_columns(orbits, shown, [ENVELOPE_ALPHA * alpha for alpha in alphas])
+    areas = [outline if outline[0].size else _NO_AREA for outline in outlines] + [_NO_AREA] * missing
+    columns = line_columns(orbits, areas, [ENVELOPE_ALPHA * alpha for alpha in alphas])
     return columns | {"slot": columns["slot"] + [0] * missing, "alpha": columns["alpha"] + [0.0] * missing}
 
 

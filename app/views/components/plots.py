@@ -1,4 +1,4 @@
-"""Bokeh figures of one style, which fill their place on the page; the stylesheet colours texts and axes."""
+"""Bokeh figures of one style. They fill their place on the page, and the stylesheet colours texts and axes."""
 
 from __future__ import annotations
 
@@ -29,33 +29,35 @@ HOVER_TEXTS = Path(__file__).with_name("hover_texts.js")
 """JavaScript module with the texts of hover tools."""
 
 HOVER_FORMATS = {name: callback_code(NUMBERS, f"{name}(value)") for name in ("number", "count", "percent")}
-"""JavaScript that formats a `value`, by name of the format: four digits, a whole number in groups of digits, or a percentage."""
+"""JavaScript that formats a `value`: as a number of four digits, a whole number in groups of digits, or a percentage."""
 
+# A value in a hover text, with the name of its format.
 _HOVER_VALUE = re.compile(r"([@$]\w+)\{(\w+)\}")
 
 _MOMENTUM = re.compile(r"^p([xy])$")
 
 # Width of a history over its height.
 _HISTORY_ASPECT = 2.2
+# Borders of histories, in pixels.
 _HISTORY_BORDERS = {"min_border_left": 48, "min_border_right": 10, "min_border_top": 28, "min_border_bottom": 25}
 
-# Borders in pixels. Left and right together are as wide as above and below together, so a square figure has a square frame.
+# Borders of charts, in pixels. Left plus right is top plus bottom, so a square figure has a square frame.
 _CHART_BORDERS = {"min_border_left": 58, "min_border_right": 10, "min_border_top": 28, "min_border_bottom": 40}
 
-# The title of a picture is above its frame, the legend below the labels of the axis.
+# Borders of pictures, in pixels. The title is above the frame, and the legend is below the labels of the axis.
 _PICTURE_BORDERS = {"min_border_left": 48, "min_border_right": 10, "min_border_top": 22, "min_border_bottom": 36}
 
-# Power of ten of the last decimal of a label. Longer labels would not fit into the left border, and make the frame narrower.
+# Power of ten of the last decimal of a label. Longer labels would not fit into the left border, and narrow the frame.
 _FINEST_LABEL = -2
 
-# A compact picture has a title, but no axes; a small one has nothing around its frame.
+# A compact picture has a title, but no axes. A small picture has nothing around its frame.
 _COMPACT_BORDERS = {"min_border_left": 12, "min_border_right": 12, "min_border_top": 22, "min_border_bottom": 2}
 _SMALL_BORDERS = dict.fromkeys(_PICTURE_BORDERS, 2)
 _BORDERS = {"compact": _COMPACT_BORDERS, "small": _SMALL_BORDERS}
 
 
 def map_figure(name: str, title: str, x: Range1d, y: Range1d) -> figure:
-    """Return the square figure of a picture (see `square_figure`), around whose frame `annotate_picture` writes."""
+    """Return the square figure of a picture, see `square_figure`. `annotate_picture` writes around its frame."""
     # A frame aligned with the frames of larger pictures would not be square.
     plot = square_figure(name, title, x_range=x, y_range=y, frame_align=False, **_PICTURE_BORDERS)
     for axis in (*plot.below, *plot.left):
@@ -65,14 +67,14 @@ def map_figure(name: str, title: str, x: Range1d, y: Range1d) -> figure:
 
 
 def history_figure(name: str, title: str, **options: Any) -> figure:
-    """Return a low figure with the time of orbits as abscissa (see `square_figure`); its title names the values."""
+    """Return a low figure with the time of orbits as abscissa, see `square_figure`. Its title names the values."""
     plot = square_figure(name, title, aspect_ratio=_HISTORY_ASPECT, **_HISTORY_BORDERS, **options)
     plot.elements[0].html += "<i class='axis-name abscissa'>t →</i>"
     return plot
 
 
 def set_borders(plot: figure, kind: str) -> None:
-    """Set the borders of a picture of a kind. "compact" and "small" pictures have no axes, pictures of other kinds do."""
+    """Set the borders of a picture, and show its axes unless the kind is "compact" or "small"."""
     for axis in (*plot.below, *plot.left):
         axis.visible = kind not in _BORDERS
     plot.update(**_BORDERS.get(kind, _PICTURE_BORDERS))
@@ -90,7 +92,7 @@ def annotate_picture(
     title, under_way
         Texts above the frame: the title, and what is being computed.
     names
-        Names of the axes, written beside them.
+        Names of the axes.
     legend, notes
         Texts below the frame; the legend is HTML, see `legends.picture_legend`.
     """
@@ -108,7 +110,7 @@ def annotate_picture(
 
 
 def label_axes(plots: Iterable[figure], names: tuple[str, str], window: Window) -> list[str]:
-    """Label the axes of pictures of a window, and return sentences that explain labels other than plain numbers."""
+    """Label the axes of the pictures of a window; return sentences that explain labels that are not plain numbers."""
     offsets = [find_offset(low, high, _FINEST_LABEL) for low, high in window.ranges]
     for plot in plots:
         for axis, offset in zip((plot.below[0], plot.left[0]), offsets, strict=True):
@@ -121,7 +123,7 @@ def label_axes(plots: Iterable[figure], names: tuple[str, str], window: Window) 
 
 
 def square_figure(name: str, title: str, **options: Any) -> figure:
-    """Return a figure with a title and a help text, without tools; it is square unless the options say otherwise.
+    """Return a figure with a title and a help text, without tools. By default, it is square.
 
     Parameters
     ----------
@@ -147,7 +149,7 @@ def square_figure(name: str, title: str, **options: Any) -> figure:
 
 
 class FigurePane(pn.pane.Bokeh):
-    """A figure with callbacks for events, which are set whenever it comes to the page: Panel removes them when it leaves.
+    """A figure with callbacks for events. They are set whenever the figure comes to the page, because Panel removes them with it.
 
     Parameters
     ----------
@@ -195,12 +197,12 @@ class LaterGlyphs:
 
 
 def set_range(edges: Range1d, low: float, high: float) -> None:
-    """Set the ends of an axis, also for the reset tool."""
+    """Set the ends of an axis, and the ends to which the reset tool returns."""
     edges.update(start=low, end=high, reset_start=low, reset_end=high)
 
 
 def set_decades(edges: Range1d, low: float, high: float) -> None:
-    """Set the ends of a logarithmic axis, also for the reset tool; see `find_decades`."""
+    """Set the ends of a logarithmic axis with `find_decades` and `set_range`."""
     set_range(edges, *find_decades(low, high))
 
 

@@ -8,25 +8,27 @@ from typing import Any
 import panel as pn
 from bokeh.document import Document
 
-# Spaces beside an equals or a multiplication sign, where lines do not break.
+# Spaces beside a sign such as = or ×, where a line must not break.
 _AROUND_SIGN = re.compile(r"(?<=\w) (?=(?:=|≈) [−-]?\d)|(?<=[=≤×]) (?=[−-]?\d)|(?<=\d) (?=×)")
+# Letters with a subscript, such as S_b, px and ω1.
 _SUBSCRIPT = re.compile(r"\b(?:([A-Za-z])_|(p)(?=[xy]\b)|(ω)(?=[12]\b))([a-z]{1,3}|\d)\b")
+# Powers of e and of t.
 _POWER = re.compile(r"\b([et])\^(\d+(?:\.\d+)?)")
 # Spaces at an equals sign, after an operator and inside brackets, where lines of a formula do not break.
 _IN_TERM = re.compile(r"(?<=[=+−]) | (?==)| (?=[^()]*\))")
-_DIGITS = str.maketrans("12", "₁₂")
+_SUBSCRIPT_DIGITS = str.maketrans("12", "₁₂")
 # Narrow spaces before a per cent sign and between groups of digits.
 _IN_NUMBER = re.compile(r"(?<=\d) (?=%|\d{3}\b)")
 
 
 def typeset(html: str) -> str:
     """Return HTML whose lines do not break inside a number, with subscripts and powers, such as px, ω1, S_b and e^6.5."""
-    # Text and tags alternate.
+    # Text and tags alternate: every second part is text.
     parts = re.split(r"(<[^>]*>)", html)
-    for space, places in (("\N{NO-BREAK SPACE}", _AROUND_SIGN), ("\N{NARROW NO-BREAK SPACE}", _IN_NUMBER)):
-        parts[::2] = [places.sub(space, part) for part in parts[::2]]
-    for replaced, places in ((r"\1\2\3<sub>\4</sub>", _SUBSCRIPT), (r"\1<sup>\2</sup>", _POWER)):
-        parts[::2] = [places.sub(replaced, part) for part in parts[::2]]
+    for space, pattern in (("\N{NO-BREAK SPACE}", _AROUND_SIGN), ("\N{NARROW NO-BREAK SPACE}", _IN_NUMBER)):
+        parts[::2] = [pattern.sub(space, part) for part in parts[::2]]
+    for replacement, pattern in ((r"\1\2\3<sub>\4</sub>", _SUBSCRIPT), (r"\1<sup>\2</sup>", _POWER)):
+        parts[::2] = [pattern.sub(replacement, part) for part in parts[::2]]
     return "".join(parts)
 
 
@@ -37,11 +39,11 @@ def breakable(formula: str) -> str:
 
 def plain_symbol(symbol: str) -> str:
     """Return the symbol of a parameter with subscripts, for labels that are not HTML."""
-    return symbol.translate(_DIGITS)
+    return symbol.translate(_SUBSCRIPT_DIGITS)
 
 
 class TextPane(pn.pane.HTML):
-    """A pane of HTML with typographic spaces, whose text may also change while the pane is not on the page.
+    """A pane of HTML with typographic spaces. Its text may change while the pane is not on the page.
 
     With each text, Panel also sets the stylesheets, which depend on the model's document. A model that is not on the page has
     no document, and would load a stylesheet from Panel's content delivery network, which the page must not do.

@@ -13,14 +13,14 @@ COUNT_WHOLE = "Count the whole view"
 """Label of the buttons that remove the box."""
 
 FULL_HEIGHT = {"max-height": "none"}
-"""Styles of a layout as high as its content: Bokeh limits the height to the window, and the next parts would overlap."""
+"""Styles of a layout as high as its content. Bokeh would limit the height to the window, and the next parts would overlap."""
 
 Rows = Iterable[Sequence[str]]
 """The rows of a table: the texts of their cells."""
 
 
 class _NamedGroup:
-    """Mixin that gives the widget's element a role and an accessible name, its label, which Bokeh does not set."""
+    """Mixin that sets the role and the accessible name (the label) of the widget's element. Bokeh sets neither."""
 
     _role: ClassVar[str] = "group"
 
@@ -91,7 +91,7 @@ def flex_row(*views: pn.viewable.Viewable, justify: str = "start", align: str = 
 
 
 def keep_place(*, shown: bool) -> dict[str, str]:
-    """Return styles that show or hide a part but keep its space, which saves the browser a new layout of the page."""
+    """Return styles that show or hide a part but keep its space. The browser then does not lay out the page again."""
     return {"visibility": "visible" if shown else "hidden"}
 
 
@@ -110,6 +110,6 @@ def bind[Bound: pn.widgets.Widget](widget: Bound, state: param.Parameterized, na
 
 
 def set_value(widget: pn.widgets.Widget, value: Any) -> None:
-    """Set the value of a widget only if it differs: setting it would drop a choice of the browser that waits to be handled."""
+    """Set the value of a widget if it differs. Setting an equal value would drop a choice that the browser has just sent."""
     if widget.value != value:
         widget.value = value

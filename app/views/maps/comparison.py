@@ -34,7 +34,7 @@ class ComparedMap:
     """
 
     def __init__(self, ranges: MapRanges, state: ViewState) -> None:
-        # The hover tool exists before the picture, because Bokeh warns if tools and pictures change together.
+        # Make the hover tool before the picture, because Bokeh warns if tools and pictures change together.
         self.source = ColumnDataSource(_no_map(), name="compared_map")
         self.hover = fate_hover(self.source, ranges.x, ranges.ordinate)
         self.other: OtherView | None = None
@@ -60,7 +60,7 @@ class ComparedMap:
         self.source.data = _no_map()
 
     def difference(self, columns: Columns, plane: Slice) -> Columns:
-        """Return the column ``difference`` for a map of a slice, given its columns; blank without another map with its axes."""
+        """Return the column ``difference`` for the columns of a map of a slice; blank without another map with its axes."""
         is_compared = self.other is not None and self.other.axes == plane.axis_symbols
         return difference_column(columns, self.source.data) if is_compared else {"difference": NO_LAYER}
 

@@ -26,7 +26,7 @@ _LEVELS = (0.1, 0.3, 0.5, 0.7, 0.9, 1.2, 1.6, 2.2, 3.0)
 
 
 class TracedCurves(NamedTuple):
-    """Lines of the zero-velocity curve, of the equipotentials at critical energies, and of the faint equipotentials."""
+    """Lines of the limiting curve, of the equipotentials at critical energies, and of the faint equipotentials."""
 
     limit: list[np.ndarray]
     critical: list[np.ndarray]
@@ -35,55 +35,55 @@ class TracedCurves(NamedTuple):
 
 @functools.lru_cache(maxsize=_CACHED_MAPS)
 def trace_curves(spec: MapSpec) -> TracedCurves:
-    """Return the curves of a map. They can take time, so the job of the map calls this first, and the result is cached."""
-    window, h = spec.find_window(), spec.common_energy
+    """Return the curves of a map. The result is cached: the job of the map calls this first, because tracing can take time."""
+    window = spec.find_window()
     limit = trace_zero_velocity_curve(spec.potential, spec.plane, spec.energy, window)
-    if h is None:
+    if spec.common_energy is None:
         return TracedCurves(limit, [], [])
     critical = critical_energies(spec.potential)
     energies = [*critical, *depth_levels(spec.potential, _LEVELS)]
-    traced = trace_equipotentials(spec.potential, spec.plane, energies, window)
-    split = len(critical)
-    return TracedCurves(limit, _joined(traced[:split]), _joined(traced[split:]))
+    # The lines of each energy.
+    groups = trace_equipotentials(spec.potential, spec.plane, energies, window)
+    return TracedCurves(limit, _flatten(groups[: len(critical)]), _flatten(groups[len(critical) :]))
 
 
-def _joined(levels: Iterable[Sequence[np.ndarray]]) -> list[np.ndarray]:
-    return [line for lines in levels for line in lines]
+def _flatten(groups: Iterable[Sequence[np.ndarray]]) -> list[np.ndarray]:
+    return [line for lines in groups for line in lines]
 
 
 class CurveLayers:
-    """Draws the curves of a map into any number of figures, in the colours of the view state."""
+    """Draws the curves of a map over any number of pictures, in the colours of the view state."""
 
     def __init__(self, state: ViewState) -> None:
         self._state = state
-        self._limit = ColumnDataSource({"xs": [], "ys": []}, name="zero_velocity_curve")
-        self._levels = ColumnDataSource({"xs": [], "ys": []}, name="equipotentials")
-        self._critical = ColumnDataSource({"xs": [], "ys": []}, name="critical_equipotential")
-        self._exits = ColumnDataSource({"xs": [], "ys": [], "colour": []}, name="lyapunov_orbits")
-        self._labels = ColumnDataSource({"x": [], "y": [], "text": [], "colour": []}, name="channel_numbers")
+        self._limit_source = ColumnDataSource({"xs": [], "ys": []}, name="zero_velocity_curve")
+        self._level_source = ColumnDataSource({"xs": [], "ys": []}, name="equipotentials")
+        self._critical_source = ColumnDataSource({"xs": [], "ys": []}, name="critical_equipotential")
+        self._exit_source = ColumnDataSource({"xs": [], "ys": [], "colour": []}, name="lyapunov_orbits")
+        self._label_source = ColumnDataSource({"x": [], "y": [], "text": [], "colour": []}, name="channel_numbers")
         self._exit_lines, self._exit_numbers = LaterGlyphs(self._add_exit_lines), LaterGlyphs(self._add_exit_numbers)
         # Glyphs whose colour depends on the theme, by the name of the colour in `LineColours`.
         self._themed_glyphs: dict[str, list[Any]] = {"limiting_curve": [], "critical_equipotential": [], "equipotential": []}
         state.param.watch(lambda event: self._follow_theme(), "dark")
 
     def draw(self, plot: figure, *, full: bool) -> None:
-        """Add the curves to a figure. Only `full` figures get equipotentials and the numbers of exits."""
+        """Add the curves to a figure. Only a `full` figure gets equipotentials and exit numbers."""
         if full:
-            self._draw_themed(plot, self._levels, "equipotential", 1.0)
-            self._draw_themed(plot, self._critical, "critical_equipotential", 1.5)
-        self._draw_themed(plot, self._limit, "limiting_curve", 2.0 if full else 1.0)
+            self._draw_themed(plot, self._level_source, "equipotential", 1.0)
+            self._draw_themed(plot, self._critical_source, "critical_equipotential", 1.5)
+        self._draw_themed(plot, self._limit_source, "limiting_curve", 2.0 if full else 1.0)
         self._exit_lines.expect(plot)
         if full:
             self._exit_numbers.expect(plot)
 
     def _add_exit_lines(self, plot: figure) -> None:
-        plot.add_glyph(self._exits, MultiLine(line_color=self._state.line_colours.halo, line_width=5))
-        plot.add_glyph(self._exits, MultiLine(line_color="colour", line_width=3))
+        plot.add_glyph(self._exit_source, MultiLine(line_color=self._state.line_colours.halo, line_width=5))
+        plot.add_glyph(self._exit_source, MultiLine(line_color="colour", line_width=3))
 
     def _add_exit_numbers(self, plot: figure) -> None:
-        number = Text(text_color="colour", text_align="center", text_baseline="middle", text_font_size="16px")
-        number.text_font_style = "bold"
-        plot.add_glyph(self._labels, number)
+        label = Text(text_color="colour", text_align="center", text_baseline="middle", text_font_size="16px")
+        label.text_font_style = "bold"
+        plot.add_glyph(self._label_source, label)
 
     def _draw_themed(self, plot: figure, source: ColumnDataSource, name: str, width: float) -> None:
         line = MultiLine(line_color=getattr(self._state.line_colours, name), line_width=width)
@@ -97,14 +97,15 @@ class CurveLayers:
 
     def show(self, spec: MapSpec) -> None:
         """Draw the curves of a map."""
-        h, traced = spec.common_energy, trace_curves(spec)
-        self._limit.data = _lines(traced.limit)
+        curves = trace_curves(spec)
+        self._limit_source.data = _line_columns(curves.limit)
+        h = spec.common_energy
         orbits = find_lyapunov_orbits(spec.potential, h) if spec.plane.shows_positions and h is not None else ()
-        # No data is sent if there were no orbits before.
-        if orbits or self._exits.data["xs"]:
+        # Without orbits before and now, nothing needs to be sent.
+        if orbits or self._exit_source.data["xs"]:
             self._show_exits(orbits)
-        self._critical.data = _lines(traced.critical)
-        self._levels.data = _lines(traced.levels)
+        self._critical_source.data = _line_columns(curves.critical)
+        self._level_source.data = _line_columns(curves.levels)
 
     def _show_exits(self, orbits: Sequence[LyapunovOrbit]) -> None:
         if orbits:
@@ -112,13 +113,14 @@ class CurveLayers:
             self._exit_numbers.draw()
         palette = self._state.colours
         colours = [palette.channels[orbit.channel - 1] for orbit in orbits]
-        self._exits.data = {**_lines([orbit.half_path for orbit in orbits]), "colour": colours}
+        self._exit_source.data = {**_line_columns([orbit.half_path for orbit in orbits]), "colour": colours}
+        # An orbit goes along the exit and back, so its middle is after a quarter of the period.
         middles = [np.array([orbit.x, orbit.y])[:, orbit.x.size // 4] for orbit in orbits]
-        # There are always `MOST_CHANNELS` texts, some without a position: Bokeh fails if texts with own colours become fewer.
+        # Always send `MOST_CHANNELS` texts, some without a position: Bokeh fails if texts with colours of their own become fewer.
         missing = MOST_CHANNELS - len(orbits)
-        self._labels.data = {
-            "x": [*(EXIT_NUMBER_DISTANCE * point[0] for point in middles), *[np.nan] * missing],
-            "y": [*(EXIT_NUMBER_DISTANCE * point[1] for point in middles), *[np.nan] * missing],
+        self._label_source.data = {
+            "x": [*(EXIT_NUMBER_DISTANCE * x for x, _ in middles), *[np.nan] * missing],
+            "y": [*(EXIT_NUMBER_DISTANCE * y for _, y in middles), *[np.nan] * missing],
             "text": [*(orbit.name for orbit in orbits), *[""] * missing],
             "colour": [*colours, *[palette.bounded] * missing],
         }
@@ -129,10 +131,11 @@ class CurveLayers:
         entries = [Entry(spec.plane.limiting_curve(spec.potential.mass), lines.limiting_curve)]
         if spec.common_energy is not None:
             has_exits = spec.potential.escape_radius is None
-            entries += [Entry("escape energy" if has_exits else "through saddles", lines.critical_equipotential)]
-            entries += [Entry("others", lines.equipotential)] if has_exits else []
+            entries.append(Entry("escape energy" if has_exits else "through saddles", lines.critical_equipotential))
+            if has_exits:
+                entries.append(Entry("others", lines.equipotential))
         return entries
 
 
-def _lines(pieces: list[np.ndarray]) -> dict[str, list[np.ndarray]]:
-    return {"xs": [piece[:, 0] for piece in pieces], "ys": [piece[:, 1] for piece in pieces]}
+def _line_columns(lines: list[np.ndarray]) -> dict[str, list[np.ndarray]]:
+    return {"xs": [line[:, 0] for line in lines], "ys": [line[:, 1] for line in lines]}

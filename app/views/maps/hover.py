@@ -1,4 +1,4 @@
-"""Hover text of a pixel, which says what its colours mean, on all pictures alike."""
+"""Hover text of a pixel. It says what the colours of the pixel mean, and is the same on all pictures."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _FATES = list(OUTCOMES.values())
 
 
 def fate_hover(source: ColumnDataSource, x: Range1d, ordinate: Range1d) -> HoverTool:
-    """Return a tool that shows the outcome of the orbit under the mouse; the caller sets images of fate codes as its renderers.
+    """Return a tool that shows the outcome of the orbit under the mouse. The caller sets images of fate codes as renderers.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def _fate_and_place(source: ColumnDataSource, x: Range1d, ordinate: Range1d) -> 
 
 
 def pixel_hover(source: ColumnDataSource, compared: ColumnDataSource, x: Range1d, ordinate: Range1d) -> HoverTool:
-    """Return a tool that describes the orbit under the mouse; the caller sets images as its renderers.
+    """Return a tool that describes the orbit under the mouse. The caller sets images as renderers.
 
     A single formatter reads all columns: Bokeh calls no formatter for NaN, such as the escape time of a bounded orbit.
 

@@ -1,4 +1,4 @@
-"""The pictures of a slice, linked in zoom, hover and clicks. They share a data source, so one message repaints all."""
+"""The pictures of a slice, linked in zoom, hover and clicks. They share a data source, so one message repaints all pictures."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ PICTURES_ALONE = ("well", "basins", "times", "crossings")
 PICTURES_COMPARED = ("basins", "compared", "well", "differences")
 """The pictures of a view that is compared with another view."""
 
-# Least magnification that a note mentions: the window of a neighbouring energy is hardly smaller than the whole interior.
+# Smallest magnification that a note mentions. The window of a neighbouring energy is only slightly smaller than the interior.
 _LEAST_MAGNIFICATION = 1.5
 
 
@@ -88,13 +88,13 @@ class MapActions:
 
 
 def prepare_curves(spec: MapSpec) -> None:
-    """Trace the curves over a map and in the well, which takes up to half a second, so that `MapsView.show` finds them."""
+    """Trace the curves over a map and in the well, and cache them for `MapsView.show`. Tracing takes up to half a second."""
     trace_curves(spec)
     trace_curves(well_spec(spec.potential, highest_energy(spec.energy)))
 
 
 class MapsView:
-    """Draws the frames of maps, and marks and curves over them. With `alone`, only the picture shown large is visible."""
+    """Draws the frames of maps, with marks and curves. With `alone`, only the picture shown large is visible."""
 
     def __init__(self, state: ViewState, actions: MapActions, *, alone: bool = False) -> None:
         self._state, self._actions = state, actions
@@ -106,16 +106,16 @@ class MapsView:
         self._fitted_times = WITHOUT_ESCAPES
         self._mappers = {name: LinearColorMapper() for name in MAPS}
         self._spec: MapSpec | None = None
-        # Results of the layers that are on, which may be incomplete, by layer.
+        # Results of the layers that are on, by layer. A result may be incomplete.
         self._results: dict[str, Any] = {}
         # Layers that are being computed.
         self._computing: frozenset[str] = frozenset()
         self._fates: frozenset[int] = frozenset()
         self.ranges = MapRanges(actions.zoom, actions.rest)
-        edges = self.ranges.x, self.ranges.ordinate
+        ranges = self.ranges.x, self.ranges.ordinate
         self.compared = ComparedMap(self.ranges, state)
-        self._hover = pixel_hover(self.source, self.compared.source, *edges)
-        self._fingers = TwoFingers(*edges)
+        self._hover = pixel_hover(self.source, self.compared.source, *ranges)
+        self._fingers = TwoFingers(*ranges)
         self._drags: dict[Drag, Any] = {Drag.PAN: PanTool()}
         self._toolbar = _toolbar(self._drags[Drag.PAN], self._hover, self.compared.hover)
         self._last_tap: tuple[float, float] | None = None
@@ -143,8 +143,8 @@ class MapsView:
     def _begin_touch(self) -> None:
         """Adapt to touch input: two fingers zoom."""
         # The wheel tool would also respond to two fingers.
-        others = [tool for tool in self._toolbar.tools if not isinstance(tool, WheelZoomTool)]
-        self._toolbar.update(tools=others, active_scroll=None)
+        tools = [tool for tool in self._toolbar.tools if not isinstance(tool, WheelZoomTool)]
+        self._toolbar.update(tools=tools, active_scroll=None)
 
     def set_drag(self, drag: Drag) -> None:
         """Choose the effect of dragging over a picture."""
@@ -202,7 +202,7 @@ class MapsView:
             self._show_legends()
 
     def remove_layer(self, name: str) -> None:
-        """Remove a layer, also its pixels, which the hover text would still describe."""
+        """Remove a layer and its pixels, which the hover text would still describe."""
         self._results.pop(name, None)
         self.overlays.remove(name)
         pixels = LAYERS[name].pixels
@@ -219,7 +219,7 @@ class MapsView:
         self.describe()
 
     def snapped(self, x: float, ordinate: float) -> tuple[float, float]:
-        """Return the centre of the pixel at a point: the start whose outcome the pixel shows."""
+        """Return the centre of the pixel at a point, which is the start of the pixel; the point itself outside the map."""
         pixel = self._spec.pixel_at(x, ordinate) if self._spec is not None else None
         if self._spec is None or pixel is None:
             return x, ordinate
@@ -231,7 +231,7 @@ class MapsView:
         self._actions.tap(*self._last_tap)
 
     def _tap_again(self, event: PointEvent) -> None:
-        """Handle the second of two quick clicks, which Bokeh reports as a double tap even at two positions."""
+        """Handle the second of two quick clicks. Bokeh reports a double tap even if the clicks are at different positions."""
         if self.snapped(event.x, event.y) == self._last_tap:
             self._last_tap = None
             self._actions.dive(event.x, event.y)
@@ -261,23 +261,24 @@ class MapsView:
         notes = label_axes(self.figures.values(), spec.plane.axis_symbols, spec.find_window())
         if self.ranges.magnification > _LEAST_MAGNIFICATION:
             notes.append(f"{format_number(float(f'{self.ranges.magnification:.2g}'))} times enlarged")
-        other, is_locked = self.compared.other, self._state.lock_times is not None
-        shown = ShownMap(spec, self._state.colours, self.times, self._fates, is_locked, self._results, other)
+        other = self.compared.other
+        is_locked = self._state.lock_times is not None
+        shown_map = ShownMap(spec, self._state.colours, self.times, self._fates, is_locked, self._results, other)
         for name in self.grid.shown:
             if name == "well":
                 self.well.describe()
             else:
                 axes = other.axes if name == "compared" and other is not None else spec.plane.axis_symbols
-                legend = picture_legend(map_legend(name, shown))
+                legend = picture_legend(map_legend(name, shown_map))
                 annotate_picture(self.figures[name], ENTRIES[name].title, axes, legend, notes, self._under_way(name))
 
     def _under_way(self, picture: str) -> str:
-        """Return what is being computed for a picture: itself, or what layers draw over it; empty if nothing is."""
+        """Return what is being computed for a picture: the picture itself, or layers over the picture; empty if nothing is."""
         layers = [LAYERS[name] for name in LAYERS if name in self._computing]
         if any(layer.picture is not None and layer.picture.name == picture for layer in layers):
             return "computing …"
-        over = [layer.title.lower() for layer in layers if layer.over_picture(picture) is not None]
-        return f"computing {', '.join(over)} …" if over else ""
+        titles = [layer.title.lower() for layer in layers if layer.over_picture(picture) is not None]
+        return f"computing {', '.join(titles)} …" if titles else ""
 
     def _build(self, name: str) -> None:
         """Make a picture with its title and help text."""
@@ -292,7 +293,7 @@ class MapsView:
             PinchEnd: lambda event: self.ranges.end_gesture(),
         }
         if name == "basins":
-            # Bokeh reports the end of a drag, and half a second late a step of the wheel. One of the linked pictures is enough.
+            # Bokeh reports the end of a drag at once, and a step of the wheel after half a second. One linked picture is enough.
             events[RangesUpdate] = lambda event: self.ranges.end_gesture()
         self._panes[name] = FigurePane(plot, events)
 
@@ -314,7 +315,7 @@ class MapsView:
         self.marks.draw(plot, sections=name == "basins")
 
 
-# Tools that draw a box. Without renderers, the image keeps its look inside and outside of a box.
+# Tools that draw a box. With renderers, Bokeh would change the look of the image outside the box.
 _BOX_TOOLS = {Drag.ZOOM: partial(BoxZoomTool, match_aspect=True), Drag.COUNT: partial(BoxSelectTool, renderers=[])}
 
 

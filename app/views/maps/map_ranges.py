@@ -1,4 +1,4 @@
-"""The ranges of the maps, which follow the displayed map and two fingers, and report the window to which the user moves."""
+"""The ranges of the maps. They follow the displayed map and two fingers, and report the window to which the user moves them."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ GESTURE_PAUSE_MS = 500
 """Longest pause between drags or steps of the wheel that share an entry of the browser's history, in milliseconds."""
 
 REST_MS = 90
-"""Time without change after which the ranges report their window, in milliseconds; longer than between two wheel steps."""
+"""Time without change after which the ranges report their window, in milliseconds: longer than between two steps of the wheel."""
 
 _FOLLOW = callback_code(Path(__file__).with_name("two_fingers.js"), "followFingers(cb_obj, ranges, held)")
 
 Edges = tuple[float, float, float, float]
-"""Ends of the ranges: low and high of x, low and high of the ordinate."""
+"""Ends of the ranges: x_low, x_high, ordinate_low, ordinate_high."""
 
 
 class MapRanges:
@@ -36,8 +36,8 @@ class MapRanges:
     Parameters
     ----------
     on_zoom
-        Shows the window to which the ranges were moved; None is the whole interior. It must call `finish_report`, now or later.
-        Until then the ranges follow no other window, because the user may have moved them again.
+        Shows the window to which the ranges were moved; None is the whole interior. It must lead to a call of `finish_report`.
+        Until that call, the ranges follow no other window, because the user may have moved them again.
     on_rest
         Handles the end of a gesture, `GESTURE_PAUSE_MS` after the last drag or step of the wheel.
     """
@@ -46,9 +46,11 @@ class MapRanges:
         self.x, self.ordinate = Range1d(-1.0, 1.0), Range1d(-1.0, 1.0)
         self._on_zoom = on_zoom
         self._window: Window | None = None
-        self._home: Window | None = None
-        self._rest_pause, self._gesture_pause = _Pause(REST_MS, self._report), _Pause(GESTURE_PAUSE_MS, on_rest)
-        self._is_following, self._open_reports = False, 0
+        self._home_window: Window | None = None
+        self._rest_pause = _Pause(REST_MS, self._report)
+        self._gesture_pause = _Pause(GESTURE_PAUSE_MS, on_rest)
+        self._is_following = False
+        self._open_reports = 0
         for edges in (self.x, self.ordinate):
             edges.on_change("start", self._note_move)
             edges.on_change("end", self._note_move)
@@ -56,9 +58,9 @@ class MapRanges:
     def follow(self, window: Window) -> None:
         """Go to the window of a new map, unless the user is moving the ranges."""
         self._window = window
-        if self._rest_pause.waits or self._open_reports:
+        if self._rest_pause.is_waiting or self._open_reports:
             return
-        # Writing a range undoes a move in the browser at the same time, so mere rounding differences are not written.
+        # Setting a range would undo a simultaneous move in the browser, so rounding differences alone set nothing.
         if is_near(self._edges, window):
             return
         self._is_following = True
@@ -67,36 +69,36 @@ class MapRanges:
         self._is_following = False
 
     def go_to(self, window: Window) -> None:
-        """Go to a window that does not come from a move, and drop a move that is not reported yet."""
+        """Go to a window that was chosen elsewhere, and drop a move that is not reported yet."""
         if not self._open_reports:
             self._rest_pause.cancel()
         self.follow(window)
 
     def finish_report(self) -> None:
-        """End a report, whose window is shown or refused, and go to the window of the map."""
+        """End a report after its window is shown or refused, and go to the window of the map."""
         self._open_reports -= 1
         if self._window is not None:
             self.follow(self._window)
 
     def set_home(self, home: MapSpec) -> None:
         """Set the map of the whole interior, which also determines the smallest window."""
-        self._home = home.find_window()
-        pixels = zip(finest_pixel(home, self._home), home.resolution, strict=True)
-        # Twice the least distance of pixels, because the edges are also rounded.
+        self._home_window = home.find_window()
+        pixels = zip(finest_pixel(home, self._home_window), home.resolution, strict=True)
+        # Twice the smallest distance of pixels, because the edges are rounded too.
         self.x.min_interval, self.ordinate.min_interval = (2.0 * finest * count for finest, count in pixels)
 
     @property
     def magnification(self) -> float:
         """Width of the whole interior over the width of the window; 1 without a map."""
-        if self._home is None or self._window is None:
+        if self._home_window is None or self._window is None:
             return 1.0
-        return self._home.width / self._window.width
+        return self._home_window.width / self._window.width
 
     def end_gesture(self) -> None:
         """Report the window after a drag or a step of the wheel, and wait for the end of the gesture."""
         self._report()
         document = self.x.document
-        if document is not None and not self._gesture_pause.waits:
+        if document is not None and not self._gesture_pause.is_waiting:
             self._gesture_pause.start(document)
 
     def _note_move(self, _name: str, _old: float, _new: float) -> None:
@@ -109,12 +111,13 @@ class MapRanges:
     def _report(self) -> None:
         """Report the window to which the ranges were moved, if it is new."""
         self._rest_pause.cancel()
-        x_low, x_high, low, high = edges = self._edges
+        edges = self._edges
+        x_low, x_high, ordinate_low, ordinate_high = edges
         # The server and the browser may change a range at the same time.
-        if not (x_low < x_high and low < high) or self._window is None or is_near(edges, self._window):
+        if not (x_low < x_high and ordinate_low < ordinate_high) or self._window is None or is_near(edges, self._window):
             return
         self._open_reports += 1
-        self._on_zoom(None if self._home is not None and is_near(edges, self._home) else Window(*edges))
+        self._on_zoom(None if self._home_window is not None and is_near(edges, self._home_window) else Window(*edges))
 
     @property
     def _edges(self) -> Edges:
@@ -122,25 +125,25 @@ class MapRanges:
 
 
 class _Pause:
-    """Calls a function after some time without another start.
+    """Calls a function some time after the last start.
 
-    Bokeh runs a due timeout callback even if it is removed while it waits for the lock of the document. Such a callback is of
-    an earlier start, and does nothing.
+    Bokeh runs a due callback even if the callback is removed while it waits for the lock of the document. Such a callback belongs
+    to an earlier start, and does nothing.
     """
 
     def __init__(self, length_ms: int, on_end: Callable[[], None]) -> None:
         self._length_ms, self._on_end = length_ms, on_end
         self._cancel: Callable[[], None] | None = None
-        self._starts = 0
+        self._start_count = 0
 
     @property
-    def waits(self) -> bool:
+    def is_waiting(self) -> bool:
         return self._cancel is not None
 
     def start(self, document: Document) -> None:
         self.cancel()
-        self._starts += 1
-        timer: Any = document.add_timeout_callback(partial(self._end, self._starts), self._length_ms)
+        self._start_count += 1
+        timer: Any = document.add_timeout_callback(partial(self._end, self._start_count), self._length_ms)
         self._cancel = partial(document.remove_timeout_callback, timer)
 
     def cancel(self) -> None:
@@ -148,8 +151,8 @@ class _Pause:
         if cancel is not None:
             cancel()
 
-    def _end(self, start: int) -> None:
-        if self.waits and start == self._starts:
+    def _end(self, start_number: int) -> None:
+        if self.is_waiting and start_number == self._start_count:
             # Bokeh has removed the running callback.
             self._cancel = None
             self._on_end()
@@ -158,12 +161,12 @@ class _Pause:
 def is_near(edges: Edges, window: Window) -> bool:
     """Whether the ends of the ranges are the edges of a window, up to rounding in the browser."""
     width, height = window.width, window.height
-    apart = np.abs(np.subtract(edges, astuple(window)))
-    return bool(np.all(apart <= 1e-6 * np.array([width, width, height, height])))
+    distances = np.abs(np.subtract(edges, astuple(window)))
+    return bool(np.all(distances <= 1e-6 * np.array([width, width, height, height])))
 
 
 class TwoFingers:
-    """Changes two ranges in the browser: the point between two fingers stays there, and the scale follows their distance.
+    """Changes two ranges in the browser: the point between two fingers stays between them, and the scale follows their distance.
 
     Bokeh's `WheelZoomTool` zooms in steps and does not move the picture.
     """

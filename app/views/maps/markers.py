@@ -22,7 +22,7 @@ NO_POINTS = np.zeros((0, 2))
 
 
 class Markers:
-    """Marks the figures; each kind of mark is added to them when it is first shown.
+    """Marks on figures. A kind of mark is added to the figures when it is first shown.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ class Markers:
         state.follow(self._show_box, "box")
 
     def draw(self, plot: figure, *, sections: bool) -> None:
-        """Add a figure to mark; section points, which take time to paint, are drawn only if `sections`."""
+        """Add a figure to mark. Only with `sections`, section points are drawn, because painting them takes time."""
         for kind in ("starts", "box", *(["sections"] if sections else [])):
             self._glyphs_of[kind].expect(plot)
 
@@ -77,23 +77,23 @@ class Markers:
 
     def show_sections(self, sections: Sequence[np.ndarray]) -> None:
         """Draw the section points of each orbit, given as arrays of shape (n, 2)."""
-        shown = [points[:MOST_SECTION_POINTS] for points in sections]
-        if any(len(points) for points in shown):
+        drawn_sections = [points[:MOST_SECTION_POINTS] for points in sections]
+        if any(len(points) for points in drawn_sections):
             self._glyphs_of["sections"].draw()
         elif not len(self._sections.data["x"]):
             return
-        points = np.concatenate([NO_POINTS, *shown]).astype(np.float32)
-        slot = np.repeat(np.arange(len(shown), dtype=np.uint8), [len(points) for points in shown])
+        points = np.concatenate([NO_POINTS, *drawn_sections]).astype(np.float32)
+        slot = np.repeat(np.arange(len(drawn_sections), dtype=np.uint8), [len(points) for points in drawn_sections])
         self._sections.data = {"x": points[:, 0], "y": points[:, 1], "slot": slot}
 
     def _show_box(self, box: Window | None) -> None:
         """Draw the box whose pixels are counted; None removes it."""
-        edges = [] if box is None else [box]
-        if edges:
+        boxes = [] if box is None else [box]
+        if boxes:
             self._glyphs_of["box"].draw()
         self._box.data = {
-            "left": [edge.x_low for edge in edges],
-            "right": [edge.x_high for edge in edges],
-            "bottom": [edge.ordinate_low for edge in edges],
-            "top": [edge.ordinate_high for edge in edges],
+            "left": [each.x_low for each in boxes],
+            "right": [each.x_high for each in boxes],
+            "bottom": [each.ordinate_low for each in boxes],
+            "top": [each.ordinate_high for each in boxes],
         }

@@ -1,4 +1,4 @@
-"""The marks of pixels, and the curves, that layers draw over the pictures."""
+"""Marks of pixels, and curves, which layers draw over the pictures."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _CURVE_COLUMNS = ("xs", "ys", "colour", "width", "alpha", "halo_width", "halo_al
 
 
 class Overlays:
-    """Draws marks and curves of layers over the pictures; a layer is added to the figures when it is first shown.
+    """Draws marks and curves of layers over the pictures. A layer is added to the figures when it is first shown.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The arrangement of the pictures: side by side, or one enlarged above a row of the others."""
+"""The arrangement of the pictures: side by side, or one picture enlarged above a row of the other pictures."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SHORT_TITLES = {"well": "Well"} | {name: picture.short_title for name, picture i
 FIRST = "basins"
 """The picture that is largest, or on narrow screens the only picture, until another is chosen."""
 
-# Largest number of pictures of the same size; of more pictures, one is twice as large as the others.
+# Largest number of pictures of the same size. Among more pictures, one is twice as large as the others.
 _MOST_EQUAL = 4
 # Largest number of pictures of which one is twice as large; of more pictures, one is three times as large as the others.
 _MOST_HALF = 6
@@ -59,15 +59,15 @@ class PictureGrid:
         return tuple(self._panes)
 
     def show(self, panes: dict[str, FigurePane]) -> None:
-        """Put pictures on the page in this order, and remove other pictures, which would be painted with each frame if hidden."""
+        """Put pictures on the page in this order, and remove other pictures: hidden pictures would be painted with each frame."""
         self._panes = panes
         self._place()
 
     def mark_empty(self, name: str, empty: bool) -> None:
         """Set whether a picture shows nothing. The picture of a layer is not the largest if it shows nothing."""
-        marked = self._empty_pictures | {name} if empty else self._empty_pictures - {name}
-        if marked != self._empty_pictures:
-            self._empty_pictures = marked
+        empty_pictures = self._empty_pictures | {name} if empty else self._empty_pictures - {name}
+        if empty_pictures != self._empty_pictures:
+            self._empty_pictures = empty_pictures
             self._place()
 
     def mark_stale(self, stale: bool) -> None:
@@ -75,7 +75,7 @@ class PictureGrid:
         self._set_class("stale", stale)
 
     def _choose(self, name: str | None) -> None:
-        # Other values come from the page itself, which the picker follows.
+        # The largest picture comes from `_place`: the picker follows the page.
         if name is not None and name != self._largest_picture:
             with pn.io.hold():
                 self._state.focus = name
@@ -93,10 +93,11 @@ class PictureGrid:
 
     def _place(self) -> None:
         # A Bokeh pane on the page cannot change its CSS classes, but its figure can.
-        largest, is_enlarged = self._largest_picture, self._is_enlarged
+        largest = self._largest_picture
+        is_enlarged = self._is_enlarged
         count = len(self._panes)
         are_many = count > _MOST_EQUAL
-        other = "small" if is_enlarged else "compact" if are_many else "equal"
+        other_kind = "small" if is_enlarged else "compact" if are_many else "equal"
         with pn.io.hold():
             self._set_class("enlarged", is_enlarged)
             self._set_class("many", are_many and not is_enlarged)
@@ -104,10 +105,10 @@ class PictureGrid:
             self._set_class("gap", count in _WITH_GAP and not is_enlarged)
             for name, pane in self._panes.items():
                 plot: figure = pane.object
-                kinds = ["well" if name == "well" else "map", "picked" if name == largest else other]
-                if plot.css_classes != kinds:
-                    plot.css_classes = kinds
-                    set_borders(plot, kinds[1])
+                classes = ["well" if name == "well" else "map", "picked" if name == largest else other_kind]
+                if plot.css_classes != classes:
+                    plot.css_classes = classes
+                    set_borders(plot, classes[1])
             self.picker.param.update(options={SHORT_TITLES[name]: name for name in self._panes}, value=largest)
             # A narrow page shows only one picture, and offers a choice.
             parts = [*([self.picker] if self._state.narrow else []), *self._panes.values()]

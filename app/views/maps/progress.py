@@ -1,4 +1,4 @@
-"""Progress of the map: the shares of its outcomes, a sentence, and a button that stops or continues the map or offers a layer."""
+"""Progress of the map: shares of the outcomes, a sentence, and a button that stops or continues the map, or offers a layer."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ CONTINUE = "Continue"
 """Label of the button of a stopped map."""
 
 STOPPED = "stopped"
-"""CSS class of the text of a stopped map, which a preview of the browser does not replace."""
+"""CSS class of the text of a stopped map. Previews of the browser keep this text."""
 
 
 class ProgressView:
@@ -72,14 +72,14 @@ class ProgressView:
         self._write("Preparing this kind of potential, once, which takes some seconds …")
 
     def show(self, frame: EscapeMap) -> None:
-        """Show the shares of a frame, and its progress, or the result of a complete map."""
+        """Show the shares of a frame, and the progress of the map or its result."""
         sentence = _result(frame) if frame.complete else f"{_stage(frame)}{self._time_left(frame)}"
-        offered = [layer.title for layer in LAYERS.values() if layer.is_offered(frame)]
+        offer = next((layer.title for layer in LAYERS.values() if layer.is_offered(frame)), None)
         self._frame = frame
-        self._set(running=not frame.complete, label=next(iter(offered), STOP), sentence=sentence)
-        # The stylesheet puts a button of class "stop" over the status line, where the text beside an offer needs the space.
-        self.button.css_classes = ["solid", "offer" if offered else "stop"]
-        self.button.styles = keep_place(shown=bool(offered) or not frame.complete)
+        self._set(running=not frame.complete, label=offer or STOP, sentence=sentence)
+        # The stylesheet puts a button of class "stop" over the status line. The text beside an offer needs this space.
+        self.button.css_classes = ["solid", "offer" if offer else "stop"]
+        self.button.styles = keep_place(shown=offer is not None or not frame.complete)
         self.bar.value = int(100 * frame.progress)
 
     def stop(self) -> None:
@@ -102,11 +102,13 @@ class ProgressView:
         if frame.horizon < frame.spec.t_max:
             self._last_stage = None
             return ""
-        begin, undecided = self._last_stage = self._last_stage or (now, frame.undecided)
-        if frame.undecided >= undecided:
+        if self._last_stage is None:
+            self._last_stage = now, frame.undecided
+        begin, undecided_at_begin = self._last_stage
+        if frame.undecided >= undecided_at_begin:
             return ""
-        left = (now - begin) * frame.undecided / (undecided - frame.undecided)
-        return f", about {math.ceil(left)} s left"
+        seconds_left = (now - begin) * frame.undecided / (undecided_at_begin - frame.undecided)
+        return f", about {math.ceil(seconds_left)} s left"
 
     def _set(self, *, running: bool, label: str, sentence: str) -> None:
         self.bar.styles = {"opacity": "1" if running else "0"}
@@ -127,10 +129,10 @@ def _shares(frame: EscapeMap, palette: Palette) -> str:
     entries = palette.legend_entries(frame.spec.outcomes) | {Fate.BOUNDED: Entry("stay", palette.bounded)}
     if shares[Fate.FAILED]:
         entries[Fate.FAILED] = palette.outcomes[Fate.FAILED]
-    found = [(entry, shares[fate]) for fate, entry in entries.items()]
-    parts = "".join(f"<i style='flex-grow:{share:.4f};background:{entry.colour}'></i>" for entry, share in found)
+    entry_shares = [(entry, shares[fate]) for fate, entry in entries.items()]
+    parts = "".join(f"<i style='flex-grow:{share:.4f};background:{entry.colour}'></i>" for entry, share in entry_shares)
     rest = "" if frame.complete else f"<i style='flex-grow:{frame.undecided:.4f}'></i>"
-    words = "".join(patch(entry.colour, f"{escape(entry.label)}&nbsp;{format_share(share)}") for entry, share in found)
+    words = "".join(patch(entry.colour, f"{escape(entry.label)}&nbsp;{format_share(share)}") for entry, share in entry_shares)
     return f"<div class='share-bar' aria-hidden='true'>{parts}{rest}</div><div class='legend'>{words}</div>"
 
 
@@ -163,7 +165,7 @@ def _rounding(frame: EscapeMap) -> str:
 
 
 def _share_on_evidence(frame: EscapeMap) -> str:
-    """Return the share of the bounded orbits that are called bounded before t_max; empty if none is."""
+    """Return the share of the bounded orbits that are known to be bounded before t_max; empty if there are none."""
     evidence = frame.evidence[frame.fate == Fate.BOUNDED]
-    early = ~np.isin(evidence, (Evidence.NONE, Evidence.INTEGRATED))
-    return f"; {format_share(np.mean(early), 0)} of those that stay do so on evidence" if early.any() else ""
+    is_early = ~np.isin(evidence, (Evidence.NONE, Evidence.INTEGRATED))
+    return f"; {format_share(np.mean(is_early), 0)} of those that stay do so on evidence" if is_early.any() else ""

@@ -4,7 +4,7 @@
  *
  * @param {{event_name: string, x: number, y: number, scale: number}} event
  * @param {{start: number, end: number, min_interval: number | null, setv: (edges: object) => void}[]} ranges  of x and y
- * @param {{point: number, side: number}[]} held  for each axis the point between the fingers and the side when they began
+ * @param {{point: number, side: number}[]} held  for each axis, point and side at the beginning; set in place
  */
 export function followFingers(event, ranges, held) {
   const middle = [event.x, event.y]

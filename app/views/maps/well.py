@@ -21,17 +21,17 @@ from plots.pictures.palette import LIGHT, MARK_EDGE, Palette
 
 TITLE = "The well in (x, y)"
 
-# The line of a long path, which is drawn as an image.
+# The line of a long path: none, because an image shows the path.
 _NO_LINE = np.zeros(0), np.zeros(0)
 
 
 def well_spec(potential: Potential, energy: float) -> MapSpec:
-    """Return the specification of a map in (x, y) whose curves are the curves of the well."""
+    """Return the specification of the map in (x, y) whose curves are the curves of the well."""
     return MapSpec(potential, SPACE, energy, window=find_well_window(potential, energy))
 
 
 class WellView:
-    """Draws the whole interior at the energy of the map; with an axis h, at the energy of the chosen orbit, or the highest."""
+    """Draws the whole interior at the energy of the map. With an axis h, the energy is the chosen orbit's, or the highest."""
 
     def __init__(self, state: ViewState) -> None:
         self._state = state
@@ -44,7 +44,7 @@ class WellView:
         self._spec: MapSpec | None = None
         self._orbits: list[tuple[int, OrbitCurves]] = []
         self._time: float | None = None
-        # What the drawn curves depend on: maps of other windows, and most orbits, need no new curves.
+        # Map and palette of the drawn curves. Maps of other windows, and most orbits, need no new curves.
         self._outline_key: tuple[MapSpec, Palette] | None = None
         self.plot = map_figure("well", TITLE, *self._ranges)
         self._outlines.draw(self.plot, full=True)
@@ -70,24 +70,24 @@ class WellView:
 
     def show_orbits(self, orbits: Sequence[OrbitCurves | None], chosen: int) -> None:
         """Draw the known orbits in the well of the chosen orbit, which is highlighted; None stands for an unknown orbit."""
-        if chosen < len(orbits) and (shown := orbits[chosen]) is not None:
-            well = shown.orbit.potential
+        if chosen < len(orbits) and (chosen_orbit := orbits[chosen]) is not None:
+            well = chosen_orbit.orbit.potential
             orbits = [each if each is not None and each.orbit.potential == well else None for each in orbits]
         if not any(orbits) and not self._orbits:
             return
         self._orbit_glyphs.draw()
         self._orbits = in_front(orbits, chosen)
         alphas = opacities(self._orbits, chosen)
-        short = [_NO_LINE if one.visits is not None else one.path for _, one in self._orbits]
-        self._paths.data = line_columns(self._orbits, short, alphas)
-        long = [(slot, one) for slot, one in self._orbits if one.visits is not None]
+        path_lines = [_NO_LINE if one.visits is not None else one.path for _, one in self._orbits]
+        self._paths.data = line_columns(self._orbits, path_lines, alphas)
+        long_paths = [(slot, one) for slot, one in self._orbits if one.visits is not None]
         self._shades.data = {
-            "image": [one.shaded(self._state.colours.orbits[slot]) for slot, one in long],
-            "x": [one.window.x_low for _, one in long],
-            "y": [one.window.ordinate_low for _, one in long],
-            "dw": [one.window.width for _, one in long],
-            "dh": [one.window.height for _, one in long],
-            "alpha": opacities(long, chosen),
+            "image": [one.shaded(self._state.colours.orbits[slot]) for slot, one in long_paths],
+            "x": [one.window.x_low for _, one in long_paths],
+            "y": [one.window.ordinate_low for _, one in long_paths],
+            "dw": [one.window.width for _, one in long_paths],
+            "dh": [one.window.height for _, one in long_paths],
+            "alpha": opacities(long_paths, chosen),
         }
         self._outline()
         self.set_time(self._time)
@@ -109,9 +109,11 @@ class WellView:
 
     def _outline(self) -> None:
         """Draw the curves of the well, unless they are already drawn."""
-        spec, chosen = self._spec, self._orbits[-1][1] if self._orbits else None
+        spec = self._spec
         if spec is None:
             return
+        # The chosen orbit is the last.
+        chosen = self._orbits[-1][1] if self._orbits else None
         potential, energy = spec.potential, highest_energy(spec.energy)
         if chosen is not None and (spec.common_energy is None or spec.plane.parameter is not None):
             # On a slice of several energies or potentials, the chosen orbit determines the well.

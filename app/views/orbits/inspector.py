@@ -1,4 +1,4 @@
-"""The inspector of the orbits, which is built for the first orbit and shown while there are orbits."""
+"""The inspector of the orbits. It is built for the first orbit, and shown while there are orbits."""
 
 from __future__ import annotations
 
@@ -21,7 +21,8 @@ class Inspector:
         self, controls: OrbitControls, player: OrbitPlayer, plots: OrbitPlots, separation: SeparationPlot, later: Later
     ) -> None:
         self._controls, self._player = controls, player
-        self._starts = self._orbits = 0
+        self._start_count = 0
+        self._orbit_count = 0
         self._head: list[pn.viewable.Viewable] = []
         self._details: list[pn.viewable.Viewable] = []
         self._figure_panes: list[pn.viewable.Viewable] = []
@@ -37,7 +38,7 @@ class Inspector:
 
     def follow(self, starts: int, orbits: int) -> None:
         """Show the panes that are needed for a number of starts, and for the orbits among them."""
-        self._starts, self._orbits = starts, orbits
+        self._start_count, self._orbit_count = starts, orbits
         if starts >= 1 and not self._head:
             self._head, self._details = [self._controls.head(self._player)], self._controls.details()
         if orbits >= 1:
@@ -49,8 +50,9 @@ class Inspector:
         self._arrange()
 
     def _arrange(self) -> None:
-        starts, orbits = self._starts, self._orbits
-        shown = [*(self._figure_panes if orbits >= 1 else []), *self._details] if starts >= 1 else []
-        parts = [*(self._head if starts >= 1 else []), self._controls.note, *shown, *self._entry]
+        has_starts = self._start_count >= 1
+        figures = self._figure_panes if self._orbit_count >= 1 else []
+        results = [*figures, *self._details] if has_starts else []
+        parts = [*(self._head if has_starts else []), self._controls.note, *results, *self._entry]
         if parts != self._grid.objects:
             self._grid.objects = parts

@@ -34,7 +34,7 @@ _LONGEST_NUMBER = 40
 
 @dataclass(frozen=True)
 class OrbitActions:
-    """Callbacks of the buttons; `add` gets x and ordinate of a typed start, `copy` a text."""
+    """Callbacks of the buttons. `add` takes x and ordinate of a typed start, and `copy` takes a text."""
 
     add: Callable[[float, float], None]
     find_divergent_start: Callable[[], None]
@@ -89,7 +89,7 @@ class OrbitControls:
         )  # fmt: skip
 
     def details(self) -> list[pn.viewable.Viewable]:
-        """Return the interval of time in view, the indicators' verdicts on the chosen orbit, and values that open on demand."""
+        """Return the interval of time in view, the verdicts of the chaos indicators, and values that open on demand."""
         return [self._interval_row, self.indicators, *Fold("Values", lambda: [self.reason, self.values, self.copy]).parts()]
 
     def _follow_plane(self, plane: Slice) -> None:
@@ -105,10 +105,10 @@ class OrbitControls:
         self.list.styles = {f"--orbit-{place + 1}": colour for place, colour in enumerate(palette.orbits)}
 
     def show_interval(self, interval: tuple[float, float] | None, duration: float) -> None:
-        """Show the interval of time in view; None is the whole duration."""
+        """Show the interval of time in view; None stands for the whole duration."""
         self._interval_row.visible = interval is not None
-        begin, end, whole = (format_time(t) for t in (*(interval or (0.0, duration)), duration))
-        self.interval.object = f"Shown: t = {begin} to {end} of {whole}"
+        begin, end, total = (format_time(t) for t in (*(interval or (0.0, duration)), duration))
+        self.interval.object = f"Shown: t = {begin} to {end} of {total}"
 
     def say(self, sentence: str) -> None:
         """Show a message about the orbits."""
@@ -135,11 +135,11 @@ class OrbitControls:
         self.list.param.update(rows=rows, chosen=chosen, visible=bool(orbits))
         if not orbits:
             return
-        one = orbits[chosen]
-        self.x.value, self.ordinate.value = (f"{number!r}" for number in one.start)
-        self.text.object = escape(one.headline())
-        self.reason.object = escape(one.describe())
-        self.values.object = _values(one.orbit)
+        chosen_orbit = orbits[chosen]
+        self.x.value, self.ordinate.value = (f"{number!r}" for number in chosen_orbit.start)
+        self.text.object = escape(chosen_orbit.headline())
+        self.reason.object = escape(chosen_orbit.describe())
+        self.values.object = _values(chosen_orbit.orbit)
 
     def _rows(self) -> list[tuple[str, str, str]]:
         """Return the values of the chosen orbit at full precision, and value and verdict of each indicator."""
@@ -169,12 +169,14 @@ class OrbitControls:
 
 
 def _row(orbits: Sequence[ChosenOrbit], place: int) -> str:
-    """Return the label of an orbit in the list; a start that looks like an earlier start is written as a difference."""
+    """Return the label of an orbit in the list. A start that looks like an earlier start is written as a difference."""
     x, ordinate = orbits[place].start
     text = f"{format_number(x)}, {format_number(ordinate)}"
-    for other, one in enumerate(orbits[:place]):
-        if text == f"{format_number(one.start[0])}, {format_number(one.start[1])}":
-            text = f"orbit {other + 1} + ({format_number(x - one.start[0], 2)}, {format_number(ordinate - one.start[1], 2)})"
+    for earlier_place, earlier in enumerate(orbits[:place]):
+        earlier_x, earlier_ordinate = earlier.start
+        if text == f"{format_number(earlier_x)}, {format_number(earlier_ordinate)}":
+            difference = f"({format_number(x - earlier_x, 2)}, {format_number(ordinate - earlier_ordinate, 2)})"
+            text = f"orbit {earlier_place + 1} + {difference}"
     return f"{place + 1}: {text}: {_fate(orbits[place])}"
 
 
@@ -182,8 +184,10 @@ def _value(value: float) -> str:
     return format_number(value, 3) if math.isfinite(value) else ""
 
 
-def _fate(one: ChosenOrbit) -> str:
-    return one.verdict.summarize() if one.verdict is not None else "none" if one.problem else "…"
+def _fate(orbit: ChosenOrbit) -> str:
+    if orbit.verdict is not None:
+        return orbit.verdict.summarize()
+    return "none" if orbit.problem else "…"
 
 
 def _values(orbit: Orbit | None) -> str:

@@ -37,30 +37,30 @@ from plots.pictures.orbit_curves import OrbitCurves, compute_orbit_curves
 from plots.pictures.orbit_quantities import ORBIT_QUANTITIES, OrbitQuantity
 from plots.pictures.palette import MARK_EDGE, THRESHOLD
 
-# The history whose times stand for all histories, which have the same times.
+# The history from which times are read: all histories have the same times.
 _FIRST = ORBIT_QUANTITIES[0].name
 
 
 class OrbitPlots:
-    """Draws the histories; `parts` make the figures when there is an orbit to draw.
+    """Draws the histories. `parts` make the figures once there is an orbit.
 
     Parameters
     ----------
     state
         View state, whose palette has the colours of the orbits.
     on_brush
-        Shows the interval of time that is drawn over a history, or the whole duration (None) after a double click.
+        Shows the interval of time that the user has drawn over a history; None, after a double click, is the whole duration.
     """
 
     def __init__(self, state: ViewState, on_brush: Callable[[tuple[float, float] | None], None]) -> None:
         self._on_brush = on_brush
         self._state = state
-        self._times = Range1d(0.1, 1e4)
-        self._ranges = {quantity.name: Range1d(quantity.least or 0.0, 1.0) for quantity in ORBIT_QUANTITIES}
+        self._x_range = Range1d(0.1, 1e4)
+        self._y_ranges = {quantity.name: Range1d(quantity.least or 0.0, 1.0) for quantity in ORBIT_QUANTITIES}
         self._mapper = orbit_colours(state)
-        self._histories = {name: lines(f"{name}_histories") for name in self._ranges}
-        self._bands = {name: lines(f"{name}_bands") for name in self._ranges}
-        self._now = Span(location=0.0, dimension="height", line_color=MARK_EDGE, line_dash="dotted", visible=False)
+        self._histories = {name: lines(f"{name}_histories") for name in self._y_ranges}
+        self._bands = {name: lines(f"{name}_bands") for name in self._y_ranges}
+        self._time_mark = Span(location=0.0, dimension="height", line_color=MARK_EDGE, line_dash="dotted", visible=False)
         self._orbits: list[tuple[int, OrbitCurves]] = []
 
     def parts(self) -> list[Make]:
@@ -78,7 +78,7 @@ class OrbitPlots:
         """
         self._orbits = in_front(orbits, chosen)
         alphas = opacities(self._orbits, chosen)
-        for name in self._ranges:
+        for name in self._y_ranges:
             histories = [curves.histories[name] for _, curves in self._orbits]
             self._histories[name].data = line_columns(self._orbits, [history.line for history in histories], alphas)
             self._bands[name].data = band_columns(self._orbits, [history.outline for history in histories], alphas)
@@ -86,18 +86,18 @@ class OrbitPlots:
 
     def set_time(self, t: float | None) -> None:
         """Mark a time on all histories; None removes the mark."""
-        self._now.update(visible=t is not None and bool(self._orbits), location=t or 0.0)
+        self._time_mark.update(visible=t is not None and bool(self._orbits), location=t or 0.0)
 
     def _draw(self, quantity: OrbitQuantity) -> figure:
         name, scale = quantity.name, "log" if quantity.logarithmic else "linear"
-        time: dict[str, Any] = {"x_axis_type": "log", "x_range": self._times}
-        values: dict[str, Any] = {"y_axis_type": scale, "y_range": self._ranges[name]}
-        plot = history_figure(name, quantity.title, tools=[_brush()], **time, **values)
+        time_axis: dict[str, Any] = {"x_axis_type": "log", "x_range": self._x_range}
+        value_axis: dict[str, Any] = {"y_axis_type": scale, "y_range": self._y_ranges[name]}
+        plot = history_figure(name, quantity.title, tools=[_brush()], **time_axis, **value_axis)
         # With touch input, a drag over a history scrolls the page.
         plot.toolbar.active_drag = None if self._state.touch else plot.toolbar.tools[0]
         plot.add_glyph(self._bands[name], Patches(**band_style(self._mapper)))
         plot.add_glyph(self._histories[name], MultiLine(**line_style(self._mapper)))
-        plot.add_layout(self._now)
+        plot.add_layout(self._time_mark)
         if quantity.ticks:
             plot.yaxis.ticker = FixedTicker(ticks=list(quantity.ticks))
         if quantity.threshold is not None:
@@ -111,26 +111,26 @@ class OrbitPlots:
             self._on_brush((max(begin, 0.0), end))
 
     def _scale(self, interval: tuple[float, float] | None) -> None:
-        """Set the axes; the axis of time covers the interval, or the longest orbit."""
+        """Set the ranges of the axes. The axis of time covers the interval; without an interval, the longest orbit."""
         drawn = [curves for _, curves in self._orbits if curves.histories[_FIRST].line[0].size]
         if not drawn:
             return
         earliest = min(float(curves.histories[_FIRST].line[0][0]) for curves in drawn)
         begin, end = interval or (earliest, max(float(curves.orbit.t[-1]) for curves in drawn))
         if end > earliest:
-            set_range(self._times, max(begin, earliest), end)
+            set_range(self._x_range, max(begin, earliest), end)
         for quantity in ORBIT_QUANTITIES:
             histories = [curves.histories[quantity.name] for curves in drawn]
-            set_range(self._ranges[quantity.name], *quantity.limits(histories))
+            set_range(self._y_ranges[quantity.name], *quantity.limits(histories))
 
 
 def prepare() -> None:
-    """Compute the curves of a long orbit once: datashader compiles its code for them."""
+    """Compute the curves of a long orbit, so that datashader compiles its code now."""
     potential = CASES["III"]
     state = start_states(potential, SECTION, 0.2, np.zeros(1), np.full(1, 0.1))[0]
     compute_orbit_curves(potential, integrate_orbit(potential, state, 5000.0))
 
 
 def _brush() -> BoxSelectTool:
-    """Return a tool to draw an interval of time. Without renderers, the curves keep their look."""
+    """Return a tool to draw an interval of time. With renderers, it would change the look of the curves."""
     return BoxSelectTool(dimensions="width", renderers=[])

@@ -6,7 +6,7 @@ import math
 
 from plots.pictures.orbit_curves import OrbitCurves
 
-# Number of samples that are drawn: a longer path would fill the picture.
+# Largest number of samples that are drawn. A longer path would fill the picture.
 _MOST_SAMPLES = 3000
 # Largest number of points of the drawn line.
 _MOST_POINTS = 600
@@ -20,8 +20,8 @@ def path_picture(curves: OrbitCurves, colour: str) -> str:
     step = max(1, math.ceil(x.size / _MOST_POINTS))
     window = curves.window
     scale = _SIDE / window.width
-    places = zip((x[::step] - window.x_low) * scale, (window.ordinate_high - y[::step]) * scale, strict=True)
-    points = [f"{across:.1f},{down:.1f}" for across, down in places]
+    pixels = zip((x[::step] - window.x_low) * scale, (window.ordinate_high - y[::step]) * scale, strict=True)
+    points = [f"{left:.1f},{top:.1f}" for left, top in pixels]
     if not points:
         return ""
     start_x, start_y = points[0].split(",")

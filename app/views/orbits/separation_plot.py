@@ -1,4 +1,4 @@
-"""The distance of the chosen orbit from the orbit that was chosen before."""
+"""The distance between the chosen orbit and the previously chosen orbit."""
 
 from __future__ import annotations
 
@@ -14,14 +14,15 @@ from plots.pictures.palette import PALETTES
 
 TITLE = "Distance of two orbits"
 LEAST = 1e-17
-"""Smallest distance on the logarithmic axis, dimensionless."""
+"""Smallest distance on the logarithmic axis (dimensionless)."""
 
 
 class SeparationPlot:
     """Draws the distance in phase space against time, on a logarithmic axis, while there are two orbits."""
 
     def __init__(self, state: ViewState) -> None:
-        self._times, self._distances = Range1d(0.0, 10.0), Range1d(LEAST, 10.0)
+        self._x_range = Range1d(0.0, 10.0)
+        self._y_range = Range1d(LEAST, 10.0)
         self._source = ColumnDataSource({"t": [], "distance": []}, name="separation_source")
         self._pair = TextPane("", name="pair", margin=(0, 10), css_classes=["quiet"])
         self._view = pn.Column(margin=0, sizing_mode="stretch_width", visible=False)
@@ -29,8 +30,8 @@ class SeparationPlot:
         state.follow(lambda name: self._line.update(line_color=PALETTES[name].orbits[1]), "palette")
 
     def build(self) -> list[pn.viewable.Viewable]:
-        """Make the figure, and the line of text that names the orbits."""
-        plot = history_figure("separation", TITLE, y_axis_type="log", x_range=self._times, y_range=self._distances)
+        """Return the view with the figure and the line of text that names the orbits."""
+        plot = history_figure("separation", TITLE, y_axis_type="log", x_range=self._x_range, y_range=self._y_range)
         plot.add_glyph(self._source, self._line)
         self._view.objects = [pn.pane.Bokeh(plot, margin=0), self._pair]
         return [self._view]
@@ -42,6 +43,6 @@ class SeparationPlot:
             return
         distance = np.maximum(separation.distance, LEAST)
         self._source.data = {"t": separation.t, "distance": distance}
-        set_range(self._times, 0.0, float(separation.t[-1]))
-        set_decades(self._distances, float(distance.min()), 10.0)
+        set_range(self._x_range, 0.0, float(separation.t[-1]))
+        set_decades(self._y_range, float(distance.min()), 10.0)
         self._pair.object = f"Orbits {pair[0] + 1} and {pair[1] + 1}"

@@ -26,19 +26,19 @@ ANALYSIS_LABELS = {
 
 
 class LayerSwitches:
-    """Switches of the layers, which write to the view state and follow it.
+    """Switches of the layers. They write to the view state and follow it.
 
-    Each switch is a widget: in a common widget, a change by the user would undo a change that the server has just sent.
+    Each switch is a widget of its own: in a common widget, a change by the user would undo a change just sent by the server.
     """
 
     def __init__(self, state: ViewState) -> None:
         self._state = state
         self.switches = {name: self._make(layer) for name, layer in LAYERS.items()}
-        # Choices of settings, which are made when they are first needed.
+        # Choices of settings, by name of the setting. A choice is made when it is first needed.
         self._choices: dict[str, SegmentedControl] = {}
 
     def parts(self) -> list[pn.viewable.Viewable]:
-        """Return the switches, and below each switch that is on, the choices of its layer."""
+        """Return the switches; each switch that is on is followed by the choices of its layer."""
         return [part for layer in LAYERS.values() for part in (self.switches[layer.name], *self._choices_of(layer))]
 
     def _choices_of(self, layer: Layer) -> list[SegmentedControl]:
@@ -46,17 +46,18 @@ class LayerSwitches:
 
     def _make(self, layer: Layer) -> Switches:
         """Make the switch of a layer."""
-        on = [layer.title]
-        switch = Switches(label="Layer", options=on, margin=(0, 10, 4, 10))
-        self._state.follow(lambda layers: switch.param.update(value=on if layer.name in layers else []), "layers")
+        options = [layer.title]
+        switch = Switches(label="Layer", options=options, margin=(0, 10, 4, 10))
+        self._state.follow(lambda layers: switch.param.update(value=options if layer.name in layers else []), "layers")
         switch.param.watch(lambda event: self._write(layer.name, on=bool(event.new)), "value")
         return switch
 
     def _choice(self, setting: Setting) -> SegmentedControl:
         """Return the choice of a setting."""
         if setting.name not in self._choices:
-            first, *others = ((name.capitalize(), value) for name, value in setting.choices.items())
-            labels = dict([(f"{setting.word} {first[0]}", first[1]), *others])
+            # The first label also has the word of the setting.
+            (first_label, first_value), *others = ((name.capitalize(), value) for name, value in setting.choices.items())
+            labels = {f"{setting.word} {first_label}": first_value, **dict(others)}
             choice = self._choices[setting.name] = SegmentedControl(label=setting.title, options=labels, margin=(6, 10))
             self._state.follow(lambda settings: choice.param.update(value=settings[setting.name]), "settings")
             choice.param.watch(lambda event: self._write_setting(setting, event.new), "value")
@@ -67,14 +68,14 @@ class LayerSwitches:
             self._state.switch_layer(name, on=on)
 
     def _write_setting(self, setting: Setting, value: Any) -> None:
-        # Without an option, the widget only follows the state.
+        # Without a chosen option, the widget only follows the state.
         if value in setting.choices.values():
             with pn.io.hold():
                 self._state.param.update(settings={**self._state.settings, setting.name: value})
 
 
 class ComparisonSwitch:
-    """A switch that compares later views with the present view, and follows the view state.
+    """A switch that compares later views with the present view. It follows the view state.
 
     Parameters
     ----------
@@ -85,15 +86,16 @@ class ComparisonSwitch:
     """
 
     def __init__(self, state: ViewState, swap: Callable[[], None]) -> None:
-        self._state, self._on = state, ["Compare with this view"]
-        self.switch = Switches(label="Comparison", options=self._on, margin=(0, 10, 4, 10))
+        self._state = state
+        self._options = ["Compare with this view"]
+        self.switch = Switches(label="Comparison", options=self._options, margin=(0, 10, 4, 10))
         self.view = TextPane("", sizing_mode="stretch_width", margin=(0, 10), css_classes=["quiet"])
         self.swap = button("Swap the views", swap, kind="light", margin=0)
         state.follow(self._show, "compared")
         self.switch.param.watch(lambda event: self._take(bool(event.new)), "value")
 
     def parts(self) -> list[pn.viewable.Viewable]:
-        """Return the switch and, while it is on, the title of the other view and the button."""
+        """Return the switch. While it is on, also return the title of the other view and the button."""
         return [self.switch, *([self.view, self.swap] if self._state.compared is not None else [])]
 
     def _take(self, on: bool) -> None:
@@ -102,12 +104,12 @@ class ComparisonSwitch:
                 self._state.compare(on=on)
 
     def _show(self, compared: View | None) -> None:
-        self.switch.value = [] if compared is None else self._on
+        self.switch.value = [] if compared is None else self._options
         self.view.object = escape(compared.title) if compared is not None else ""
 
 
 def analysis_tabs(state: ViewState) -> SegmentedControl:
-    """Return the tabs of the analyses, which write to the view state and follow it."""
+    """Return the tabs of the analyses. They write to the view state and follow it."""
     options = {label: analysis for analysis, label in ANALYSIS_LABELS.items()}
     tabs = SegmentedControl(label="Analysis", options=options, margin=(0, 10), css_classes=["segmented", "narrow", "tight"])
     return bind(tabs, state, "analysis")

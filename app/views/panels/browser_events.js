@@ -1,54 +1,57 @@
 // @ts-check
 /** Events and services of the browser: history, width, keys pressed anywhere on the page, theme, touch and the clipboard. */
 
-// Elements that use letters, elements that use arrows, and elements that Enter presses.
+/** Elements that use letters. */
 const TYPING = `textarea, select, [contenteditable]:not([contenteditable=false]), [role=textbox], [role=searchbox],
   [role=combobox], [role=listbox], [role=menu], [role=menubar], [role=spinbutton], [role=grid], [role=tree],
   [role=alertdialog], [role=dialog]:not([aria-modal=false]),
   input:not([type=range], [type=checkbox], [type=radio], [type=button])`
+/** Elements that use arrow keys. */
 const MOVING = `[type=range], [type=radio], [role=slider], [role=radio], [role=radiogroup], [role=tab], [role=tablist],
   [role=toolbar], [role=group]`
+/** Elements that the Enter key presses. */
 const PRESSED = "button, a[href], summary, input, [role=button]"
-// Least time between two messages of a key that is held down.
+/** Smallest time between two messages of a key that is held down, in ms. */
 const REST_MS = 100
-// An opened drawer reaches the page after a few messages: how often to look for it, and the time between two tries.
+/** Number of tries to find an opened drawer, which reaches the page after a few messages. */
 const DRAWER_TRIES = 20
+/** Time between two tries, in ms. */
 const WAIT_MS = 50
 
 // The target of an event is only the outermost shadow host. Its path contains all elements.
-/** @type {(event: Event, places: string) => boolean} */
-const comes_from = (event, places) => event.composedPath().some(node => node instanceof Element && node.matches(places))
+/** @type {(event: Event, selector: string) => boolean} */
+const comesFrom = (event, selector) => event.composedPath().some(node => node instanceof Element && node.matches(selector))
 
 /** @param {any} node */
-const opens_text = node => node.popoverTargetElement?.matches(":popover-open")
+const opensHelpText = node => node.popoverTargetElement?.matches(":popover-open")
 
 /** @param {KeyboardEvent} event @param {string[]} keys @returns {string | null} the key, if the page uses it here */
-function key_of(event, keys) {
+function pageKey(event, keys) {
   if (event.defaultPrevented || event.isComposing || event.ctrlKey || event.altKey || event.metaKey) return null
-  const named = event.key.length > 1
-  if (named && event.shiftKey) return null
-  const key = event.key === "=" ? "+" : named ? event.key : event.key.toLowerCase()
-  const closes = key === "Escape" && comes_from(event, ".drawer")
-  if (!keys.includes(key) || (comes_from(event, TYPING) && !closes)) return null
+  const isNamed = event.key.length > 1
+  if (isNamed && event.shiftKey) return null
+  const key = event.key === "=" ? "+" : isNamed ? event.key : event.key.toLowerCase()
+  const closesDrawer = key === "Escape" && comesFrom(event, ".drawer")
+  if (!keys.includes(key) || (comesFrom(event, TYPING) && !closesDrawer)) return null
   // The browser itself closes an open help text.
-  if (key === "Escape" && event.composedPath().some(opens_text)) return null
-  if (key === "Enter" && comes_from(event, PRESSED)) return null
-  return key.startsWith("Arrow") && comes_from(event, MOVING) ? null : key
+  if (key === "Escape" && event.composedPath().some(opensHelpText)) return null
+  if (key === "Enter" && comesFrom(event, PRESSED)) return null
+  return key.startsWith("Arrow") && comesFrom(event, MOVING) ? null : key
 }
 
-// navigator.clipboard is missing over http, except on localhost, and the browser may refuse its use.
+// Over http, except on localhost, navigator.clipboard is missing. The browser may also refuse its use.
 /** @type {(text: string) => Promise<boolean>} */
 const copy = text =>
   Promise.resolve()
     .then(() => navigator.clipboard.writeText(text))
     .then(
       () => true,
-      () => copy_selected(text),
+      () => copySelection(text),
     )
 
 /** @param {string} text */
-function copy_selected(text) {
-  const focused = focused_deep()
+function copySelection(text) {
+  const focused = focusedElement()
   const area = document.createElement("textarea")
   area.value = text
   area.style.cssText = "position:fixed;opacity:0"
@@ -65,24 +68,24 @@ function copy_selected(text) {
  *
  * @type {(root: Document | ShadowRoot, selector: string) => HTMLElement | null}
  */
-function find_deep(root, selector) {
+function findElement(root, selector) {
   for (const element of root.querySelectorAll("*")) {
     if (element instanceof HTMLElement && element.matches(selector)) return element
-    const inside = element.shadowRoot && find_deep(element.shadowRoot, selector)
-    if (inside) return inside
+    const descendant = element.shadowRoot && findElement(element.shadowRoot, selector)
+    if (descendant) return descendant
   }
   return null
 }
 
 /** The element in focus, also within shadow roots. @returns {HTMLElement | null} */
-function focused_deep() {
+function focusedElement() {
   let focused = document.activeElement
   while (focused?.shadowRoot?.activeElement) focused = focused.shadowRoot.activeElement
   return focused instanceof HTMLElement ? focused : null
 }
 
 /** Remove the frame that Bokeh draws around a picture in focus, unless the keyboard moved the focus. @param {Event} event */
-function frame_focus(event) {
+function updateFocusFrame(event) {
   const [focused] = event.composedPath()
   if (focused instanceof HTMLElement && focused.matches(".bk-events")) {
     focused.style.outlineWidth = focused.matches(":focus-visible") ? "" : "0"
@@ -90,90 +93,90 @@ function frame_focus(event) {
 }
 
 /** Focus the first control of the drawer, once the drawer is on the page. @param {number} tries */
-function focus_drawer(tries) {
-  const drawer = find_deep(document, ".drawer")?.shadowRoot
-  const control = drawer && find_deep(drawer, "button, input, select, textarea")
+function focusDrawer(tries) {
+  const drawer = findElement(document, ".drawer")?.shadowRoot
+  const control = drawer && findElement(drawer, "button, input, select, textarea")
   // The drawer may have focused a control already.
   if (control) {
-    if (!find_deep(document, ".drawer")?.matches(":focus-within")) control.focus({preventScroll: true})
-  } else if (tries > 0) setTimeout(() => focus_drawer(tries - 1), WAIT_MS)
+    if (!findElement(document, ".drawer")?.matches(":focus-within")) control.focus({preventScroll: true})
+  } else if (tries > 0) setTimeout(() => focusDrawer(tries - 1), WAIT_MS)
 }
 
 /** @param {{model: any, el: HTMLElement}} component */
 export function render({model, el}) {
-  let last = -REST_MS
+  let lastKeyTime = -REST_MS
   /** Where the focus was when a drawer was opened. @type {HTMLElement | null} */
   let opener = null
-  const listen = (/** @type {KeyboardEvent} */ event) => {
-    const key = key_of(event, model.keys)
+  const sendKey = (/** @type {KeyboardEvent} */ event) => {
+    const key = pageKey(event, model.keys)
     if (key === null) return
     if (key !== "Escape") event.preventDefault()
     // A key that is held down repeats faster than pictures are painted.
-    if (event.repeat && event.timeStamp - last < REST_MS) return
-    last = event.timeStamp
+    if (event.repeat && event.timeStamp - lastKeyTime < REST_MS) return
+    lastKeyTime = event.timeStamp
     model.send_msg({key})
   }
   el.setAttribute("aria-hidden", "true")
-  document.addEventListener("keydown", listen)
-  for (const name of ["focusin", "keydown"]) document.addEventListener(name, frame_focus)
-  const tell_theme = () => model.send_msg({dark: document.documentElement.dataset.theme === "dark"})
-  document.addEventListener("themechange", tell_theme)
-  // Entries of the history are numbered: a higher number makes an entry, the same number replaces the address.
+  document.addEventListener("keydown", sendKey)
+  for (const name of ["focusin", "keydown"]) document.addEventListener(name, updateFocusFrame)
+  const sendTheme = () => model.send_msg({dark: document.documentElement.dataset.theme === "dark"})
+  document.addEventListener("themechange", sendTheme)
+  // Entries of the history are numbered. An address with a higher number makes a new entry; otherwise, it replaces the address.
   const page = crypto.getRandomValues(new Uint32Array(1))[0]
   let entry = 0
   // Number of steps through the history. An address that the server sent before it knew the last step is out of date.
   let steps = 0
   history.replaceState({page, entry}, "")
   model.on("address", () => {
-    const {link, entry: next, steps: known} = model.address
-    if (known !== steps) return
-    history[next > entry ? "pushState" : "replaceState"]({page, entry: next}, "", link)
-    entry = next
+    const {link, entry: newEntry, steps: knownSteps} = model.address
+    if (knownSteps !== steps) return
+    history[newEntry > entry ? "pushState" : "replaceState"]({page, entry: newEntry}, "", link)
+    entry = newEntry
   })
-  const tell_entry = (/** @type {PopStateEvent} */ event) => {
+  const sendEntry = (/** @type {PopStateEvent} */ event) => {
     entry = event.state?.page === page ? event.state.entry : 0
     steps++
     model.send_msg({link: window.location.search, entry, steps})
   }
-  window.addEventListener("popstate", tell_entry)
+  window.addEventListener("popstate", sendEntry)
   // The stylesheet sets this variable only in the layout of a phone.
-  const tell_if_narrow = () => {
+  const sendIfNarrow = () => {
     const frame = document.querySelector(".frame")
     if (frame === null || getComputedStyle(frame).getPropertyValue("--map-side") === "") return
-    window.removeEventListener("resize", tell_if_narrow)
+    window.removeEventListener("resize", sendIfNarrow)
     model.send_msg({narrow: true})
   }
-  window.addEventListener("resize", tell_if_narrow)
-  // The buttons of the pictures.
+  window.addEventListener("resize", sendIfNarrow)
+  // A button of a picture sends the name of the picture.
   const enlarge = (/** @type {Event} */ event) => {
     const button = event.composedPath().find(node => node instanceof HTMLElement && node.matches("button[data-picture]"))
     if (button instanceof HTMLElement) model.send_msg({enlarge: button.dataset.picture})
   }
   document.addEventListener("click", enlarge)
-  // Two fingers that move the same way on a map would scroll the page.
-  const hold_page = (/** @type {TouchEvent} */ event) => {
-    if (event.touches.length > 1 && comes_from(event, ".map")) event.preventDefault()
+  // The browser would scroll the page when two fingers move the same way on a map.
+  const holdPage = (/** @type {TouchEvent} */ event) => {
+    if (event.touches.length > 1 && comesFrom(event, ".map")) event.preventDefault()
   }
-  document.addEventListener("touchstart", hold_page, {passive: false})
+  document.addEventListener("touchstart", holdPage, {passive: false})
   model.on("lifecycle:remove", () => {
-    document.removeEventListener("touchstart", hold_page)
+    document.removeEventListener("touchstart", holdPage)
     document.removeEventListener("click", enlarge)
-    window.removeEventListener("popstate", tell_entry)
-    window.removeEventListener("resize", tell_if_narrow)
-    document.removeEventListener("keydown", listen)
-    for (const name of ["focusin", "keydown"]) document.removeEventListener(name, frame_focus)
-    document.removeEventListener("themechange", tell_theme)
+    window.removeEventListener("popstate", sendEntry)
+    window.removeEventListener("resize", sendIfNarrow)
+    document.removeEventListener("keydown", sendKey)
+    for (const name of ["focusin", "keydown"]) document.removeEventListener(name, updateFocusFrame)
+    document.removeEventListener("themechange", sendTheme)
   })
-  if (document.documentElement.dataset.theme === "dark") tell_theme()
+  if (document.documentElement.dataset.theme === "dark") sendTheme()
   model.on("command", async () => {
     const {name, text} = model.command
     if (name === "copy") model.send_msg({copied: await copy(text ?? window.location.href)})
     else if (name === "focus") {
-      opener = focused_deep()
-      focus_drawer(DRAWER_TRIES)
+      opener = focusedElement()
+      focusDrawer(DRAWER_TRIES)
     } else if (name === "return") opener?.focus({preventScroll: true})
     else history.go(name === "back" ? -1 : 1)
   })
   if (matchMedia("(pointer: coarse)").matches) model.send_msg({touch: true})
-  tell_if_narrow()
+  sendIfNarrow()
 }

@@ -19,7 +19,7 @@ from plots.layers import table
 _TITLES = {"well": "the well"} | {name: picture.title for name, picture in table.PICTURES.items()}
 
 PICTURE_KEYS: Mapping[str, str] = MappingProxyType({str(number): name for number, name in enumerate(PICTURES, 1)})
-"""The picture that each key enlarges, or shows at its usual size again."""
+"""The picture that each key enlarges. A second press shows the picture at its usual size again."""
 
 WINDOW_KEYS: Mapping[str, str] = MappingProxyType(
     {
@@ -75,8 +75,8 @@ class BrowserEvents(JSComponent):
     """
 
     keys = param.List(default=list(KEYS))
-    address = param.Dict(default={}, doc="link of the view, its entry in the history, steps followed; number, see `command`")
-    command = param.Dict(default={}, doc="name, as back or copy; text to copy; number that makes repeats differ")
+    address = param.Dict(default={}, doc="link of the view, its entry in the history, steps followed; number: see `command`")
+    command = param.Dict(default={}, doc="name, such as back or copy; text to copy; number: makes equal commands differ")
 
     _esm = Path(__file__).with_suffix(".js")
 
@@ -97,7 +97,7 @@ class BrowserEvents(JSComponent):
         self.on_msg(lambda event: self._receive(event.data))
 
     def copy(self, text: str | None) -> None:
-        """Copy a text, or with None the address of the page; browsers allow copying only soon after a click or a key."""
+        """Copy a text; None copies the address of the page. Browsers allow copying only soon after a click or a key."""
         self._command("copy", text=text)
 
     def write_link(self, link: str, entry: int) -> None:
@@ -105,7 +105,7 @@ class BrowserEvents(JSComponent):
         self.address = {"link": link, "entry": entry, "steps": self._steps, "number": next(self._numbers)}
 
     def follow_steps(self, steps: int) -> None:
-        """Note the number of steps in the history that the view has followed; addresses written for fewer steps are ignored."""
+        """Note the number of steps in the history that the view has followed. Addresses with fewer steps are ignored."""
         self._steps = steps
 
     def go_back(self) -> None:

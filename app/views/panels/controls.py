@@ -29,9 +29,9 @@ LOCK = "Lock colour scale"
 AXES = "Axes …"
 """Label of the button for other slices."""
 
-# Number of characters that fit the button; the facts below the case contain a longer title of a slice.
+# Number of characters that fit on the button. The facts below the case contain a longer title of a slice.
 _LONGEST_TITLE = 12
-# The slices with their own buttons; other slices are chosen by their axes.
+# The slices that have buttons. Other slices are chosen by their axes.
 _PLANES = (Plane.X_Y, Plane.X_PX, Plane.X_H)
 # Notes below the slider, by the place of the axis h.
 _ON_AXIS = {0: "Energy is the horizontal axis here", 1: "Energy is the vertical axis here"}
@@ -41,9 +41,11 @@ PLAY = "▶ Play"
 STOP = "■ Stop"
 """Label of the button that stops the animation."""
 
-# Space beside the rail of a slider: half the width of its thumb, see theme.css.
+# Space at the ends of the rail of a slider: half the width of the thumb, see theme.css.
 _THUMB = "9px"
+# Style of a tick below the slider.
 _TICK = "position:absolute;left:{share:.2%};width:1px;height:6px;background:var(--ui-edge-strong)"
+# Style of the label of a tick.
 _TICK_LABEL = (
     "position:absolute;top:7px;left:clamp(0px, calc({share:.2%} - 80px), calc(100% - 160px));width:160px;text-align:center"
 )
@@ -51,7 +53,7 @@ _TICK_LABEL = (
 
 @dataclass(frozen=True)
 class ControlActions:
-    """Actions of the controls other than changes of the view state.
+    """Actions of the controls that are not changes of the view state.
 
     Attributes
     ----------
@@ -83,7 +85,7 @@ class Controls:
         self.case = SegmentedControl(
             label="Case",
             options=list(CASES),
-            value=self._case(),
+            value=self._listed_case(),
             css_classes=["segmented", "half", "choice"],
             margin=(0, 0, 0, 10),
         )
@@ -95,7 +97,7 @@ class Controls:
             css_classes=["segmented", "narrow", "half", "choice"],
         )  # fmt: skip
         # Panel replaces a value of None by the first option when it makes a widget.
-        self.plane.value = self._plane()
+        self.plane.value = self._listed_plane()
         self.axes = button(AXES, actions.choose_slice, kind="light", css_classes=["half", "choice"], margin=(8, 10, 8, 4))
         self.ticks = TextPane(sizing_mode="stretch_width", height=24, margin=(0, 10), css_classes=["ticks"])
         self.energy = EnergySlider(
@@ -127,7 +129,7 @@ class Controls:
         return [*system, *energy, *(part for fold in self._folds for part in fold.parts())]
 
     def _begin_touch(self) -> None:
-        """Adapt to touch input: close sections, which leaves more room for the maps."""
+        """Adapt to touch input: close the sections, to leave more room for the maps."""
         for fold in self._folds:
             fold.open(False)
 
@@ -147,9 +149,9 @@ class Controls:
 
     def _make_lock(self) -> pn.viewable.Viewable:
         """Make the switch that locks the scale of escape times."""
-        state, on = self.state, [LOCK]
-        lock = Switches(label="Escape times", options=on, margin=(0, 10))
-        state.follow(lambda times: lock.param.update(value=on if times is not None else []), "lock_times")
+        options = [LOCK]
+        lock = Switches(label="Escape times", options=options, margin=(0, 10))
+        self.state.follow(lambda times: lock.param.update(value=options if times is not None else []), "lock_times")
         lock.param.watch(lambda event: self._take_lock(bool(event.new)), "value")
         return lock
 
@@ -176,18 +178,18 @@ class Controls:
             with pn.io.hold():
                 self.state.show_system(review_catalogue_entry(case))
 
-    def _case(self) -> str | None:
+    def _listed_case(self) -> str | None:
         """Return the case of the system in view; None for other potentials."""
         return self.state.system.case if self.state.system.case in CASES else None
 
     def _follow_plane(self) -> None:
-        set_value(self.plane, self._plane())
+        set_value(self.plane, self._listed_plane())
         title = f"{self.state.plane.title} …"
         is_other = self.plane.value is None
         self.axes.label = title if is_other and len(title) <= _LONGEST_TITLE else AXES
         self._describe(escape_text(self.state.plane.title) if is_other and self.axes.label == AXES else "")
 
-    def _plane(self) -> Slice | None:
+    def _listed_plane(self) -> Slice | None:
         """Return the slice in view if it has a button; None for other slices."""
         plane: Slice = self.state.plane
         return next((each for each in _PLANES if each == plane), None)
@@ -199,15 +201,15 @@ class Controls:
                 self.state.show_slice(plane)
 
     def _take_energy(self, energy: float) -> None:
-        # All changes that follow are sent in one message.
+        # Send this change and all its consequences in one message.
         with pn.io.hold():
             self.state.energy = energy
 
     def _follow_system(self) -> None:
         """Show the case, the energies and the facts of the system."""
         state, energies = self.state, self.state.energies
-        self.case.value = self._case()
-        self.other.color = "light" if self._case() else "primary"
+        self.case.value = self._listed_case()
+        self.other.color = "light" if self._listed_case() else "primary"
         self.energy.param.update(low=energies.low, high=energies.high, decimals=energies.decimals)
         self.ticks.object = _ticks(state.potential.escape_energy, energies)
         self.exact_energy.step = 10.0**-energies.decimals
@@ -215,7 +217,7 @@ class Controls:
         self._follow_energy()
 
     def _describe(self, plane: str) -> None:
-        """Write the formula, the outcomes, and the slice (HTML), which is empty if a button names it."""
+        """Write the formula, the outcomes, and the title of the slice (HTML); the title is empty if a button has it."""
         reviewed = self.state.reviewed
         formula, _, _ = reviewed.formula.partition(";")
         mass = reviewed.potential.mass
@@ -229,18 +231,18 @@ class Controls:
 
     def _follow_energy(self) -> None:
         state = self.state
-        on_h = state.plane.energy_axis is not None
+        is_energy_axis = state.plane.energy_axis is not None
         is_below, is_above = state.energy < state.energies.low, state.energy > state.energies.high
         place = "below" if is_below else "above" if is_above else ""
         notes = [f"h = {format_number(state.energy, 12)}, {place} the slider"] if place else []
         if state.potential.rotation:
             notes.append(f"C = {format_number(state.potential.jacobi_constant(state.energy), 9)}, the Jacobi constant")
         note = "; ".join(notes)
-        self.energy.param.update(disabled=on_h, note=_ON_AXIS[state.plane.energy_axis] if on_h else note)
-        self.exact_energy.disabled = on_h
-        for shown in (self.energy, self.exact_energy):
-            shown.show(state.energy)
-        self.play.disabled = on_h
+        self.energy.param.update(disabled=is_energy_axis, note=_ON_AXIS[state.plane.energy_axis] if is_energy_axis else note)
+        self.exact_energy.disabled = is_energy_axis
+        for control in (self.energy, self.exact_energy):
+            control.show(state.energy)
+        self.play.disabled = is_energy_axis
 
 
 def _outcomes(potential: Potential) -> str:

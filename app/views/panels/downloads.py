@@ -20,14 +20,14 @@ from engine import EscapeMap
 from plots.texts.exports import curves_csv, file_stem, netcdf_bytes, orbits_csv, python_lines
 
 File = tuple[str, Callable[[], bytes]]
-"""Name of a file, and the function that makes its content, which may take seconds."""
+"""Name of a file, and the function that makes its content. Calling the function may take seconds."""
 
 _NO_MAP = "The map is not complete yet."
 _NO_CURVES = "There are no curves against energy yet."
 
 
 class Downloads:
-    """Buttons that copy links, and that make files when they are pressed."""
+    """Buttons that copy links, and buttons that make files."""
 
     def __init__(
         self,
@@ -50,14 +50,14 @@ class Downloads:
         self._enable()
 
     def build(self) -> list[pn.viewable.Viewable]:
-        """Return the buttons, the parts of a column."""
+        """Return the parts of a column: the buttons under their titles."""
         hint = TextPane(f"<span class='quiet'>{NOT_ALLOWED}</span>", visible=self.embed.disabled)
         files = [self.maps, self.orbits, self.curves, self.script]
         titles = [TextPane(f"<h3>{title}</h3>", margin=(6, 10, 0, 10)) for title in ("Figure", "Data")]
         return [self.link, self.embed, hint, titles[0], *self.figure.build(), titles[1], *files, self.saver]
 
     async def save(self, file: File) -> None:
-        """Make a file in a thread, which does not delay the event loop, and send it to the browser."""
+        """Make a file in a thread, because making it would delay the event loop, and send the file to the browser."""
         name, make = file
         self.saver.save(name, await asyncio.to_thread(make))
 
@@ -86,12 +86,12 @@ class Downloads:
         return self._file_name(".py"), python_lines(self._map().spec, self._state.system, states).encode
 
     def _save_on_click(self, file: Callable[[], File]) -> Callable[[], None]:
-        # `file()` takes the results at the time of the click.
+        # `file()` uses the results at the time of the click.
         return lambda: pn.state.execute(partial(self.save, file()))
 
     def _enable(self) -> None:
-        for one in (self.maps, self.script):
-            one.disabled = self._results.whole_map is None
+        for map_button in (self.maps, self.script):
+            map_button.disabled = self._results.whole_map is None
         self.curves.disabled = self._results.curves is None
         self.orbits.disabled = not any(one.orbit is not None for one in self._results.orbits)
 

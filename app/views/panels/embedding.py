@@ -1,4 +1,4 @@
-"""A picture in a frame of another page: the HTML of the frame, and the link in it to the whole page."""
+"""A picture in a frame of another page: the HTML of the frame, and the link from the frame to the whole page."""
 
 from __future__ import annotations
 
@@ -33,7 +33,8 @@ def embed_code(address: str, state: ViewState) -> str:
     state
         The view state.
     """
-    source, title = address + write_link(state, embedded=True), f"Escapes: {state.system.title}"
+    source = address + write_link(state, embedded=True)
+    title = f"Escapes: {state.system.title}"
     return (
         f'<iframe src="{escape(source)}" title="{escape(title)}" width="{_SIDE}" height="{_SIDE}" '
         'style="border: 0" loading="lazy"></iframe>'

@@ -30,19 +30,21 @@ from plots.printed.figure_files import (
 from plots.printed.figure_style import FigureFormat, FigureStyle
 
 Make = Callable[[FigureFormat, FigureStyle], bytes]
-"""Makes the content of a figure's file, which takes seconds."""
+"""Makes the content of a figure's file. This takes seconds."""
 
 # Titles of the figures that are not single maps.
 ALL_MAPS, WELL, ORBITS, STATISTICS, CURVES = "All maps", "The well in (x, y)", "Orbits", "Statistics", "Curves against energy"
 FIGURES = (ALL_MAPS, *(title for name, title in TITLES.items() if name != "curves"), WELL, ORBITS, STATISTICS, CURVES)
 """Titles of all figures, in the order of the list."""
 
+# Option of the switch for titles and provenance.
 _TITLES = "Titles"
 # Label and step of the boxes for the numbers of the style.
 _NUMBERS = {"width": ("Width, cm", 0.5), "dpi": ("Pixels/inch", 50.0), "font_size": ("Letters, pt", 0.5)}
 Send = Callable[[str, bytes | None], None]
-"""Sends the name and the content of a file to the browser; the content is None if it could not be made."""
+"""Sends the name and the content of a file to the browser. The content is None if there is an error."""
 
+# Message while a figure is made.
 _MAKING = "The figure is made …"
 
 
@@ -56,9 +58,9 @@ class FigureForm:
     saver
         Sends files to the browser.
     name
-        Returns the whole name of a file for the end of the name.
+        Returns the name of a file, given the end of the name.
     on_copied
-        Handles whether an image could be copied.
+        Takes whether the browser has copied the image.
     """
 
     def __init__(
@@ -94,7 +96,7 @@ class FigureForm:
         return [self.what, self.format, numbers, self.titles, pn.Row(self.save, self.copy, margin=0), self.text]
 
     def _offer(self) -> None:
-        """Offer the figures that the results allow, and the chosen figure, which the next map may allow."""
+        """Offer the figures that the results allow. Keep the chosen figure, because the next map may allow it again."""
         offered = {ALL_MAPS, self.what.value, *figure_choices(self._results, self._state)}
         self.what.options = [title for title in FIGURES if title in offered]
 
@@ -104,7 +106,7 @@ class FigureForm:
         return FigureStyle(**self._style, titles=bool(self.titles.value))
 
     def figure(self) -> tuple[str, Make]:
-        """Return a part of the file name, empty for all maps, and the function that makes the chosen figure.
+        """Return a part of the file name (empty for all maps), and the function that makes the chosen figure.
 
         Raises
         ------
@@ -139,7 +141,7 @@ class FigureForm:
             pn.state.execute(partial(self.make, partial(make, format, style), partial(send, self._name(f"{name}.{format}"))))
 
     async def make(self, make: Callable[[], bytes], send: Callable[[bytes | None], None]) -> None:
-        """Make a file in a thread, which does not delay the event loop, and send it, or send None and show an error."""
+        """Make a file in a thread, to keep the event loop free, and send it. After an error, show the error and send None."""
         self._say(_MAKING)
         try:
             content = await asyncio.to_thread(make)
@@ -155,7 +157,7 @@ class FigureForm:
 
 
 def figure_choices(shown: ShownResults, state: ViewState) -> dict[str, Make]:
-    """Return the figures that the results allow, by title. They use the present results even if the page changes later."""
+    """Return the figures that the results allow, by title. They use the present results, even if the page changes later."""
     choices: dict[str, Make] = {}
     curves = [one.curves for one in shown.orbits if one.curves is not None]
     frame = shown.whole_map

@@ -10,30 +10,30 @@ const make = (tag, attributes, ...children) => {
   return node
 }
 
-// A toolbar is a single stop of the Tab key. Arrow keys move from card to card.
-/** @type {Record<string, (place: number, count: number) => number>} */
-const STEPS = {ArrowRight: place => place + 1, ArrowLeft: place => place - 1, Home: () => 0, End: (_, count) => count - 1}
+// The Tab key stops once at a toolbar. Arrow keys move from card to card.
+/** @type {Record<string, (index: number, count: number) => number>} */
+const STEPS = {ArrowRight: index => index + 1, ArrowLeft: index => index - 1, Home: () => 0, End: (_, count) => count - 1}
 
 /** @param {KeyboardEvent} event @param {HTMLElement[]} buttons */
-function walk(event, buttons) {
-  const place = buttons.findIndex(button => button === event.target)
-  const next = buttons[STEPS[event.key]?.(place, buttons.length)]
-  if (place < 0 || next === undefined) return
+function moveFocus(event, buttons) {
+  const index = buttons.findIndex(button => button === event.target)
+  const next = buttons[STEPS[event.key]?.(index, buttons.length)]
+  if (index < 0 || next === undefined) return
   event.preventDefault()
-  buttons[place].tabIndex = -1
+  buttons[index].tabIndex = -1
   next.tabIndex = 0
   next.focus()
 }
 
 /**
- * A card with a line below its title, or with its caption as the description for screen readers.
+ * Make a card with a line below its title, or with its caption as the description for screen readers.
  *
- * @param {Card} card @param {number} place @param {(card: Card | null) => void} show
+ * @param {Card} card @param {number} index @param {(card: Card | null) => void} show
  */
-function make_card(card, place, show) {
+function makeCard(card, index, show) {
   // With loading set after src, the browser would fetch the picture at once, even in a closed gallery.
   const picture = make("img", {loading: "lazy", alt: card.alt, width: 112, height: 112, src: card.thumbnail})
-  const button = make("button", {type: "button", tabIndex: place ? -1 : 0}, make("span", {}, card.title), picture)
+  const button = make("button", {type: "button", tabIndex: index ? -1 : 0}, make("span", {}, card.title), picture)
   button.dataset.key = card.key
   if (card.line) {
     button.append(make("small", {}, card.line))
@@ -56,17 +56,17 @@ export function render({model, el}) {
   /** @type {Card | null} */
   let chosen = null
   const show = (/** @type {Card | null} */ card) => {
-    const shown = card ?? chosen
-    caption.replaceChildren(...(shown ? [make("b", {}, shown.title), ` ${shown.caption}`] : [model.hint]))
+    const described = card ?? chosen
+    caption.replaceChildren(...(described ? [make("b", {}, described.title), ` ${described.caption}`] : [model.hint]))
   }
   const strips = model.groups.map((/** @type {string} */ group) => {
     const strip = make("div", {})
     strip.setAttribute("role", "toolbar")
     strip.setAttribute("aria-label", `Gallery: ${group}`)
-    const shown = cards.filter(card => card.group === group)
-    strip.append(...shown.flatMap((card, place) => make_card(card, place, show)))
+    const groupCards = cards.filter(card => card.group === group)
+    strip.append(...groupCards.flatMap((card, index) => makeCard(card, index, show)))
     const buttons = [...strip.querySelectorAll("button")]
-    strip.addEventListener("keydown", event => walk(event, buttons))
+    strip.addEventListener("keydown", event => moveFocus(event, buttons))
     return make("section", {}, make("h3", {}, group), strip)
   })
   const body = make("div", {className: model.hint ? "gallery" : "gallery few"}, ...strips, ...(model.hint ? [caption] : []))

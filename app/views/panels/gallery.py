@@ -16,12 +16,12 @@ from app.views.components.texts import typeset
 from plots.layers.table import TITLES
 
 INVITATION = "Each pixel of the basins is a start, and its colour the exit through which its orbit escapes. Views to begin with:"
-"""Title of the cards on a page without orbits."""
+"""Title of the invitation: cards on a page without orbits."""
 
 HINT = "Each card opens a view with orbits to compare. Its caption appears here."
 """Text in place of a caption."""
 
-# Panel serves app/static below the address of the page, which ends in "app".
+# Panel serves app/static below the address of the page, and this address ends in "app".
 _THUMBNAILS = "app/static/gallery"
 
 _STYLE = """
@@ -78,7 +78,7 @@ class Gallery:
         return [self._make([_card(preset) for preset in PRESETS], groups=list(GROUPS), hint=HINT)]
 
     def invitation(self) -> pn.viewable.Viewable:
-        """Return some of the cards in one group, which a page without orbits shows."""
+        """Return the invitation: some of the cards in one group, for a page without orbits."""
         if self._invitation is None:
             cards = [
                 {**_card(preset), "group": INVITATION, "line": typeset(preset.invitation)}
@@ -90,14 +90,14 @@ class Gallery:
         return self._invitation
 
     def _invite(self) -> None:
-        """Show or hide the invitation, which is shown while there are no starts."""
+        """Show the invitation while there are no starts."""
         if self._invitation is not None:
             self._invitation.visible = self._state.starts == ()
 
     def _make(self, cards: list[dict[str, str]], **options: Any) -> GalleryCards:
-        shown = GalleryCards(cards=cards, sizing_mode="stretch_width", stylesheets=[_STYLE], **({"margin": 0} | options))
-        shown.on_msg(lambda event: self._receive(event.data))
-        return shown
+        gallery_cards = GalleryCards(cards=cards, sizing_mode="stretch_width", stylesheets=[_STYLE], **({"margin": 0} | options))
+        gallery_cards.on_msg(lambda event: self._receive(event.data))
+        return gallery_cards
 
     def _receive(self, message: Any) -> None:
         # A browser can send anything: unexpected messages are ignored.

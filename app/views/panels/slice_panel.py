@@ -20,12 +20,15 @@ from engine.slices.slice_text import AXIS_NAMES, default_range
 from engine.systems.parameters import symbol_of
 
 _HINT = "Starts move along the two axes. The energy decides one momentum, or the speed in a given direction."
+# Labels of the modes in which the energy determines the speed, by the angle of its direction.
 _ANGLES = {Coordinate.THETA: "speed, at angle θ from the x axis", Coordinate.BETA: "speed, at angle β from the radius"}
+# Initial values of the angles.
 _FIRST_ANGLE = {Coordinate.THETA: 0.0, Coordinate.BETA: 0.5 * math.pi}
 # Step of the boxes.
 _STEP = 0.05
 # What the energy determines: a momentum and its sign, or the speed and the angle of its direction.
 _Mode = tuple[Coordinate, int, Coordinate | None]
+# The modes by label.
 _MODES: dict[str, _Mode] = {
     "py > 0": (Coordinate.PY, 1, None),
     "py < 0": (Coordinate.PY, -1, None),
@@ -67,8 +70,8 @@ class SlicePanel:
         names = {_symbol(key): key for key in (*AXIS_NAMES, *system.parameter_names)}
         self._is_following = True
         try:
-            for axis, shown in zip(self.axes, plane.axes, strict=True):
-                axis.param.update(options=names, value=shown.key)
+            for axis_list, axis in zip(self.axes, plane.axes, strict=True):
+                axis_list.param.update(options=names, value=axis.key)
             self.mode.param.update(options=[text for text, mode in _MODES.items() if self._is_legal(mode)], value=_mode_of(plane))
         finally:
             self._is_following = False
@@ -87,18 +90,19 @@ class SlicePanel:
     def _held_boxes(self, plane: Slice) -> list[pn.viewable.Viewable]:
         """Make a box for each coordinate that is neither an axis nor determined by the energy."""
         values = dict(plane.fixed)
-        others = [c for c in (Coordinate.PX, Coordinate.PY) if c is not plane.decided and plane.decided is not Coordinate.SPEED]
+        has_speed = plane.decided is Coordinate.SPEED
+        momenta = [c for c in (Coordinate.PX, Coordinate.PY) if c is not plane.decided and not has_speed]
         angles = [angle for angle in _ANGLES if angle in values]
         boxes = [
             NumberBox(partial(self._take_held, c), values.get(c, 0.0), label=f"{c.symbol} =", step=_STEP)
-            for c in (Coordinate.X, Coordinate.Y, *others, *angles)
+            for c in (Coordinate.X, Coordinate.Y, *momenta, *angles)
             if c not in plane.axes
         ]
         return [flex_row(*boxes, gap="8px")] if boxes else []
 
     def _is_legal(self, mode: _Mode) -> bool:
         try:
-            self._changed(mode=mode)
+            self._change(mode=mode)
         except ValueError:
             return False
         return True
@@ -113,32 +117,33 @@ class SlicePanel:
             axis = Coordinate(event.new)
         axes = (axis, plane.ordinate) if place == 0 else (plane.abscissa, axis)
         if event.new == plane.axes[1 - place].key:
-            # If the other axis is chosen, the axes change places.
+            # A choice of the other axis exchanges the axes.
             axes = plane.ordinate, plane.abscissa
         self._submit(lambda: _with_axes(plane, axes))
 
     def _take(self, mode: _Mode) -> None:
         if not self._is_following:
-            self._submit(lambda: self._changed(mode=mode))
+            self._submit(lambda: self._change(mode=mode))
 
     def _take_held(self, coordinate: Coordinate, value: float) -> None:
-        self._submit(lambda: self._changed(fixed={**dict(self._state.plane.fixed), coordinate: value}))
+        self._submit(lambda: self._change(fixed={**dict(self._state.plane.fixed), coordinate: value}))
 
     def _take_range(self, low: float | None, high: float | None) -> None:
         axis = self._state.plane.parameter
         if axis is None:
             return
-        low, high = axis.low if low is None else low, axis.high if high is None else high
+        new_low = axis.low if low is None else low
+        new_high = axis.high if high is None else high
 
-        def changed() -> Slice:
-            new = ParameterAxis(axis.key, low, high, axis.system)
+        def change_range() -> Slice:
+            new_axis = ParameterAxis(axis.key, new_low, new_high, axis.system)
             plane = self._state.plane
-            axes = tuple(new if each is axis else each for each in plane.axes)
+            axes = tuple(new_axis if each is axis else each for each in plane.axes)
             return Slice(axes[0], axes[1], plane.solved, plane.sign, plane.fixed)
 
-        self._submit(changed)
+        self._submit(change_range)
 
-    def _changed(self, mode: _Mode | None = None, fixed: dict[Coordinate, float] | None = None) -> Slice:
+    def _change(self, mode: _Mode | None = None, fixed: dict[Coordinate, float] | None = None) -> Slice:
         """Return the slice of the state with another mode or other held values."""
         plane = self._state.plane
         held = dict(plane.fixed) if fixed is None else fixed
@@ -168,8 +173,8 @@ class SlicePanel:
         """Show the axes of the state in place of a refused choice."""
         self._is_following = True
         try:
-            for axis, shown in zip(self.axes, self._state.plane.axes, strict=True):
-                axis.value = shown.key
+            for axis_list, axis in zip(self.axes, self._state.plane.axes, strict=True):
+                axis_list.value = axis.key
         finally:
             self._is_following = False
 
@@ -185,13 +190,13 @@ def _symbol(key: str) -> str:
 def _mode_of(plane: Slice) -> str:
     """Return the label of the quantity that the energy determines on a slice."""
     if plane.decided is Coordinate.SPEED:
-        used = (*plane.axes, *dict(plane.fixed))
-        return next(text for angle, text in _ANGLES.items() if angle in used)
+        coordinates = (*plane.axes, *dict(plane.fixed))
+        return next(text for angle, text in _ANGLES.items() if angle in coordinates)
     return next(text for text, mode in _MODES.items() if mode == (plane.decided, plane.sign, None))
 
 
 def _with_axes(plane: Slice, axes: tuple[Any, Any]) -> Slice:
-    """Return a slice with other axes, with the same determined momentum and held values if the new axes permit them."""
+    """Return a slice with other axes. It keeps the determined momentum and the held values if the new axes permit them."""
     kept = tuple((c, value) for c, value in plane.fixed if c not in axes)
     for solved, sign, fixed in ((plane.solved, plane.sign, kept), (None, 1, kept), (None, 1, ())):
         try:

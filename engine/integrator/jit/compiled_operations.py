@@ -8,10 +8,10 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 
 LARGEST_CODE = 40_000
-"""Largest number of operations of one code if there is a limit. The largest code of the catalogue has about as many."""
+"""Largest number of operations of one code if there is a limit; the largest code of the catalogue has about as many."""
 
 SHARES = 4
-"""Number of equal shares of the limit, of which one account may use one."""
+"""Number of equal shares of the limit; an account may use one share."""
 
 _account: ContextVar[Hashable] = ContextVar("account", default=None)
 
@@ -21,9 +21,9 @@ class CompiledCodeLimitError(ValueError):
 
 
 class CompiledOperations:
-    """Counts the operations of all generated functions, which take 0.4 kB each, or 1 kB if compiled in this process.
+    """Counts the operations of all generated functions. An operation takes 0.4 kB, or 1 kB if compiled in this process.
 
-    Reserved code is always compiled and does not count.
+    Code that is reserved is always compiled, and does not count.
 
     Attributes
     ----------
@@ -51,7 +51,7 @@ class CompiledOperations:
             return frozenset(self._entries)
 
     def is_nearly_full(self) -> bool:
-        """Return whether less is left than the share of one account."""
+        """Return whether less than the share of one account is left."""
         return self.most is not None and self.most - self.used < self.most // SHARES
 
     def reserve(self, codes: Iterable[str]) -> None:
@@ -60,7 +60,7 @@ class CompiledOperations:
             self._reserved.update(codes)
 
     def add(self, code: str, count: int) -> None:
-        """Count the operations of a code before it is compiled; raise `CompiledCodeLimitError` beyond a limit."""
+        """Count the operations of a code before it is compiled; raise `CompiledCodeLimitError` if this exceeds a limit."""
         account = _account.get()
         with self._lock:
             if self.most is not None and code not in self._reserved:
@@ -78,15 +78,18 @@ class CompiledOperations:
                 "the integrators of as many different potentials are compiled as this program may keep until its next start; "
                 f"{_SAME_POWERS}"
             )
-        if account is not None and sum(used for used, each in self._counted_codes() if each == account) + count > most // SHARES:
+        own_count = sum(used for used, owner in self._counted_codes() if owner == account)
+        if account is not None and own_count + count > most // SHARES:
             raise CompiledCodeLimitError(
                 f"your address has compiled the integrators of as many different potentials as it may; {_SAME_POWERS}"
             )
 
     def _counted_codes(self) -> Iterator[tuple[int, Hashable]]:
-        return (counted for code, counted in self._entries.items() if code not in self._reserved)
+        """Return the operations and the account of each code that is not reserved."""
+        return (entry for code, entry in self._entries.items() if code not in self._reserved)
 
 
+# Advice at the end of messages.
 _SAME_POWERS = "choose a potential with the same powers of x and y as an earlier one, or one of the catalogue"
 
 compiled_operations = CompiledOperations()

@@ -11,12 +11,13 @@ from numba.extending import register_jitable
 
 from engine.integrator.jit.disk_cache import KernelCache
 
-# "contract" permits a fused multiply-add for a·b + c. Nothing else is reordered or assumed, so that NaN is handled as usual.
 OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "fastmath": {"contract"}}
-"""Options of Numba for all kernels."""
+"""Options of Numba for all kernels.
 
+"contract" permits a fused multiply-add for a·b + c. Nothing else is reordered or assumed, so NaN is handled as usual.
+"""
 
-# Code for another machine is inlined later, when it is optimised for that machine, see `engine.integrator.jit.kernel_module`.
+# Whether Numba inlines subroutines; code for another machine is inlined when it is optimised for it, see `kernel_module`.
 _INLINES = bool(config.OPT)  # type: ignore[attr-defined]
 
 
@@ -32,7 +33,7 @@ def subroutine(function: Callable[..., Any]) -> Any:
     """Return the function as a part of the kernels that call it; called by Python, the function runs uncompiled.
 
     A subroutine compiles in less time than a kernel, because it has no interface to Python, no file in the cache, and no second
-    version for literal arguments. It is always inlined: otherwise functions of the same name in several kernels would share the
-    code of the kernel that is loaded first, where the compiler may have rounded differently.
+    version for literal arguments. It is always inlined. Otherwise functions of the same name in several kernels would share the
+    code from the kernel that is loaded first, in which the compiler may have rounded differently.
     """
     return register_jitable(**OPTIONS, forceinline=_INLINES)(function)

@@ -1,8 +1,8 @@
 """A cache of compiled kernels on disk, with one file for each (`engine.foundations.cache_files`).
 
-Numba's own cache loads any file without a check: a truncated file ends the program, a modified one may compute anything, and two
-processes that compile at the same time can load each other's code. Here the name of a file contains a hash of everything on which
-its code depends.
+Numba's own cache loads any file without a check: a truncated file ends the program, a modified file may compute anything, and two
+processes that compile at the same time can load each other's code. `cache_files` writes a file in one step and checks it when it
+is read. The name of a file contains a hash of everything on which its code depends.
 
 Numba has no public interface for caches, so this module uses internal names of numba 0.68, which may change with any version:
 
@@ -39,24 +39,24 @@ PACKAGE = Path(__file__).parents[1]
 """The package that contains all source compiled into kernels."""
 
 DEFINE = "define"
-"""Name of a function in a generated module that defines the module again, for use in another process."""
+"""Name of a function in a generated module. It can be sent to another process, where it defines the same module."""
 
 log = logging.getLogger(__name__)
 
-_other_process: Callable[[Callable[[], None]], None] | None = None
+_call_in_process: Callable[[Callable[[], None]], None] | None = None
 
 
-def compile_in(process: Callable[[Callable[[], None]], None] | None) -> None:
+def compile_in(call_in_process: Callable[[Callable[[], None]], None] | None) -> None:
     """Let another process that shares the cache compile, so that this process does not hold the memory of Numba's compiler.
 
     Parameters
     ----------
-    process
-        Calls a function, which cloudpickle can send, in the other process, and raises a ValueError if that fails; None to compile
-        in this process.
+    call_in_process
+        Sends a function to the other process with cloudpickle, calls it there, and raises a ValueError if that fails. None to
+        compile in this process.
     """
-    global _other_process
-    _other_process = process
+    global _call_in_process
+    _call_in_process = call_in_process
 
 
 class KernelCache(_Cache):
@@ -66,17 +66,17 @@ class KernelCache(_Cache):
     """
 
     def __init__(self, function: Callable[..., Any]) -> None:
-        self._module, self._function = function.__module__, function.__qualname__
-        self._name = f"{self._module}.{self._function}"
-        self._source = _hash_package(PACKAGE) + _hash_source(function.__code__.co_filename) + function.__code__.co_code.hex()
+        self._module_name, self._function_name = function.__module__, function.__qualname__
+        self._name = f"{self._module_name}.{self._function_name}"
+        self._source_hash = _hash_package(PACKAGE) + _hash_source(function.__code__.co_filename) + function.__code__.co_code.hex()
 
     @property
     def cache_path(self) -> str:
-        """The folder."""
+        """The folder with the files of the cache."""
         return str(cache_folder())
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """Return the code for arguments of some types; None if there is no valid file."""
+        """Return the compiled code for a signature; None if there is no valid file, so that Numba compiles."""
         # Compiled code needs only Numba's memory management; loading the rest of Numba's targets takes a second.
         rtsys.initialize(target_context)
         path = self._path(sig, target_context.codegen())
@@ -90,18 +90,18 @@ class KernelCache(_Cache):
             return None
 
     def _compile_elsewhere(self, sig: Any, path: Path) -> bytes | None:
-        """Compile in another process, if there is one; return None if that fails, so that this process compiles."""
-        if _other_process is None:
+        """Compile in the other process and return the content of the file; None if this process has to compile."""
+        if _call_in_process is None:
             return None
-        module = sys.modules[self._module]
+        module = sys.modules[self._module_name]
         try:
-            _other_process(partial(_compile, getattr(module, DEFINE, None), self._module, self._function, sig))
+            _call_in_process(partial(_compile, getattr(module, DEFINE, None), self._module_name, self._function_name, sig))
         except ValueError as error:
             log.warning("%s is compiled in this process: %s", self._name, error)
         return read_cached(path)
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """Store the code, if possible."""
+        """Store the code, unless it contains addresses of this process."""
         if data.library.has_dynamic_globals:
             return
         payload: bytes = dumps(data._reduce())  # type: ignore[no-untyped-call]
@@ -118,13 +118,13 @@ class KernelCache(_Cache):
         delete_cached(self._name)
 
     def _path(self, signature: Any, codegen: Any) -> Path:
-        """Return a path that depends on argument types, processor, source and versions, so that its content never changes."""
-        key = repr((signature, codegen.magic_tuple(), self._source, _versions()))
+        """Return the path for a signature; it depends on processor, source and versions too, so its content never changes."""
+        key = repr((signature, codegen.magic_tuple(), self._source_hash, _versions()))
         return cache_folder() / f"{self._name}.{hashlib.sha256(key.encode()).hexdigest()[:24]}{SUFFIX}"
 
 
 def _compile(define: Callable[[], object] | None, module: str, function: str, signature: Any) -> None:
-    """Compile a function and store its code; runs in the other process."""
+    """Compile a function and store its code; called in the other process."""
     if define is not None:
         define()
     getattr(import_module(module), function).compile(signature)
@@ -132,14 +132,14 @@ def _compile(define: Callable[[], object] | None, module: str, function: str, si
 
 @functools.cache
 def _hash_source(file: str) -> str:
-    """Return the hash of a source file; empty for generated source, whose module name contains its hash."""
+    """Return the hash of a source file; empty for generated source, because the name of its module contains the hash."""
     path = Path(file)
     return hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else ""
 
 
 @functools.cache
 def _hash_package(folder: Path) -> str:
-    """Return the hashes of all source files in a package: kernels contain code and constants of other modules."""
+    """Return the hashes of all source files in a package, because a kernel contains code and constants of other modules."""
     return "".join(_hash_source(str(path)) for path in sorted(folder.rglob("*.py")))
 
 

@@ -38,23 +38,25 @@ def _caller(name: str) -> Any:
     @intrinsic
     def call(typing_context: Any, address: Any, *arguments: Any) -> Any:
         """Return the typed call; None, a compilation error, if the arguments cannot be converted to the function's types."""
-        given = tuple(map(types.unliteral, arguments))
-        if len(given) != len(callee.args) or any(
-            typing_context.can_convert(one, other) is None for one, other in zip(given, callee.args, strict=True)
+        argument_types = tuple(map(types.unliteral, arguments))
+        if len(argument_types) != len(callee.args) or any(
+            typing_context.can_convert(source, target) is None for source, target in zip(argument_types, callee.args, strict=True)
         ):
             return None
 
         def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-            where, packed = values
-            passed = [builder.extract_value(packed, i) for i in range(len(given))]
-            cast = [context.cast(builder, *each) for each in zip(passed, given, callee.args, strict=True)]
+            function_address, packed = values
+            unpacked = [builder.extract_value(packed, i) for i in range(len(argument_types))]
+            cast = [context.cast(builder, *conversion) for conversion in zip(unpacked, argument_types, callee.args, strict=True)]
             convention = context.call_conv
-            pointer = builder.inttoptr(where, convention.get_function_type(callee.return_type, callee.args).as_pointer())
+            pointer_type = convention.get_function_type(callee.return_type, callee.args).as_pointer()
+            pointer = builder.inttoptr(function_address, pointer_type)
             return convention.call_function(builder, pointer, callee.return_type, callee.args, cast)[1]
 
-        return Signature(callee.return_type, (types.int64, types.StarArgTuple(given)), None), generate  # type: ignore[no-untyped-call]
+        return Signature(callee.return_type, (types.int64, types.StarArgTuple(argument_types)), None), generate  # type: ignore[no-untyped-call]
 
     return call
 
 
+# In the order of `SIGNATURES`.
 call_step, call_fixed_step, call_jets, call_tangent, call_potential_value, call_potential_slopes = map(_caller, SIGNATURES)

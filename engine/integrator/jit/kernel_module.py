@@ -1,8 +1,8 @@
 """The kernels as a WebAssembly module that runs in the browser of a visitor; Numba compiles the same functions for Python.
 
 Numba lowers a kernel to LLVM instructions that hardly depend on the machine: only the data layout contains the size of an
-address, and this layout is replaced. Numba must not optimise the code for this machine. Only environment variables prevent this,
-and `lower_kernels` is therefore called in a separate process.
+address, and this layout is replaced. Numba must not optimise the code for this machine. Only environment variables prevent that
+(`SETTINGS`), so `lower_kernels` is called in a separate process.
 
 This module uses parts of Numba 0.68 that are not public: the context of the target, for its calling convention and the layout of
 arrays (`populate_array`), and the functions of its memory management to which code refers (`_RUNTIME`).
@@ -39,8 +39,8 @@ _SIZE, _DOUBLE, _LONG = ir.IntType(32), ir.DoubleType(), ir.IntType(64)
 HEAP_CELL = 16
 """Address of the cell that contains the start of the free memory. The caller of a kernel restores the value of the cell."""
 
-# Arrays are allocated at the start of the free memory, without reference counts. An array of Numba begins with the address of its
-# metadata, which contains the address of its numbers; here both addresses are equal.
+# Numba's memory management, in place of its own. Arrays are allocated at the start of the free memory, without reference counts.
+# An array of Numba begins with the address of its metadata, which contain the address of its numbers; here both are equal.
 _RUNTIME = f"""
 define void @NRT_incref(ptr %info) alwaysinline {{ ret void }}
 define void @NRT_decref(ptr %info) alwaysinline {{ ret void }}
@@ -57,6 +57,7 @@ define noalias nonnull ptr @NRT_MemInfo_alloc_aligned(i64 %size, i32 %alignment)
   ret ptr %array
 }}
 """
+# Options of Numba for kernels that Python does not call.
 _OPTIONS: dict[str, Any] = {**OPTIONS, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 _RUNTIME_NAMES = "|".join(re.findall(r"@(NRT_\w+)", _RUNTIME))
 
@@ -66,7 +67,7 @@ def lower_kernels(kernels: Mapping[Any, Signature]) -> bytes:
 
     Each array is passed as its address and its shape, a tuple as its elements, and an integer or a boolean as 32 bits. The module
     imports ``env.__linear_memory``, ``env.__stack_pointer`` and ``env.__indirect_function_table``, and functions such as
-    ``env.cos``. The addresses of functions that kernels take are indices into the function table.
+    ``env.cos``. Where kernels take addresses of functions, these are indices into the function table.
     """
     machine = target_machine()
     module = _parse(_RUNTIME, machine)
@@ -82,7 +83,7 @@ def lower_kernels(kernels: Mapping[Any, Signature]) -> bytes:
 
 
 def _parse(text: str, machine: Any) -> Any:
-    """Parse instructions for another machine."""
+    """Parse LLVM instructions as instructions for `TARGET`."""
     text = re.sub(r"^target (triple|datalayout) = .*$", "", text, flags=re.MULTILINE)
     text = re.sub(r'"target-(cpu|features)"="[^"]*"', "", text)
     return llvm.parse_assembly(f'target triple = "{TARGET}"\ntarget datalayout = "{machine.target_data}"\n{text}')
@@ -108,18 +109,19 @@ def _wrapper(name: str, symbol: str, signature: Signature) -> ir.Module:
     """Return a function with numbers as arguments that calls a kernel."""
     context = cpu_target.target_context
     module = ir.Module(name)
-    passed = [kind for argument in signature.args for kind in _passed_types(argument)]
-    result = _passed_types(signature.return_type)
-    function = ir.Function(module, ir.FunctionType(result[0] if result else ir.VoidType(), passed), name)
+    argument_types = [kind for argument in signature.args for kind in _passed_types(argument)]
+    # No element for a kernel without a result, otherwise one.
+    result_types = _passed_types(signature.return_type)
+    function = ir.Function(module, ir.FunctionType(result_types[0] if result_types else ir.VoidType(), argument_types), name)
     builder = ir.IRBuilder(function.append_basic_block())
     values = iter(function.args)
     arguments = [_read_argument(context, builder, argument, values) for argument in signature.args]
     kernel = ir.Function(module, context.call_conv.get_function_type(signature.return_type, signature.args), symbol)
     _, value = context.call_conv.call_function(builder, kernel, signature.return_type, signature.args, arguments)
-    if not result:
+    if not result_types:
         builder.ret_void()
     else:
-        builder.ret(value if result == [_DOUBLE] else _as_size(builder, value))
+        builder.ret(value if result_types == [_DOUBLE] else _as_size(builder, value))
     return module
 
 
@@ -129,8 +131,9 @@ def _as_size(builder: ir.IRBuilder, value: ir.Value) -> ir.Value:
 
 
 def _passed_types(kind: Any) -> list[ir.Type]:
+    """Return the types of the numbers as which an argument or a result of a type of Numba is passed."""
     if isinstance(kind, types.NamedTuple):
-        return [each for element in kind.types for each in _passed_types(element)]
+        return [passed for element in kind.types for passed in _passed_types(element)]
     if isinstance(kind, types.Array):
         return [_SIZE] * (1 + kind.ndim)
     if kind == types.none:
@@ -139,9 +142,9 @@ def _passed_types(kind: Any) -> list[ir.Type]:
 
 
 def _read_argument(context: Any, builder: ir.IRBuilder, kind: Any, values: Any) -> ir.Value:
-    """Return the next argument of a kernel in Numba's representation."""
+    """Return the next argument of a kernel in Numba's representation, from an iterator of the passed numbers."""
     if isinstance(kind, types.NamedTuple):
-        return context.make_tuple(builder, kind, [_read_argument(context, builder, each, values) for each in kind.types])
+        return context.make_tuple(builder, kind, [_read_argument(context, builder, element, values) for element in kind.types])
     if isinstance(kind, types.Array):
         return _make_array(context, builder, kind, next(values), [next(values) for _ in range(kind.ndim)])
     if kind == types.float64:
@@ -152,7 +155,7 @@ def _read_argument(context: Any, builder: ir.IRBuilder, kind: Any, values: Any) 
 
 
 def _make_array(context: Any, builder: ir.IRBuilder, kind: Any, address: ir.Value, shape: list[ir.Value]) -> ir.Value:
-    """Return a contiguous array without an owner."""
+    """Return Numba's representation of a contiguous array that owns no memory."""
     lengths = [builder.zext(length, _LONG) for length in shape]
     size = kind.dtype.bitwidth // 8
     strides = [_LONG(size)]

@@ -1,7 +1,7 @@
 """Translation of straight-line programs to LLVM instructions, in a tenth of a second; Numba's front end would take seconds.
 
 Numba infers a type for every variable of a function and lowers each operation with all of Python's semantics. A generated program
-consists of a few thousand operations on doubles and integers without branches, each of which is one or two instructions. The
+consists of a few thousand operations on doubles and integers without branches. Each operation is one or two instructions. The
 functions of `engine.integrator.jit.webassembly` consist of the same instructions on vectors.
 """
 
@@ -21,8 +21,8 @@ _FLOAT, _INT = ir.DoubleType(), ir.IntType(64)
 _NUMBA_TYPES = {_FLOAT: types.float64, _INT: types.int64}
 # As in `engine.integrator.jit.decorator`, a·b + c may become one multiply-add; nothing else is permitted.
 _FLAGS = ("contract",)
-# On Intel processors with AVX-512, LLVM by default uses half of the vector width, so that programs take 1.2 to 1.4 times as long.
-# The width does not change the results. llvmlite does not support attributes of functions with values, but writes them unchanged.
+# Attribute of functions for the full vector width. On Intel processors with AVX-512, LLVM by default uses half of it, which takes
+# 1.2 to 1.4 times as long; the results are the same. llvmlite has no attributes with values, but writes this text unchanged.
 _WIDE_VECTORS = '"prefer-vector-width"="512"'
 _FLOAT_OPERATIONS = {"+": "fadd", "-": "fsub", "*": "fmul", "/": "fdiv"}
 _INTRINSICS = {"abs": "llvm.fabs", "sqrt": "llvm.sqrt"}
@@ -37,22 +37,23 @@ def straight_line(program: StraightLine) -> Any:
     """
 
     @functools.cache
-    def result_type(given: tuple[Any, ...]) -> Any:
-        """Find the type by writing the program into a temporary module."""
+    def result_type(argument_types: tuple[Any, ...]) -> Any:
+        """Find the type of the result by writing the program into a temporary module."""
         block = ir.Function(ir.Module(), ir.FunctionType(ir.VoidType(), []), "trial").append_basic_block()
-        results = write_program(program, ir.IRBuilder(block), [ir.Constant(_llvm_type(each), None) for each in given])
+        results = write_program(program, ir.IRBuilder(block), [ir.Constant(_llvm_type(kind), None) for kind in argument_types])
         return types.Tuple([_NUMBA_TYPES[result.type] for result in results])  # type: ignore[no-untyped-call]
 
     @intrinsic
     def call(_: Any, *arguments: Any) -> Any:
-        given = tuple(map(types.unliteral, arguments))
+        argument_types = tuple(map(types.unliteral, arguments))
 
         def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+            # `attributes.add` of llvmlite would reject the text.
             set.add(builder.function.attributes, _WIDE_VECTORS)
-            passed = [builder.extract_value(values[0], i) for i in range(len(given))]
+            passed = [builder.extract_value(values[0], i) for i in range(len(argument_types))]
             return context.make_tuple(builder, signature.return_type, write_program(program, builder, passed))
 
-        return Signature(result_type(given), (types.StarArgTuple(given),), None), generate  # type: ignore[no-untyped-call]
+        return Signature(result_type(argument_types), (types.StarArgTuple(argument_types),), None), generate  # type: ignore[no-untyped-call]
 
     return call
 
@@ -72,16 +73,18 @@ def table_reader(size: int) -> Any:
     return read
 
 
-def _llvm_type(given: Any) -> Any:
-    if isinstance(given, types.UniTuple):
-        return ir.ArrayType(_FLOAT, len(given))
-    return _INT if given == types.int64 else _FLOAT
+def _llvm_type(kind: Any) -> Any:
+    """Return the type of LLVM for a type of Numba: the table, an integer or a double."""
+    if isinstance(kind, types.UniTuple):
+        return ir.ArrayType(_FLOAT, len(kind))
+    return _INT if kind == types.int64 else _FLOAT
 
 
 def write_program(program: StraightLine, builder: ir.IRBuilder, passed: list[Any], lanes: int = 1) -> list[Any]:
     """Append the instructions of a program, and return its results.
 
-    passed: the program's parameters; the table may be any sequence of values. With two or more `lanes` all values are vectors.
+    passed: the values of the program's parameters; the table is an LLVM array or a list. With two or more `lanes`, all values are
+    vectors.
     """
     parameters = dict(zip(program.parameters, passed, strict=True))
     table = parameters[TABLE]
@@ -105,14 +108,16 @@ def _constant(kind: Any, number: float) -> Any:
 
 
 def _find_intrinsic(name: str, module: ir.Module, floats: Any) -> Any:
-    """Return an intrinsic, which is one instruction, not a call; `declare_intrinsic` does not support vectors of doubles."""
+    """Return an intrinsic, which is one instruction, not a call."""
     if not isinstance(floats, ir.VectorType):
         return module.declare_intrinsic(name, [floats])
+    # `declare_intrinsic` does not support vectors of doubles.
     name = f"{name}.v{floats.count}f64"
     return module.globals.get(name) or ir.Function(module, ir.FunctionType(floats, [floats]), name)
 
 
 def _operate(symbol: str, builder: ir.IRBuilder, floats: Any, ints: Any, operands: list[Any]) -> Any:
+    """Append the instruction of an operation on doubles or integers, and return its result."""
     is_float = operands[0].type == floats
     match symbol:
         case "abs" | "sqrt":

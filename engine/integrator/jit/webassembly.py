@@ -24,7 +24,7 @@ from engine.integrator.source.recurrence import GeneratedCode
 from engine.integrator.source.straight_line import TABLE
 
 FUNCTIONS = ("step", "jets", "potential_value", "potential_slopes")
-"""Names of the functions of a module; not all structures define `potential_slopes`."""
+"""Names of the functions of a module, of which `potential_slopes` exists for expressions only."""
 
 PAIR = 2
 """Number of doubles in a vector."""
@@ -40,8 +40,8 @@ _MODULES = 32
 def webassembly_module(code: GeneratedCode) -> bytes:
     """Return the functions of the potentials of one structure (`FUNCTIONS`) as a WebAssembly module, which imports its memory.
 
-    Their arguments are those of Numba's calling convention. The number of lanes is rounded up to an even number, for which
-    rows must be long enough.
+    The functions have the arguments of Numba's calling convention. The number of lanes is rounded up to an even number, and rows
+    must be long enough for this number.
     """
     machine = target_machine()
     module = ir.Module("engine")
@@ -53,15 +53,12 @@ def webassembly_module(code: GeneratedCode) -> bytes:
 
 
 class _Writer:
-    """Writes a generated function into a module.
+    """Writes a generated function, whose table has some number of entries, into a module."""
 
-    entries: number of entries of the table.
-    """
-
-    def __init__(self, module: ir.Module, generated: GeneratedFunction, entries: int) -> None:
-        self._generated, self._entries = generated, entries
+    def __init__(self, module: ir.Module, generated: GeneratedFunction, entry_count: int) -> None:
+        self._generated, self._entry_count = generated, entry_count
         self._signature = SIGNATURES[generated.name]
-        # Numba's layout of arguments.
+        # The context defines Numba's layout of arguments.
         self._context = context = cpu_target.target_context
         kinds = self._signature.args
         self._function = ir.Function(
@@ -84,15 +81,15 @@ class _Writer:
             self._write_loop()
             self._context.call_conv.return_value(self._builder, self._context.get_dummy_value())
             return
-        values = self._run([self._load(Place("coefficients", column=k), 1) for k in range(self._entries)], {}, 1)
-        is_single = len(values) == 1
-        result = values[0] if is_single else self._context.make_tuple(self._builder, self._signature.return_type, values)
+        values = self._run([self._load(Place("coefficients", column=k), 1) for k in range(self._entry_count)], {}, 1)
+        result = values[0] if len(values) == 1 else self._context.make_tuple(self._builder, self._signature.return_type, values)
         self._context.call_conv.return_value(self._builder, result)
 
     def _write_loop(self) -> None:
+        """Write a loop over pairs of lanes; numbers that are the same for all lanes are loaded before the loop."""
         builder, reads = self._builder, self._generated.reads
-        table = [self._load(Place("coefficients", column=k), PAIR) for k in range(self._entries)]
-        same = {name: self._load(place, PAIR) for name, place in reads.items() if place.column is not None}
+        table = [self._load(Place("coefficients", column=k), PAIR) for k in range(self._entry_count)]
+        common_inputs = {name: self._load(place, PAIR) for name, place in reads.items() if place.column is not None}
         loop, end = self._function.append_basic_block(), self._function.append_basic_block()
         entry = builder.block
         builder.branch(loop)
@@ -100,26 +97,26 @@ class _Writer:
         lane = builder.phi(_INT)
         lane.add_incoming(_INT(0), entry)
         vector = ir.VectorType(ir.DoubleType(), PAIR)
-        own = {
+        lane_inputs = {
             name: builder.load(self._address(place, lane, vector), align=_BYTES)
             for name, place in reads.items()
             if place.column is None
         }
-        for place, value in zip(self._generated.writes, self._run(table, same | own, PAIR), strict=True):
+        for place, value in zip(self._generated.writes, self._run(table, common_inputs | lane_inputs, PAIR), strict=True):
             address = self._address(place, lane, value.type)
             total = builder.add(value, builder.load(address, align=_BYTES)) if place.array in ADDED else value
             builder.store(total, address, align=_BYTES)
-        following = builder.add(lane, _INT(PAIR))
-        lane.add_incoming(following, loop)
-        builder.cbranch(builder.icmp_signed("<", following, self._arguments["n"]), loop, end)
+        next_lane = builder.add(lane, _INT(PAIR))
+        lane.add_incoming(next_lane, loop)
+        builder.cbranch(builder.icmp_signed("<", next_lane, self._arguments["n"]), loop, end)
         builder.position_at_end(end)
 
     def _run(self, table: list[Any], inputs: dict[str, Any], width: int) -> list[Any]:
-        """Return the results of the program for some lanes."""
+        """Return the results of the program for `width` lanes; parameters that are not `inputs` are arguments."""
         program = self._generated.program
-        known = {TABLE: table, **inputs}
+        values = {TABLE: table, **inputs}
         passed = [
-            known[name] if name in known else self._in_all_lanes(self._arguments[name], width) for name in program.parameters
+            values[name] if name in values else self._in_all_lanes(self._arguments[name], width) for name in program.parameters
         ]
         return write_program(program, self._builder, passed, width)
 
@@ -128,6 +125,7 @@ class _Writer:
         return self._in_all_lanes(self._builder.load(self._address(place, _INT(place.column), ir.DoubleType())), width)
 
     def _in_all_lanes(self, value: Any, width: int) -> Any:
+        """Return a vector with a number in each of `width` lanes; for one lane, the number."""
         if width == 1:
             return value
         undefined = ir.Constant(ir.VectorType(value.type, width), ir.Undefined)
@@ -135,7 +133,7 @@ class _Writer:
         return self._builder.shuffle_vector(first, undefined, ir.Constant(ir.VectorType(ir.IntType(32), width), [0] * width))
 
     def _address(self, place: Place, column: Any, kind: ir.Type) -> Any:
-        """Return the address of a number or of a vector."""
+        """Return the address of a number, or of a vector that begins at a column."""
         data, length = self._arguments[place.array]
         if place.row is not None:
             column = self._builder.add(column, self._builder.mul(length, _INT(place.row)))

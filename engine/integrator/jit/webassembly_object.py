@@ -8,11 +8,15 @@ from typing import Any
 import llvmlite.binding as llvm  # type: ignore[import-untyped]
 
 TARGET = "wasm32-unknown-unknown"
+"""LLVM's name of the machine."""
 
+# Features of WebAssembly that the code uses.
 _FEATURES = "+simd128,+bulk-memory"
+# Number of bytes before the first section of a module.
 _HEADER_BYTES = 8
-# Numbers of sections and kinds of imports and exports, from the specification of WebAssembly.
+# Numbers of sections, from the specification of WebAssembly.
 _CUSTOM, _IMPORT, _EXPORT, _CODE = 0, 2, 7, 10
+# Kinds of imports and exports.
 _FUNCTION, _TABLE, _MEMORY, _GLOBAL = range(4)
 
 
@@ -26,66 +30,73 @@ def target_machine() -> Any:
 def compile_module(source: Any, machine: Any, level: int) -> bytes:
     """Compile an LLVM module to a WebAssembly module that exports its external functions by their names.
 
-    source: a parsed module of llvmlite; level: the level of optimisation, 2 or 3.
+    source: a parsed module of llvmlite, which is optimised in place; level: the level of optimisation, 2 or 3.
     """
     options = llvm.create_pipeline_tuning_options(speed_level=level)
     # Without unrolling, the module has a third fewer bytes and is as fast.
     options.loop_unrolling = False
     passes = llvm.create_pass_builder(machine, options)
-    # The second run optimises what the first has made constant.
+    # The second run optimises what the first run has made constant.
     for _ in range(2):
         passes.getModulePassManager().run(source, passes)
     defined = [function for function in source.functions if not function.is_declaration]
-    exports = {f.name: place for place, f in enumerate(defined) if f.linkage == llvm.Linkage.external}
+    exports = {function.name: index for index, function in enumerate(defined) if function.linkage == llvm.Linkage.external}
     return _with_exports(machine.emit_object(source), exports)
 
 
-def _with_exports(compiled: bytes, places: dict[str, int]) -> bytes:
-    """Add exports of some functions to an object file, and remove the sections for a linker."""
+def _with_exports(compiled: bytes, indices: dict[str, int]) -> bytes:
+    """Add exports of some functions, by name with their indices, to an object file, and remove the sections for a linker."""
     sections = list(_sections(compiled))
-    imported = sum(_count_imported_functions(compiled, begin) for number, begin, _ in sections if number == _IMPORT)
-    exports = b"".join(_name(name) + bytes([_FUNCTION]) + _number(imported + place) for name, place in places.items())
-    export = _section(_EXPORT, _number(len(places)) + exports)
-    kept = [(export if number == _CODE else b"") + compiled[begin:end] for number, begin, end in sections if number != _CUSTOM]
-    return compiled[:_HEADER_BYTES] + b"".join(kept)
+    # Imported functions are numbered before the functions of the module.
+    imported_count = sum(_count_imported_functions(compiled, begin) for number, begin, _ in sections if number == _IMPORT)
+    exports = b"".join(_name(name) + bytes([_FUNCTION]) + _number(imported_count + index) for name, index in indices.items())
+    export_section = _section(_EXPORT, _number(len(indices)) + exports)
+    # The section of exports precedes the section of code.
+    contents = [
+        (export_section if number == _CODE else b"") + compiled[begin:end] for number, begin, end in sections if number != _CUSTOM
+    ]
+    return compiled[:_HEADER_BYTES] + b"".join(contents)
 
 
 def _sections(module: bytes) -> Iterator[tuple[int, int, int]]:
     """Yield (number, begin, end) of each section of a module, with its header."""
     begin = _HEADER_BYTES
     while begin < len(module):
-        size, content = _read_number(module, begin + 1)
-        yield module[begin], begin, content + size
-        begin = content + size
+        size, content_begin = _read_number(module, begin + 1)
+        end = content_begin + size
+        yield module[begin], begin, end
+        begin = end
 
 
 def _count_imported_functions(module: bytes, begin: int) -> int:
-    """Return the number of functions in the import section; they are numbered before the functions of the module."""
-    _, place = _read_number(module, begin + 1)
-    imports, place = _read_number(module, place)
-    functions = 0
-    for _ in range(imports):
+    """Return the number of functions in the import section, which begins at a position in the module."""
+    _, position = _read_number(module, begin + 1)
+    import_count, position = _read_number(module, position)
+    function_count = 0
+    for _ in range(import_count):
         for _ in ("module", "name"):
-            length, place = _read_number(module, place)
-            place += length
-        kind, place = module[place], place + 1
-        functions += kind == _FUNCTION
-        place = _skip_type(module, kind, place)
-    return functions
+            length, position = _read_number(module, position)
+            position += length
+        kind = module[position]
+        function_count += kind == _FUNCTION
+        position = _skip_type(module, kind, position + 1)
+    return function_count
 
 
-def _skip_type(module: bytes, kind: int, place: int) -> int:
+def _skip_type(module: bytes, kind: int, position: int) -> int:
     """Return the position at which the type of an import ends."""
     if kind == _FUNCTION:
-        return _read_number(module, place)[1]
+        return _read_number(module, position)[1]
     if kind == _GLOBAL:
-        return place + 2
+        return position + 2
     if kind == _TABLE:
-        place += 1
-    has_maximum, place = module[place] & 1, place + 1
+        # The type of the elements.
+        position += 1
+    # A table or a memory has limits: a flag, the minimum and, according to the flag, the maximum.
+    has_maximum, position = module[position] & 1, position + 1
     for _ in range(1 + has_maximum):
-        _, place = _read_number(module, place)
-    return place
+        _, position = _read_number(module, position)
+    return position
 
 
 def _section(number: int, content: bytes) -> bytes:

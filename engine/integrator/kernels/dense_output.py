@@ -27,11 +27,11 @@ def trace_orbit(
     t_max: float,
     execution: Execution = DEFAULT_EXECUTION,
 ) -> Iterator[tuple[np.ndarray, float]]:
-    """Propagate one orbit until it escapes or to `t_max`, and yield its steps in pieces of limited length.
+    """Propagate one orbit until it escapes or to `t_max`, and yield its steps in pieces of at most `_CHUNK` steps.
 
     orbits: arrays of length 1, changed in place. Yields (m, 5) x, y, px, py, t at the start of each step of a piece, and the time
-    at which the piece ends. This time can be before `t_max` even for a bounded orbit: an orbit at rest on the saddle of a closed
-    channel, which rounding carries over the saddle. Raises CancelledError when cancelled.
+    at which the piece ends. Even a bounded orbit can end before `t_max`, if it is at rest on the saddle of a closed channel and
+    rounding carries it over the saddle. Raises CancelledError when cancelled.
     """
     while orbits.pending[0]:
         execution.raise_if_cancelled()
@@ -48,8 +48,8 @@ def trace_pieces(
     channels: int,
     execution: Execution = DEFAULT_EXECUTION,
 ) -> Iterator[tuple[np.ndarray, float]]:
-    """Apply `trace_orbit` from t = 0 to `t_end`, without exits."""
-    # No step passes these gates.
+    """Apply `trace_orbit` to a state from t = 0 to `t_end`, without exits."""
+    # No step passes these gates: 0 x + 0 y = ∞.
     gates = np.full((channels, 3), np.inf)
     gates[:, :2] = 0.0
     exits = Exits(gates, np.zeros((1, channels, CURVE_COLUMNS)), np.zeros(1, np.int64))
@@ -78,25 +78,25 @@ def sample_path(
     path = np.empty((4, times.size))
     for begin in range(0, len(steps), _CHUNK):
         execution.raise_if_cancelled()
-        part = np.ascontiguousarray(steps[begin : begin + _CHUNK].T)
-        jets = np.empty((2, ORDER + 1, part.shape[1]))
-        kernels.jets(part.shape[1], *part[:4], *jets)
-        inside = slice(*np.searchsorted(row, [begin, begin + part.shape[1]]))
-        local = row[inside] - begin
-        path[:, inside] = _evaluate(jets, local, times[inside] - part[4, local])
+        chunk = np.ascontiguousarray(steps[begin : begin + _CHUNK].T)
+        jets = np.empty((2, ORDER + 1, chunk.shape[1]))
+        kernels.jets(chunk.shape[1], *chunk[:4], *jets)
+        in_chunk = slice(*np.searchsorted(row, [begin, begin + chunk.shape[1]]))
+        chunk_row = row[in_chunk] - begin
+        path[:, in_chunk] = _evaluate(jets, chunk_row, times[in_chunk] - chunk[4, chunk_row])
     return path
 
 
 def advance_states(kernels: ModuleType, states: np.ndarray, durations: np.ndarray) -> np.ndarray:
-    """Advance `states` (n, 4) by `durations` (n,) of at most one integrator step, with one series each."""
+    """Return `states` (n, 4) after `durations` (n,) of at most one integrator step, with one series each."""
     jets = np.empty((2, ORDER + 1, len(states)))
     kernels.jets(len(states), *(np.ascontiguousarray(column) for column in states.T), *jets)
-    later: np.ndarray = _evaluate(jets, np.arange(len(states)), durations).T
-    return later
+    later_states: np.ndarray = _evaluate(jets, np.arange(len(states)), durations).T
+    return later_states
 
 
 def _evaluate(jets: np.ndarray, row: np.ndarray, tau: np.ndarray) -> np.ndarray:
-    """Return the states (4, n) that `evaluate_series` sets."""
+    """Apply `evaluate_series`, and return the states (4, n)."""
     states = np.empty((4, row.size))
     evaluate_series(jets, row, tau, states)
     return states
@@ -118,14 +118,15 @@ def evaluate_series(jets, row, tau, states):
 
 
 def find_crossings(kernels: ModuleType, path: np.ndarray, times: np.ndarray) -> np.ndarray:
-    """Return x and px (m, 2) at upward crossings of y = 0 between samples of a path (4, n), which are at most one step apart."""
+    """Return x and px (m, 2) at upward crossings of y = 0 along a path (4, n) with samples at most one step apart."""
     y, py = path[1], path[3]
     rises = (y[:-1] < 0.0) & (y[1:] >= 0.0)
+    # Between samples on the same side, an orbit can cross y = 0 twice if it first approaches y = 0 and then recedes.
     turns = (y[:-1] * y[1:] > 0.0) & (y[:-1] * py[:-1] < 0.0) & (y[1:] * py[1:] > 0.0)
-    before = np.flatnonzero(rises | turns)
-    jets = np.empty((2, ORDER + 1, before.size))
-    kernels.jets(before.size, *(np.ascontiguousarray(row[before]) for row in path), *jets)
-    points: np.ndarray = _crossings(jets, times[before + 1] - times[before])
+    first_samples = np.flatnonzero(rises | turns)
+    jets = np.empty((2, ORDER + 1, first_samples.size))
+    kernels.jets(first_samples.size, *(np.ascontiguousarray(row[first_samples]) for row in path), *jets)
+    points: np.ndarray = _crossings(jets, times[first_samples + 1] - times[first_samples])
     return points
 
 
@@ -135,10 +136,10 @@ def _crossings(jets, durations):
     x_jet, y_jet = jets[0], jets[1]
     # Two crossings in one interval are rare, and three do not occur.
     points = np.empty((1, 2 * durations.size, 3))
-    found = np.zeros(1, np.int64)
+    counts = np.zeros(1, np.int64)
     for i in range(durations.size):
-        append_crossings(x_jet, y_jet, i, 1.0, 0.0, durations[i], points, found, 0)
-    return points[0, : found[0], :2].copy()
+        append_crossings(x_jet, y_jet, i, 1.0, 0.0, durations[i], points, counts, 0)
+    return points[0, : counts[0], :2].copy()
 
 
 def sample_deviations(
@@ -146,11 +147,12 @@ def sample_deviations(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return SALI and the growth ln(|w1(t)|/|w1(0)|) of deviation vectors at `times` (n,) along a path (4, n).
 
-    vectors (2, 4): δx, δy, δpx, δpy of both vectors at the start of the path. The transition matrices of all intervals are
-    computed together, then applied in turn; the vectors are normalised after each. `times` must be at most one step of the
-    integrator apart.
+    vectors (2, 4): δx, δy, δpx, δpy of both vectors at the start of the path. The transition matrices of many intervals are
+    computed together, and then applied in turn. The vectors are normalised after each interval. `times` must be at most one step
+    of the integrator apart.
     """
     sali = np.empty(times.size)
+    # Squared growth of the first vector in each interval.
     stretch = np.ones(times.size)
     w = vectors / np.linalg.norm(vectors, axis=1)[:, None]
     sali[0] = min(np.linalg.norm(w[0] - w[1]), np.linalg.norm(w[0] + w[1]))
@@ -158,6 +160,7 @@ def sample_deviations(
         execution.raise_if_cancelled()
         end = min(begin + _CHUNK, times.size - 1)
         matrices = transition_matrices(kernels, path[:, begin:end], np.diff(times[begin : end + 1]))
+        # `_apply` changes its other arguments in place.
         _apply(matrices, w, sali[begin + 1 : end + 1], stretch[begin + 1 : end + 1])
     return sali, 0.5 * np.cumsum(np.log(stretch))
 
@@ -170,6 +173,7 @@ def transition_matrices(kernels: ModuleType, path: np.ndarray, durations: np.nda
     for column in range(4):
         w = np.zeros((4, n))
         w[column] = 1.0
+        # The kernel changes the rows of w in place.
         kernels.tangent(n, durations, *state, *w)
         matrices[:, column] = w
     return matrices
@@ -177,11 +181,11 @@ def transition_matrices(kernels: ModuleType, path: np.ndarray, durations: np.nda
 
 @kernel
 def _apply(matrices, w, sali, stretch):
-    """Apply the matrices in turn to the vectors w (2, 4), and normalise these after each.
+    """Apply the matrices (4, 4, n) in turn to the vectors w (2, 4), in place, and normalise the vectors after each matrix.
 
-    sali (n,): SALI after each matrix; stretch (n,): squared growth of the first vector by each matrix.
+    sali (n,) is set to SALI after each matrix, and stretch (n,) to the squared growth of the first vector by each matrix.
     """
-    moved = np.empty((2, 4))
+    products = np.empty((2, 4))
     for n in range(sali.size):
         for v in range(2):
             square = 0.0
@@ -189,10 +193,10 @@ def _apply(matrices, w, sali, stretch):
                 total = 0.0
                 for column in range(4):
                     total += matrices[row, column, n] * w[v, column]
-                moved[v, row] = total
+                products[v, row] = total
                 square += total * total
             for row in range(4):
-                w[v, row] = moved[v, row] / np.sqrt(square)
+                w[v, row] = products[v, row] / np.sqrt(square)
             if v == 0:
                 stretch[n] = square
         difference = 0.0
@@ -203,7 +207,7 @@ def _apply(matrices, w, sali, stretch):
         sali[n] = np.sqrt(min(difference, sum_))
 
 
-# Kernels for browsers, which call generated functions only through kernels.
+# The following kernels are for browsers, which can call generated functions only through kernels.
 
 
 @kernel
@@ -214,12 +218,12 @@ def compute_series(jets, coefficients, start, series):
 
 @kernel
 def sample_steps(jets, coefficients, steps, count, end, path):
-    """Set `path` (2, count · m) to x and y at m equally spaced times in each of the first `count` steps, with its end.
+    """Set `path` (2, count · m) to x and y at m equally spaced times in each of the first `count` steps, including its end.
 
-    steps (n, 5): x, y, px, py, t at the start of each; end: the time at which the last of the `count` steps ends.
+    steps (n, 5): x, y, px, py, t at the start of each step; end: the time at which the last of the `count` steps ends.
     """
     points = path.shape[1] // count
-    # WebAssembly computes the series of pairs, so that two steps are processed at a time.
+    # Two steps are processed at a time, because WebAssembly computes the series of pairs.
     start = np.zeros((4, 2))
     x_series, y_series = np.zeros((ORDER + 1, 2)), np.zeros((ORDER + 1, 2))
     for first in range(0, count, 2):

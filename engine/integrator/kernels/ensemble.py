@@ -1,7 +1,7 @@
 """Propagation of many orbits at the same time, for an animation.
 
-The series of the current step, two polynomials, give the position of an orbit within this step. Steps are computed for full
-vectors of lanes.
+For each orbit, the series of x and y in the current step are kept, which give the position at any time within the step. Steps are
+computed for full vectors of lanes.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ class Ensemble(NamedTuple):
     Attributes
     ----------
     ends
-        (ROWS, n) x, y, px, py, t, size and remainders at the end of the current step; before the first step, those of the start.
+        (ROWS, n) x, y, px, py, t, size and remainders at the end of the current step; before the first step, at the start.
     begin
         (n,) time at which the current step begins.
     jets
@@ -52,7 +52,7 @@ class Ensemble(NamedTuple):
 
 @kernel
 def advance_ensemble(step, jets, coefficients, tolerance, time, beyond, gates, curves, ensemble):
-    """Advance each orbit until its step contains `time`, unless it has left.
+    """Advance each orbit, in place, until its step contains `time`, or until the last time at which it is followed.
 
     beyond: time for which orbits are followed beyond an exit, except into a body; gates (exits, 3) and curves (exits, columns):
     see `engine.integrator.kernels.propagate.Exits`.
@@ -86,13 +86,17 @@ def advance_ensemble(step, jets, coefficients, tolerance, time, beyond, gates, c
         call_jets(jets, coefficients, width, now[0], now[1], now[2], now[3], x_jet, y_jet)
         for i in range(active):
             _keep_step(now, new, flag[i], x_jet, y_jet, i, beyond, gates, curves, ensemble, lane_orbit[i])
+            # The next turn begins with the first orbit that needs another step.
             if _is_late(ensemble, lane_orbit[i], time):
                 next_orbit = min(next_orbit, lane_orbit[i])
 
 
 @kernel
 def place_ensemble(time, ensemble, places, channels):
-    """Set `places` (2, n) to x and y at a time, NaN far outside, and `channels` (n,) to the exits of orbits that have left."""
+    """Set `places` (2, n) to x and y at a time, NaN for an orbit no longer followed, and `channels` (n,) to the exits it left by.
+
+    The channel of an orbit inside stays 0.
+    """
     for orbit in range(ensemble.begin.shape[0]):
         if time >= ensemble.escape_time[orbit]:
             channels[orbit] = ensemble.leaving[orbit]
@@ -105,7 +109,7 @@ def place_ensemble(time, ensemble, places, channels):
 
 @kernel
 def begin_ensemble(starts, ensemble, places, channels):
-    """Set orbits to their starts (n, 4), and set `places` (2, n) and `channels` (n,) accordingly."""
+    """Set all orbits to their starts (n, 4), `places` (2, n) to the positions, and `channels` (n,) to 0."""
     ensemble.ends[:] = 0.0
     ensemble.begin[:] = 0.0
     ensemble.leaving[:] = 0
@@ -122,7 +126,7 @@ def begin_ensemble(starts, ensemble, places, channels):
 
 @kernel
 def reverse_ensemble(time, ensemble, channels, states):
-    """Set `states` (n, 4) to the states of orbits inside at a time, with reversed momenta, and return their number."""
+    """Set `states` (n, 4) to the states at a time of the orbits inside, with reversed momenta, and return their number."""
     count = 0
     for orbit in range(channels.shape[0]):
         if channels[orbit] != 0:
@@ -137,20 +141,20 @@ def reverse_ensemble(time, ensemble, channels, states):
 
 @kernel
 def measure_spread(starts, places, channels):
-    """Return the ratio of the spread of the orbits still inside, at places (2, n), to their spread at the starts (n, 4)."""
-    before = _variance(starts[:, 0], channels) + _variance(starts[:, 1], channels)
-    now = _variance(places[0], channels) + _variance(places[1], channels)
-    return np.sqrt(now / before)
+    """Return the spread of the orbits inside, at places (2, n), divided by the spread of their starts (n, 4)."""
+    start_variance = _variance(starts[:, 0], channels) + _variance(starts[:, 1], channels)
+    variance = _variance(places[0], channels) + _variance(places[1], channels)
+    return np.sqrt(variance / start_variance)
 
 
 @subroutine
 def _variance(values, channels):
-    """Return the variance of the values (n,) of orbits inside."""
+    """Return the variance of the values (n,) of the orbits inside; NaN if there are none."""
     count, total, squares, origin = 0, 0.0, 0.0, 0.0
     for orbit in range(channels.shape[0]):
         if channels[orbit] != 0:
             continue
-        # The values are taken relative to the first, because the values of a small disc differ only in their last digits.
+        # Values are taken relative to the first value, because the values of a small disc differ only in their last digits.
         if count == 0:
             origin = values[orbit]
         difference = values[orbit] - origin
@@ -163,14 +167,14 @@ def _variance(values, channels):
 
 @subroutine
 def _is_late(ensemble, orbit, time):
-    """Return whether the step of a followed orbit ends before a time; the time of a failed orbit is NaN."""
+    """Return whether the step of a followed orbit ends before a time; False for a failed orbit, whose time is NaN."""
     end = ensemble.ends[TIME_ROW, orbit]
     return end < time and end < ensemble.last[orbit]
 
 
 @subroutine
 def _keep_step(now, new, flags, x_jet, y_jet, i, beyond, gates, curves, ensemble, orbit):
-    """Make the step of lane i, with its events, the current step of its orbit."""
+    """Make the step of lane i, with its events, the current step of its orbit in the ensemble."""
     for k in range(ORDER + 1):
         ensemble.jets[0, k, orbit] = x_jet[k, i]
         ensemble.jets[1, k, orbit] = y_jet[k, i]
@@ -188,8 +192,8 @@ def _keep_step(now, new, flags, x_jet, y_jet, i, beyond, gates, curves, ensemble
     ensemble.leaving[orbit] = channel
     if channel > 0:
         ensemble.escape_time[orbit] = now[TIME_ROW, i] + find_exit_time(x_jet, y_jet, i, size, curves[channel - 1])
-        follows = 0.0 if ends_inside(curves[channel - 1]) else beyond
-        ensemble.last[orbit] = ensemble.escape_time[orbit] + follows
+        follow_time = 0.0 if ends_inside(curves[channel - 1]) else beyond
+        ensemble.last[orbit] = ensemble.escape_time[orbit] + follow_time
     if now[1, i] < 0.0 and new[1, i] >= 0.0:
         tau = find_zero(y_jet, i, 0.0, size)
         ensemble.section[0, orbit] = series_value(x_jet, i, tau)

@@ -1,7 +1,7 @@
 """Events within one step, located in its dense output: exits and crossings of the section y = 0.
 
 An orbit that has crossed the path of a Lyapunov orbit does not return. Any other exit can be crossed and recrossed within a step,
-so that the whole step is examined.
+so the whole step is examined for it.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ from engine.integrator.kernels.exit_geometry import (
     position_across,
 )
 
-# Fates of an orbit or a start, besides the number, 1 or more, of the channel through which an orbit escaped.
+# Fates of an orbit or a start, besides the number, 1 or more, of the exit at which an orbit ended.
 BOUNDED, FORBIDDEN, OUTSIDE, NOT_COMPUTED, FAILED = 0, -1, -2, -3, -4
 
 # Number of parts of a step that are examined in turn; within a part, ẏ is assumed to change its sign at most once.
 _PARTS = 8
-# Largest number of iterations for a root.
+# Largest number of iterations in the search for a root.
 _ROOT_ITERATIONS = 80
 # Accuracy of a root, in units of time or length of the well.
 _ROOT_ACCURACY = 1e-15
@@ -41,17 +41,19 @@ def crossed_exit(x0, y0, x1, y1, curves, gates):
         curve = curves[k]
         if not is_circle(curve) and gates[k, 0] * x1 + gates[k, 1] * y1 <= gates[k, 2]:
             continue
-        after = exit_distance(x1, y1, curve)
-        if not after > 0.0:
+        end_distance = exit_distance(x1, y1, curve)
+        # `not … >` also skips NaN.
+        if not end_distance > 0.0:
             continue
-        before = exit_distance(x0, y0, curve)
-        if before > 0.0:
+        start_distance = exit_distance(x0, y0, curve)
+        if start_distance > 0.0:
             continue
         if is_circle(curve):
             return k + 1
         s0 = position_across(x0, y0, curve)
         s1 = position_across(x1, y1, curve)
-        if abs(s0 + (s1 - s0) * before / (before - after)) <= curve[REACH]:
+        # The crossing of the chord of the step, by linear interpolation.
+        if abs(s0 + (s1 - s0) * start_distance / (start_distance - end_distance)) <= curve[REACH]:
             return k + 1
     return 0
 
@@ -78,12 +80,12 @@ def series_slope(jet, i, tau):
 @subroutine
 def find_extremum(jet, i, low, high):
     """Find the time between `low` and `high` at which the slope of a series changes its sign, by bisection."""
-    rising = series_slope(jet, i, low) > 0.0
+    is_rising = series_slope(jet, i, low) > 0.0
     for _ in range(_ROOT_ITERATIONS):
         middle = 0.5 * (low + high)
         if middle <= low or middle >= high:
             break
-        if (series_slope(jet, i, middle) > 0.0) == rising:
+        if (series_slope(jet, i, middle) > 0.0) == is_rising:
             low = middle
         else:
             high = middle
@@ -93,40 +95,40 @@ def find_extremum(jet, i, low, high):
 @subroutine
 def find_zero(jet, i, low, high):
     """Find the zero of a series between two times at which its signs differ, by Newton's method, safeguarded by bisection."""
-    positive = series_value(jet, i, low) > 0.0
+    is_positive = series_value(jet, i, low) > 0.0
     tau = 0.5 * (low + high)
     for _ in range(_ROOT_ITERATIONS):
         value = series_value(jet, i, tau)
-        if (value > 0.0) == positive:
+        if (value > 0.0) == is_positive:
             low = tau
         else:
             high = tau
         slope = series_slope(jet, i, tau)
-        newton = tau - value / slope if slope != 0.0 else low
-        if abs(newton - tau) < _ROOT_ACCURACY or high - low < _ROOT_ACCURACY:
+        newton_tau = tau - value / slope if slope != 0.0 else low
+        if abs(newton_tau - tau) < _ROOT_ACCURACY or high - low < _ROOT_ACCURACY:
             break
-        tau = newton if low < newton < high else 0.5 * (low + high)
+        tau = newton_tau if low < newton_tau < high else 0.5 * (low + high)
     return tau
 
 
 @subroutine
 def crossing_between(jet, i, direction, low, y_low, slope_low, high, y_high, slope_high):
-    """Return times before and after a crossing, or a pair of crossings, of the section in a part of a step; equal for none.
+    """Return times before and after the crossing of the section, in some direction, in a part of a step; equal times for none.
 
     jet: series of y; direction: 1 for crossings from y < 0 to y ≥ 0, −1 for crossings from y > 0 to y ≤ 0; low, high: the ends of
-    the part; y_…, slope_…: y and ẏ there, times `direction`.
+    the part; y_…, slope_…: y and ẏ at these ends, times `direction`. A crossing may be one of a pair in opposite directions.
     """
     # An orbit that starts on the section and moves against the direction counts as being before the section.
-    before = y_low < 0.0 or (y_low == 0.0 and slope_low < 0.0)
-    if before and y_high >= 0.0:
+    is_before = y_low < 0.0 or (y_low == 0.0 and slope_low < 0.0)
+    if is_before and y_high >= 0.0:
         return low, high
     if y_low * y_high > 0.0 and y_low * slope_low < 0.0 and y_high * slope_high > 0.0:
-        turning = find_extremum(jet, i, low, high)
-        turning_before = direction * series_value(jet, i, turning) < 0.0
-        if turning_before and y_low > 0.0:
-            return turning, high
-        if not turning_before and y_low < 0.0:
-            return low, turning
+        turning_tau = find_extremum(jet, i, low, high)
+        turns_before = direction * series_value(jet, i, turning_tau) < 0.0
+        if turns_before and y_low > 0.0:
+            return turning_tau, high
+        if not turns_before and y_low < 0.0:
+            return low, turning_tau
     return low, low
 
 
@@ -139,8 +141,8 @@ def count_upward_crossings(y_jet, i, duration):
     for part in range(1, _PARTS + 1):
         high = duration * part / _PARTS
         y_high, slope_high = series_value(y_jet, i, high), series_slope(y_jet, i, high)
-        begin, end = crossing_between(y_jet, i, 1.0, low, y_low, slope_low, high, y_high, slope_high)
-        if end > begin:
+        before, after = crossing_between(y_jet, i, 1.0, low, y_low, slope_low, high, y_high, slope_high)
+        if after > before:
             count += 1
         low, y_low, slope_low = high, y_high, slope_high
     return count
@@ -148,10 +150,10 @@ def count_upward_crossings(y_jet, i, duration):
 
 @subroutine
 def append_crossings(x_jet, y_jet, i, direction, begin, duration, crossings, found, orbit):
-    """Append x, px and the time of each crossing of y = 0 within `duration` of the start of a step.
+    """Append x, px and the time of each crossing of y = 0 within `duration` of the start of a step to `crossings` (n, m, 3).
 
-    direction: as in `crossing_between`; begin: time at the start of the step; crossings (n, m, 3): the row of `orbit` is filled
-    from index found[orbit], until it has m crossings.
+    direction: as in `crossing_between`; begin: time at the start of the step; found (n,): number of crossings of each orbit,
+    raised. The row of `orbit` is filled from this index, until it has m crossings.
     """
     low = 0.0
     y_low, slope_low = direction * series_value(y_jet, i, low), direction * series_slope(y_jet, i, low)
@@ -170,21 +172,21 @@ def append_crossings(x_jet, y_jet, i, direction, begin, duration, crossings, fou
 
 @subroutine
 def _exit_rate(x_jet, y_jet, i, tau, curve):
-    """Return a number with the sign of the time derivative of the distance from a line, a disc or the escape circle."""
+    """Return a number with the sign of the rate at which the distance from a line, a disc or the escape circle grows."""
     vx = series_slope(x_jet, i, tau)
     vy = series_slope(y_jet, i, tau)
     if curve[SHAPE] == LINE:
         s = min(max(position_across(series_value(x_jet, i, tau), series_value(y_jet, i, tau), curve), -1.0), 1.0)
         slope = (curve[COEFFICIENTS + 1] + 4.0 * s * curve[COEFFICIENTS + 2]) / curve[HALF_WIDTH]
-        along = curve[OUTWARD_X] * vx + curve[OUTWARD_Y] * vy
-        return along - slope * (curve[OUTWARD_X] * vy - curve[OUTWARD_Y] * vx)
+        u_rate = curve[OUTWARD_X] * vx + curve[OUTWARD_Y] * vy
+        return u_rate - slope * (curve[OUTWARD_X] * vy - curve[OUTWARD_Y] * vx)
     rate = (series_value(x_jet, i, tau) - curve[ORIGIN_X]) * vx + (series_value(y_jet, i, tau) - curve[ORIGIN_Y]) * vy
     return -rate if ends_inside(curve) else rate
 
 
 @subroutine
 def _find_excursion(x_jet, y_jet, i, duration, curve):
-    """Return the time within `duration` when an orbit is furthest beyond an exit through which it returns; −1 for never."""
+    """Return the time within `duration` at which an orbit is farthest beyond an exit that it recrosses; −1 if it does not."""
     low = 0.0
     rate_low = _exit_rate(x_jet, y_jet, i, low, curve)
     for part in range(1, _PARTS + 1):
@@ -223,7 +225,7 @@ def passed_exit(x_jet, y_jet, i, duration, curves):
 
 @subroutine
 def find_exit_time(x_jet, y_jet, i, duration, curve):
-    """Find the time from the start of a step to its crossing of an exit, by the Illinois method."""
+    """Return the time from the start of a step to its crossing of an exit, by the Illinois method."""
     low, high = 0.0, duration
     if curve[SHAPE] >= LINE:
         excursion = _find_excursion(x_jet, y_jet, i, duration, curve)
@@ -232,6 +234,7 @@ def find_exit_time(x_jet, y_jet, i, duration, curve):
     at_high = exit_distance(series_value(x_jet, i, high), series_value(y_jet, i, high), curve)
     if at_low >= 0.0:
         return low
+    # The end that moved last. If it moves again, the value at the other end is halved.
     side = 0
     for _ in range(_ROOT_ITERATIONS):
         tau = (low * at_high - high * at_low) / (at_high - at_low)

@@ -1,15 +1,15 @@
 """Exits as rows of numbers: their distance from a point, their points, and their interpolation in a table of energies.
 
-An exit is a place where orbits end: a curve or line across a channel, the edge of a disc around a centre, or the escape circle.
-It is a row of numbers, of which the first have the same meaning for all shapes. A disc has its centre as origin and its radius as
-half width; the escape circle has its radius as half width.
+An exit is a place where orbits end: a curve or line across a channel, the edge of a disc around a body, or the escape circle. It
+is a row of numbers, which has an origin and a half width for all shapes. The origin of a disc is its centre, and the half width
+of a disc or of the escape circle is the radius.
 
 In a well that does not rotate, an exit is the path of a Lyapunov orbit. The coordinates are u outward and q across, 90°
 counterclockwise from u; u is measured from the saddle along its unstable direction, or from the chord of the orbit along its
 normal. The exit is the graph u = f(s) of a polynomial f, with s = (q − middle)/half_width ∈ [−1, 1]. Beyond its ends, which lie
 on the zero-velocity curve, straight lines continue the exit through the forbidden region, up to |s| = reach. A closed channel is
 a short straight line across its saddle, in the forbidden region but for the saddle itself. In a rotating frame, an exit is a
-line u = c + a q², parallel to the ridge of V at the saddle.
+"line": a parabola u = c + a q² along the ridge of V at the saddle.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ from engine.integrator.jit.decorator import kernel, subroutine
 ORIGIN_X, ORIGIN_Y, OUTWARD_X, OUTWARD_Y, BEARING_X, BEARING_Y, REACH, SHAPE = range(8)
 MIDDLE, HALF_WIDTH, SLOPE_LOW, SLOPE_HIGH, COEFFICIENTS = range(8, 13)
 
-# Values of the column SHAPE; orbits cannot return from a CURVE.
+# Values of the column SHAPE, in this order: orbits cannot return from shapes below LINE, and shapes from DISC on are circles.
 CLOSED, CURVE, LINE, DISC, CIRCLE = range(5)
 
 # Degree of the polynomial f, a sum of Chebyshev polynomials.
 CURVE_DEGREE = 40
 CURVE_COLUMNS = COEFFICIENTS + CURVE_DEGREE + 1
 
-# Columns of a table: the gate, the reach, the first column for the axes of an exit, and the first of its columns from `MIDDLE`.
+# Columns of a table: the gate, the reach, the first of the columns ORIGIN_X to OUTWARD_Y, and the first of those from MIDDLE on.
 GATE_COLUMN, REACH_COLUMN, AXES_COLUMN, MIDDLE_COLUMN = 0, 1, 2, 6
 
 
@@ -47,7 +47,7 @@ def is_open_channel(curve):
 
 @subroutine
 def ends_inside(curve):
-    """Return whether orbits end on the inner side of an exit: that of a disc."""
+    """Return whether orbits end on the inner side of an exit, as at a disc."""
     return curve[SHAPE] == DISC
 
 
@@ -61,19 +61,19 @@ def position_across(x, y, curve):
 @subroutine
 def exit_height(s, curve):
     """Return f(s) of an exit over a saddle, with the straight lines beyond its ends."""
-    beyond = 0.0
+    line_height = 0.0
     if s < -1.0:
-        beyond = curve[SLOPE_LOW] * (s + 1.0)
+        line_height = curve[SLOPE_LOW] * (s + 1.0)
         s = -1.0
     elif s > 1.0:
-        beyond = curve[SLOPE_HIGH] * (s - 1.0)
+        line_height = curve[SLOPE_HIGH] * (s - 1.0)
         s = 1.0
     # Clenshaw's recurrence.
     f = 0.0
     last = 0.0
     for k in range(CURVE_DEGREE, 0, -1):
         f, last = 2.0 * s * f - last + curve[COEFFICIENTS + k], f
-    return s * f - last + curve[COEFFICIENTS] + beyond
+    return s * f - last + curve[COEFFICIENTS] + line_height
 
 
 @subroutine
@@ -87,11 +87,11 @@ def exit_distance(x, y, curve):
 
 
 @subroutine
-def _interpolate_exit(nodes, rows, place, shape, exit_curve, gate):
+def _interpolate_exit(nodes, rows, sigma, shape, exit_curve, gate):
     """Set an exit (columns,) and its gate (3,), both zeros initially, from a table.
 
-    place: the position among the nodes; 0.0 or less for a closed channel. The barycentric formula is used (Berrut & Trefethen
-    2004, SIAM Review 46, 501), except for the reach, which is not smooth: the smaller reach of two neighbours is used.
+    sigma: value among the nodes; 0.0 or less for a closed channel. The barycentric formula is used (Berrut & Trefethen 2004, SIAM
+    Review 46, 501), except for the reach: as it is not smooth, the smaller reach of two neighbours is used.
     """
     count = nodes.shape[0]
     exit_curve[OUTWARD_X] = 1.0
@@ -100,22 +100,24 @@ def _interpolate_exit(nodes, rows, place, shape, exit_curve, gate):
     exit_curve[SHAPE] = CLOSED
     gate[0] = 1.0
     gate[2] = np.inf
-    if count == 0 or not place > 0.0:
+    if count == 0 or not sigma > 0.0:
         return
+    # The sums begin at 0.
     exit_curve[SHAPE] = shape
     exit_curve[OUTWARD_X] = 0.0
     exit_curve[HALF_WIDTH] = 0.0
     gate[2] = 0.0
     above = 0
-    while above < count and nodes[above] < place:
+    while above < count and nodes[above] < sigma:
         above += 1
+    # At a node, this node alone counts.
     first, last, total = 0, count, 0.0
-    if above < count and nodes[above] == place:
+    if above < count and nodes[above] == sigma:
         first, last = above, above + 1
     for k in range(first, last):
         weight = 1.0
         if last - first > 1:
-            weight = np.sin(np.pi * (2 * k + 1) / (2 * count)) / (place - nodes[k])
+            weight = np.sin(np.pi * (2 * k + 1) / (2 * count)) / (sigma - nodes[k])
             weight = weight if k % 2 == 0 else -weight
         total += weight
         gate[2] += weight * rows[k, GATE_COLUMN]
@@ -139,7 +141,7 @@ def _interpolate_exit(nodes, rows, place, shape, exit_curve, gate):
 
 @subroutine
 def exit_point(exit_curve, s):
-    """Return x and y of the point of an exit at s, from −1 to 1; on a circle this range is a full turn."""
+    """Return x and y of the point of an exit at s, from −1 to 1; on a circle, this range is a full turn."""
     if is_circle(exit_curve):
         x = exit_curve[ORIGIN_X] + exit_curve[HALF_WIDTH] * np.cos(np.pi * s)
         y = exit_curve[ORIGIN_Y] + exit_curve[HALF_WIDTH] * np.sin(np.pi * s)
@@ -162,15 +164,15 @@ def exit_points(exit_curve, positions, points):
 def interpolate_exit(nodes, rows, saddle, shape, energies, number, curves, gates):
     """Set exit `number` in `curves` (n, exits, columns) at energies (n,) and its gate in `gates` (exits, 3), zeros initially.
 
-    nodes (m,): √(h − saddle), rising Chebyshev nodes of the first kind, where `saddle` is the energy at which the channel opens;
-    rows (m, columns): the exit at each node; shape: CURVE or LINE. Of the gates at all energies, the lowest is chosen, which
-    lies inside all of these exits.
+    nodes (m,): values of √(h − saddle), rising Chebyshev nodes of the first kind; saddle: the energy at which the channel opens;
+    rows (m, columns): the exit at each node; shape: CURVE or LINE. Of the gates at all energies, the lowest is chosen, because it
+    lies inside all these exits.
     """
     gate = np.zeros(3)
     for i in range(energies.shape[0]):
         gate[:] = 0.0
-        place = np.sqrt(max(energies[i] - saddle, 0.0))
-        _interpolate_exit(nodes, rows, place, shape, curves[i, number], gate)
+        sigma = np.sqrt(max(energies[i] - saddle, 0.0))
+        _interpolate_exit(nodes, rows, sigma, shape, curves[i, number], gate)
         if i == 0 or gate[2] < gates[number, 2]:
             for k in range(3):
                 gates[number, k] = gate[k]

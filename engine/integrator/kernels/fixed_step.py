@@ -1,7 +1,7 @@
 """Many orbits with one fixed step, without exits: weighted Birkhoff averages, section points and SALI.
 
-These kernels are compiled once for all potentials, like `engine.integrator.kernels.propagate`. All lanes have the same time, so
-that no lane takes a new orbit. The coordinates of an orbit that escapes become infinite or NaN.
+These kernels are compiled once for all potentials, like `engine.integrator.kernels.propagate`. All lanes have the same time, so a
+lane keeps its orbit. The coordinates of an orbit that escapes become infinite or NaN.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ _STEPS_BETWEEN_CHECKS = 16
 def birkhoff_averages(fixed_step, coefficients, h, weights, state, averages):
     """Compute weighted averages of x² and y² over two consecutive windows, and over a third window that overlaps half of each.
 
-    weights (m,): weights of the samples of a window, h apart; state (4, lanes), changed in place; averages (3, 2, lanes),
-    written.
+    weights (m,): weights of the samples of a window, at intervals h; state (4, lanes): changed in place; averages (3, 2, lanes):
+    set.
     """
     lanes = state.shape[1]
     current = _load_lanes(state)
@@ -67,14 +67,14 @@ def _store_lanes(current, state):
 
 @kernel
 def find_section_points(fixed_step, jets, coefficients, h, steps, state, points, found):
-    """Find the next points (x, px) at which orbits cross y = 0 upward, until each has m points or `steps` are taken.
+    """Find the next points (x, px) at which orbits cross y = 0 upward, until each orbit has m points or `steps` are taken.
 
-    state (4, lanes), changed in place; points (lanes, m, 3): x, px and the time since the start of the step, filled from
-    index found (lanes,).
+    state (4, lanes): changed in place; points (lanes, m, 3): x, px and the time since the start of the step are appended; found
+    (lanes,): number of points of each orbit, raised.
     """
     lanes = state.shape[1]
     current = _load_lanes(state)
-    before = np.zeros((4, lanes))
+    previous = np.zeros((4, lanes))
     ignored_sums = np.zeros((2, LANES))
     # Steps with a crossing are collected, so that their series are computed together.
     start = np.zeros((4, lanes))
@@ -83,13 +83,13 @@ def find_section_points(fixed_step, jets, coefficients, h, steps, state, points,
     for taken in range(steps):
         for c in range(4):
             for i in range(lanes):
-                before[c, i] = current[c, i]
+                previous[c, i] = current[c, i]
         call_fixed_step(fixed_step, coefficients, lanes, h, 0.0, current, ignored_sums)
         for i in range(lanes):
-            if not (before[1, i] < 0.0 and current[1, i] >= 0.0 and found[i] < points.shape[1]):
+            if not (previous[1, i] < 0.0 and current[1, i] >= 0.0 and found[i] < points.shape[1]):
                 continue
             for c in range(4):
-                start[c, buffered] = before[c, i]
+                start[c, buffered] = previous[c, i]
             step_lane[buffered] = i
             buffered += 1
             if buffered == lanes:
@@ -103,17 +103,18 @@ def find_section_points(fixed_step, jets, coefficients, h, steps, state, points,
 
 
 @subroutine
-def _count_below(found, most):
+def _count_below(values, limit):
+    """Return the number of values below a limit."""
     count = 0
-    for each in found:
-        if each < most:
+    for value in values:
+        if value < limit:
             count += 1
     return count
 
 
 @subroutine
 def _locate_crossings(jets, coefficients, h, n, start, step_lane, points, found):
-    """Append the upward crossing in each of the first `n` steps of the buffer to the points of the step's lane."""
+    """Append the upward crossing in each of the first `n` buffered steps to the points of the lane of the step."""
     x_jet = np.empty((ORDER + 1, start.shape[1]))
     y_jet = np.empty((ORDER + 1, start.shape[1]))
     call_jets(jets, coefficients, start.shape[1], start[0], start[1], start[2], start[3], x_jet, y_jet)
@@ -123,10 +124,9 @@ def _locate_crossings(jets, coefficients, h, n, start, step_lane, points, found)
 
 @kernel
 def fixed_step_sali(tangent, fixed_step, coefficients, h, steps, state, first, second, sali):
-    """Compute the smallest SALI over `steps`, min(‖w1 − w2‖, ‖w1 + w2‖) of two unit deviation vectors, eq. 9 of Zotos (2014).
+    """Lower SALI to its smallest value over `steps`: min(‖w1 − w2‖, ‖w1 + w2‖) of two unit vectors, eq. 9 of Zotos (2014).
 
-    state, first, second (4, lanes): orbits and their two deviation vectors, changed in place; sali (lanes,): lowered in place,
-    NaN for an orbit whose coordinates have become infinite.
+    state, first, second (4, lanes): orbits and their two deviation vectors, changed in place; sali (lanes,): changed in place.
     """
     lanes = state.shape[1]
     duration = np.zeros(lanes)
@@ -149,6 +149,7 @@ def fixed_step_sali(tangent, fixed_step, coefficients, h, steps, state, first, s
 
 @subroutine
 def _normalise(w):
+    """Normalise the vectors w (4, lanes) in place."""
     for i in range(w.shape[1]):
         norm = math.sqrt(w[0, i] ** 2 + w[1, i] ** 2 + w[2, i] ** 2 + w[3, i] ** 2)
         for c in range(4):
@@ -157,6 +158,7 @@ def _normalise(w):
 
 @subroutine
 def _lower_sali(first, second, sali):
+    """Lower `sali` (lanes,) to the SALI of unit vectors (4, lanes), where that is smaller."""
     for i in range(sali.shape[0]):
         difference = 0.0
         sum_ = 0.0

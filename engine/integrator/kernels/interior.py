@@ -2,11 +2,12 @@
 
 A path leads downhill from the point until V on the straight line to the origin is below the energy. The path ends with this line,
 and the point is inside if the whole path crosses the exits an even number of times. If the path leads to another minimum, or to a
-value of V below that at the origin, it ends outside, and the point is inside if it crosses the exits an odd number of times.
+value of V below the value at the origin, the path ends outside, and the point is inside if the path crosses the exits an odd
+number of times.
 
-The two kernels evaluate V in different ways. That for polynomials uses the terms, with a proof that V on a line is below a level.
-That for expressions uses a generated function, and replaces V on a line between neighbouring points by the cubic with the same
-values and slopes.
+The two kernels evaluate V in different ways. The kernel for polynomials uses the terms, with a proof that V on a line is below a
+level. The kernel for expressions uses a generated function, and replaces V on a line between neighbouring points by the cubic
+with the same values and slopes.
 """
 
 from __future__ import annotations
@@ -26,22 +27,24 @@ from engine.integrator.kernels.exit_geometry import (
     position_across,
 )
 
-# All lengths and energies are in units of the well. Longest step of a path near the origin.
+# All lengths and energies are in units of the well.
+
+# Longest step of a path near the origin.
 _LONGEST_STEP = 1.0 / 32.0
-# When a step would be shorter than this, the path has reached a minimum.
+# Shortest step of a path; where steps would be shorter, the path has reached a minimum.
 _SHORTEST_STEP = 1e-6
-# Limit on the steps of a path.
+# Largest number of steps of a path.
 _MOST_STEPS = 10_000
-# Far from the origin the longest step is this share of |x| + |y|.
+# Growth of the longest step with |x| + |y|, in units of the longest step near the origin.
 _FAR_SHARE = 0.25
-# The path descends at this angle to the gradient, so that it leaves symmetry lines, which can end at saddles.
+# Cosine and sine of the angle between a path and the gradient; the path thus leaves symmetry lines, which can end at saddles.
 _COS, _SIN = np.cos(0.1), np.sin(0.1)
-# Smallest decrease of V in a step, relative to that along the gradient.
+# Smallest decrease of V in a step, relative to the decrease along the gradient.
 _DECREASE = 0.25
-# V on a line to the origin must be lower than the energy by this, so that the line does not pass over a saddle of the same
+# Smallest difference between the energy and V on a line to the origin, so that the line does not pass over a saddle of the same
 # energy; points may lie above the energy by as much.
 _ENERGY_MARGIN = 1e-12
-# A point with a smaller slope counts as critical.
+# Smallest slope of a point that is not critical.
 _NO_SLOPE = 1e-9
 # Number of parts of a line to the origin.
 _PIECES = 32
@@ -51,7 +54,7 @@ _EDGE_POINTS = 64
 
 @subroutine
 def _polynomial_slopes(polynomial, x, y):
-    """Return V, V_x and V_y; row 2 of `work` becomes the series of V(t x, t y) in t."""
+    """Return V, V_x and V_y of a polynomial; row 2 of `work` becomes the series of V(t x, t y) in t."""
     powers, coefficients, _, work = polynomial
     x_power = 1.0
     y_power = 1.0
@@ -82,17 +85,17 @@ def _polynomial_is_below(polynomial, x, y, level):
     """Return whether all Bernstein coefficients on [0, 1] of the series in row 2 of `work` are at most a level."""
     _, _, bernstein, work = polynomial
     for i in range(bernstein.shape[0]):
-        b = 0.0
+        coefficient = 0.0
         for k in range(i + 1):
-            b += bernstein[i, k] * work[2, k]
-        if b > level:
+            coefficient += bernstein[i, k] * work[2, k]
+        if coefficient > level:
             return False
     return True
 
 
 @subroutine
 def _expression_slopes(generated, x, y):
-    """Return V, V_x and V_y."""
+    """Return V, V_x and V_y of an expression."""
     address, coefficients, _ = generated
     return call_potential_slopes(address, coefficients, x, y)
 
@@ -104,16 +107,18 @@ def _expression_is_below(generated, x, y, level):
     The line begins at the origin, or at the edge of a body at the origin.
     """
     _, _, inner_radius = generated
-    first = inner_radius / max(inner_radius, np.sqrt(x * x + y * y)) if inner_radius > 0.0 else 0.0
-    part = (1.0 - first) / _PIECES
-    value, slope_x, slope_y = _expression_slopes(generated, first * x, first * y)
-    end = value + (slope_x * x + slope_y * y) * part / 3.0
-    if not (value <= level and end <= level):
+    # Points of the line are t (x, y) with begin ≤ t ≤ 1.
+    begin = inner_radius / max(inner_radius, np.sqrt(x * x + y * y)) if inner_radius > 0.0 else 0.0
+    width = (1.0 - begin) / _PIECES
+    value, slope_x, slope_y = _expression_slopes(generated, begin * x, begin * y)
+    # Bernstein coefficients of a cubic are its values at the ends, and these values plus or minus a third of the slope.
+    next_coefficient = value + (slope_x * x + slope_y * y) * width / 3.0
+    if not (value <= level and next_coefficient <= level):
         return False
     for piece in range(1, _PIECES + 1):
-        t = first + piece * part
+        t = begin + piece * width
         value, slope_x, slope_y = _expression_slopes(generated, t * x, t * y)
-        rise = (slope_x * x + slope_y * y) * part / 3.0
+        rise = (slope_x * x + slope_y * y) * width / 3.0
         if not (value <= level and value - rise <= level and (piece == _PIECES or value + rise <= level)):
             return False
     return True
@@ -122,7 +127,7 @@ def _expression_is_below(generated, x, y, level):
 @subroutine
 def _crosses_exits(x0, y0, x1, y1, curves):
     """Return whether the line from (x0, y0) to (x1, y1) crosses the open exits an odd number of times."""
-    odd = False
+    is_odd = False
     for k in range(curves.shape[0]):
         curve = curves[k]
         if not is_open_channel(curve):
@@ -133,24 +138,25 @@ def _crosses_exits(x0, y0, x1, y1, curves):
         low = 0.0
         high = 1.0
         if s0 != s1:
-            one = (-1.0 - s0) / (s1 - s0)
-            other = (1.0 - s0) / (s1 - s0)
-            low = max(low, min(one, other))
-            high = min(high, max(one, other))
+            at_first_end = (-1.0 - s0) / (s1 - s0)
+            at_last_end = (1.0 - s0) / (s1 - s0)
+            low = max(low, min(at_first_end, at_last_end))
+            high = min(high, max(at_first_end, at_last_end))
         elif abs(s0) > 1.0:
             continue
         if low < high:
             at_low = exit_distance((1.0 - low) * x0 + low * x1, (1.0 - low) * y0 + low * y1, curve)
             at_high = exit_distance((1.0 - high) * x0 + high * x1, (1.0 - high) * y0 + high * y1, curve)
-            odd ^= (at_low > 0.0) != (at_high > 0.0)
-    return odd
+            is_odd ^= (at_low > 0.0) != (at_high > 0.0)
+    return is_odd
 
 
 @subroutine
 def _is_outside(slopes, is_below, potential, x, y, energy, curves, bottom):
     """Return whether a point is outside; slopes, is_below: two of the functions above; potential: their first argument."""
     level = energy - _ENERGY_MARGIN
-    odd = False
+    # Whether the path so far crosses the exits an odd number of times.
+    is_odd = False
     step = _LONGEST_STEP
     for _ in range(_MOST_STEPS):
         value, slope_x, slope_y = slopes(potential, x, y)
@@ -161,35 +167,35 @@ def _is_outside(slopes, is_below, potential, x, y, energy, curves, bottom):
             # A saddle of this energy belongs to the well.
             return False
         if is_below(potential, x, y, level):
-            return odd ^ _crosses_exits(x, y, 0.0, 0.0, curves)
+            return is_odd ^ _crosses_exits(x, y, 0.0, 0.0, curves)
         direction_x = -(_COS * slope_x - _SIN * slope_y) / slope
         direction_y = -(_SIN * slope_x + _COS * slope_y) / slope
         step = min(2.0 * step, _LONGEST_STEP * max(1.0, _FAR_SHARE * (abs(x) + abs(y))))
         while step > _SHORTEST_STEP:
-            below, _, _ = slopes(potential, x + step * direction_x, y + step * direction_y)
-            if below < value - _DECREASE * step * slope:
+            next_value, _, _ = slopes(potential, x + step * direction_x, y + step * direction_y)
+            if next_value < value - _DECREASE * step * slope:
                 break
             step *= 0.5
         if step <= _SHORTEST_STEP:
             break
-        odd ^= _crosses_exits(x, y, x + step * direction_x, y + step * direction_y, curves)
+        is_odd ^= _crosses_exits(x, y, x + step * direction_x, y + step * direction_y, curves)
         x += step * direction_x
         y += step * direction_y
-    return not odd
+    return not is_odd
 
 
 @subroutine
 def _find_outside(slopes, is_below, potential, x, y, energy, curves, curve_row, bottom, outside):
-    """Set `outside` (n,) int8 to the number of an exit for each point outside; other and forbidden points keep 0.
+    """Set `outside` (n,) int8 to the number of an exit for each point outside; other points, and forbidden points, keep 0.
 
-    Beyond a circle, this is the number of the circle; elsewhere that of the exit whose saddle is nearest in direction.
+    Beyond a circle, this is the number of the circle; elsewhere, the number of the exit whose saddle is nearest in direction.
     """
     for i in range(x.shape[0]):
         row = curves[curve_row[i]]
         value, _, _ = slopes(potential, x[i], y[i])
         highest = energy[i] + _ENERGY_MARGIN
         circle = _find_circle(x[i], y[i], row)
-        # At the centre of a body V may be infinite or NaN.
+        # At the centre of a body V may be infinite or NaN; `not … >` accepts NaN.
         if circle > 0 and not value > highest:
             outside[i] = circle
         if circle > 0 or not value <= highest or not _has_exits(row):
@@ -198,29 +204,29 @@ def _find_outside(slopes, is_below, potential, x, y, energy, curves, curve_row, 
             continue
         largest = -np.inf
         for k in range(row.shape[0]):
-            towards = row[k, BEARING_X] * x[i] + row[k, BEARING_Y] * y[i]
-            if not is_circle(row[k]) and towards > largest:
-                largest = towards
+            projection = row[k, BEARING_X] * x[i] + row[k, BEARING_Y] * y[i]
+            if not is_circle(row[k]) and projection > largest:
+                largest = projection
                 outside[i] = k + 1
 
 
 @subroutine
 def _find_circle(x, y, curves):
-    """Return the number of the circle beyond which a point lies, 0 for none; a body takes precedence over an escape circle."""
-    found = 0
+    """Return the number of the circle beyond which a point lies, or 0; a body takes precedence over the escape circle."""
+    number = 0
     for k in range(curves.shape[0]):
-        if is_circle(curves[k]) and exit_distance(x, y, curves[k]) > 0.0 and (found == 0 or ends_inside(curves[k])):
-            found = k + 1
-    return found
+        if is_circle(curves[k]) and exit_distance(x, y, curves[k]) > 0.0 and (number == 0 or ends_inside(curves[k])):
+            number = k + 1
+    return number
 
 
 @subroutine
 def _has_exits(curves):
-    """Return whether there are exits over saddles; with an escape circle there are none."""
-    found = False
+    """Return whether there are exits over saddles, which exclude an escape circle; the reach of an absent exit is negative."""
+    has_exits = False
     for k in range(curves.shape[0]):
-        found |= not is_circle(curves[k]) and curves[k, REACH] >= 0.0
-    return found
+        has_exits |= not is_circle(curves[k]) and curves[k, REACH] >= 0.0
+    return has_exits
 
 
 @kernel
@@ -239,7 +245,7 @@ def find_outside_polynomial(powers, coefficients, bernstein, work, x, y, energy,
 def find_outside(potential_slopes, coefficients, inner_radius, x, y, energy, curves, curve_row, outside):
     """Apply `_find_outside` to an expression; inner_radius: radius of a body at the origin, or 0.0."""
     generated = (potential_slopes, coefficients, inner_radius)
-    # `bottom` is the lowest value of V on the edge of the body; a path below it cannot lead there.
+    # `bottom` is the lowest value of V on the edge of the body; a path below this value cannot lead to the edge.
     bottom = np.inf
     for k in range(_EDGE_POINTS):
         angle = 2.0 * np.pi * k / _EDGE_POINTS

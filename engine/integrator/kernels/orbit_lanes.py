@@ -26,18 +26,18 @@ _WEIGHTS = (
     0.10122853629037625915, 0.22238103445337447054, 0.31370664587788728734, 0.36268378337836198297,
     0.36268378337836198297, 0.31370664587788728734, 0.22238103445337447054, 0.10122853629037625915,
 )  # fmt: skip
-# Parts of a step are halved until the results of the rule on a part and on its halves differ by less than this share of the
-# integral over the step.
+# Largest difference between the results of the rule on a part of a step and on its halves, relative to the integral over the
+# step; otherwise the part is halved.
 _ACCURACY = 1e-13
-# Limit on the halvings, because near a point of rest a power of the speed below 1 is almost singular.
+# Largest number of halvings; near a point of rest, a power of the speed below 1 is almost singular.
 _MOST_HALVINGS = 40
 
 
 class _StepBuffer(NamedTuple):
     """Steps whose passages have not been located yet.
 
-    start (6, lanes): x, y, px, py, t and step size; orbit (lanes,); channel (lanes,): the exit through which the step escapes, or
-    0.
+    start (6, lanes): x, y, px, py, t and step size; orbit (lanes,): the orbit of the step; channel (lanes,): the exit through
+    which the orbit escapes in the step, or 0.
     """
 
     start: np.ndarray
@@ -64,12 +64,12 @@ def fill_lanes(orbits):
 def find_section_passages(step, jets, coefficients, tolerance, horizon, gates, curves, state, passages, found):
     """Find the first m downward passages of y = 0 of each orbit before it escapes through an exit or passes `horizon`.
 
-    gates (channels, 3); curves (channels, columns); state (4, lanes), lanes a multiple of `propagate.VECTOR` up to `LANES`;
-    passages (lanes, m, 3): x, px and time; found (lanes,), zeros. A passage goes from y > 0 to y ≤ 0; none is counted after the
-    escape time.
+    A passage goes from y > 0 to y ≤ 0. gates (channels, 3); curves (channels, columns); state (4, lanes), lanes a multiple of
+    `propagate.VECTOR` up to `LANES`; passages (lanes, m, 3): set to x, px and time; found (lanes,): zeros, set to the numbers of
+    passages.
     """
     lanes = state.shape[1]
-    most = passages.shape[1]
+    most_passages = passages.shape[1]
     now, new, flag, crossed, lane_orbit = fill_lanes(state)
     buffer = _StepBuffer(np.zeros((6, lanes)), np.zeros(lanes, np.int64), np.zeros(lanes, np.int64))
     buffered = 0
@@ -78,26 +78,27 @@ def find_section_passages(step, jets, coefficients, tolerance, horizon, gates, c
         width = fill_vectors(active)
         call_step(step, coefficients, width, tolerance, horizon, gates, now, new, flag, crossed)
         for i in range(active - 1, -1, -1):
-            j = lane_orbit[i]
-            full = found[j] == most
-            down = now[1, i] > 0.0 and new[1, i] <= 0.0
-            if flag[i] == 0 and not down and not full:
+            orbit = lane_orbit[i]
+            is_full = found[orbit] == most_passages
+            passes = now[1, i] > 0.0 and new[1, i] <= 0.0
+            if flag[i] == 0 and not passes and not is_full:
                 continue
-            late = flag[i] & OVERSHOOT != 0
+            is_late = flag[i] & OVERSHOOT != 0
             channel = 0
-            if not late and flag[i] & GATE != 0:
+            if not is_late and flag[i] & GATE != 0:
                 channel = crossed_exit(now[0, i], now[1, i], new[0, i], new[1, i], curves, gates)
-            if not late and not full and (down or channel > 0 or flag[i] & HIDDEN != 0):
+            if not is_late and not is_full and (passes or channel > 0 or flag[i] & HIDDEN != 0):
                 for c in range(5):
                     buffer.start[c, buffered] = now[c, i]
                 buffer.start[SIZE_ROW, buffered] = new[SIZE_ROW, i]
-                buffer.orbit[buffered] = j
+                buffer.orbit[buffered] = orbit
                 buffer.channel[buffered] = channel
                 buffered += 1
                 if buffered == lanes:
                     _locate_passages(jets, coefficients, buffer, buffered, curves, passages, found)
                     buffered = 0
-            if late or full or channel > 0:
+            if is_late or is_full or channel > 0:
+                # The last active lane takes the place of the lane whose orbit has ended.
                 active -= 1
                 for c in range(ROWS):
                     new[c, i] = new[c, active]
@@ -108,7 +109,7 @@ def find_section_passages(step, jets, coefficients, tolerance, horizon, gates, c
 
 @subroutine
 def _locate_passages(jets, coefficients, buffer, n, curves, passages, found):
-    """Append the downward passages in each of the first `n` buffered steps to those of the orbit of the step."""
+    """Append the downward passages in each of the first `n` buffered steps to the passages of the orbit of the step."""
     start = buffer.start
     x_jet = np.empty((ORDER + 1, start.shape[1]))
     y_jet = np.empty((ORDER + 1, start.shape[1]))
@@ -125,8 +126,9 @@ def integrate_speed(step, jets, coefficients, tolerance, duration, power, budget
     """Continue the integrals of |v|^power to `duration`, or until an orbit crosses an exit, by at most `budget` steps.
 
     gates (exits, 3); curves (energies, exits, columns); curve_row (lanes,): the row of `curves` of each orbit; orbits (ROWS,
-    lanes), lanes a multiple of `propagate.VECTOR` up to `LANES`: see `ROWS`; the time is infinite where the integral is complete;
-    integral (lanes,): the integrals so far, NaN for an orbit whose steps become too short.
+    lanes), lanes a multiple of `propagate.VECTOR` up to `LANES`: see `ROWS`; integral (lanes,): the integrals so far. Orbits and
+    integrals are changed in place. The time becomes infinite where an integral is complete, and the integral becomes NaN for an
+    orbit whose steps become too short.
     """
     now, new, flag, crossed, lane_orbit = fill_lanes(orbits)
     active = orbits.shape[1]
@@ -141,14 +143,14 @@ def integrate_speed(step, jets, coefficients, tolerance, duration, power, budget
         call_step(step, coefficients, width, tolerance, duration, gates, now, new, flag, crossed)
         call_jets(jets, coefficients, width, now[0], now[1], now[2], now[3], x_jet, y_jet)
         for i in range(active - 1, -1, -1):
-            j = lane_orbit[i]
-            failed = not (np.isfinite(new[0, i]) and np.isfinite(new[1, i]) and new[SIZE_ROW, i] > 0.0)
-            within, ends = _time_inside(now, new, i, flag[i], duration, x_jet, y_jet, curves[curve_row[j]], gates)
-            if failed:
-                integral[j] = np.nan
+            orbit = lane_orbit[i]
+            fails = not (np.isfinite(new[0, i]) and np.isfinite(new[1, i]) and new[SIZE_ROW, i] > 0.0)
+            time_inside, ends = _time_inside(now, new, i, flag[i], duration, x_jet, y_jet, curves[curve_row[orbit]], gates)
+            if fails:
+                integral[orbit] = np.nan
             else:
-                integral[j] += _integrate_step(x_jet, y_jet, i, within, power)
-            if ends or failed:
+                integral[orbit] += _integrate_step(x_jet, y_jet, i, time_inside, power)
+            if ends or fails:
                 active -= 1
                 for c in range(ROWS):
                     new[c, i] = new[c, active]
@@ -165,41 +167,41 @@ def integrate_speed(step, jets, coefficients, tolerance, duration, power, budget
 @subroutine
 def _time_inside(now, new, i, flags, duration, x_jet, y_jet, curves, gates):
     """Return how long, within its step and `duration`, the orbit of lane i is inside, and whether the orbit ends."""
-    late = flags & OVERSHOOT != 0
-    within = min(new[SIZE_ROW, i], duration - now[TIME_ROW, i])
+    is_late = flags & OVERSHOOT != 0
+    time_inside = min(new[SIZE_ROW, i], duration - now[TIME_ROW, i])
     channel = 0
-    if late or flags & (GATE | NEAR) != 0:
+    if is_late or flags & (GATE | NEAR) != 0:
         channel = crossed_exit(now[0, i], now[1, i], new[0, i], new[1, i], curves, gates)
         if channel == 0:
             channel = passed_exit(x_jet, y_jet, i, new[SIZE_ROW, i], curves)
     if channel > 0:
-        within = min(within, find_exit_time(x_jet, y_jet, i, new[SIZE_ROW, i], curves[channel - 1]))
-    return within, late or channel > 0
+        time_inside = min(time_inside, find_exit_time(x_jet, y_jet, i, new[SIZE_ROW, i], curves[channel - 1]))
+    return time_inside, is_late or channel > 0
 
 
 @subroutine
 def _integrate_step(x_jet, y_jet, i, duration, power):
-    """Integrate |v|^power over the first `duration` of a step, in successive parts."""
+    """Return the integral of |v|^power over the first `duration` of a step, as the sum over successive parts."""
     total = 0.0
     low = 0.0
     width = duration
-    error = 0.0
+    largest_error = 0.0
     halvings = 0
     while low < duration:
-        # Gauss's rule is applied to the part and to its halves.
+        # Gauss's rule is applied to the part (0), to its first half (1) and to its second half (2).
         whole = 0.0
         halves = 0.0
-        for rule in range(3):
-            half = 0.5 * width if rule == 0 else 0.25 * width
-            middle = low + (half if rule < 2 else 3.0 * half)
-            found = _gauss(x_jet, y_jet, i, middle, half, power)
-            if rule == 0:
-                whole = found
+        for interval in range(3):
+            half_width = 0.5 * width if interval == 0 else 0.25 * width
+            middle = low + (half_width if interval < 2 else 3.0 * half_width)
+            result = _gauss(x_jet, y_jet, i, middle, half_width, power)
+            if interval == 0:
+                whole = result
             else:
-                halves += found
+                halves += result
         if halvings == 0 and low == 0.0:
-            error = _ACCURACY * whole
-        if abs(halves - whole) > error and halvings < _MOST_HALVINGS:
+            largest_error = _ACCURACY * whole
+        if abs(halves - whole) > largest_error and halvings < _MOST_HALVINGS:
             width *= 0.5
             halvings += 1
             continue
@@ -214,11 +216,11 @@ def _integrate_step(x_jet, y_jet, i, duration, power):
 
 
 @subroutine
-def _gauss(x_jet, y_jet, i, middle, half, power):
-    """Apply Gauss's rule to a part of a step, given by its middle and half its width."""
+def _gauss(x_jet, y_jet, i, middle, half_width, power):
+    """Return the integral of |v|^power over a part of a step by Gauss's rule."""
     total = 0.0
     for k in range(8):
-        vx = series_slope(x_jet, i, middle + half * _NODES[k])
-        vy = series_slope(y_jet, i, middle + half * _NODES[k])
+        vx = series_slope(x_jet, i, middle + half_width * _NODES[k])
+        vy = series_slope(y_jet, i, middle + half_width * _NODES[k])
         total += _WEIGHTS[k] * (vx * vx + vy * vy) ** (0.5 * power)
-    return half * total
+    return half_width * total

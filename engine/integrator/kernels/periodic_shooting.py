@@ -17,16 +17,17 @@ from engine.integrator.source.series import ORDER
 _WALL_STRIDE = 0.02
 # Largest distance of a wall from the line through the saddle, in units of the well.
 _FURTHEST_WALL = 20.0
+# Largest number of bisections.
 _BISECTIONS = 80
-# Limit on the steps of half a period.
+# Largest number of steps of half a period.
 _MOST_STEPS = 400
-# At least the number of saddles of any potential of the highest supported degree.
+# Number of gates: at least the number of saddles of any potential of the highest supported degree.
 _MOST_CHANNELS = 128
 
 
 @subroutine
 def find_wall(potential_value, coefficients, u, saddle_x, saddle_y, outward_x, outward_y, energy):
-    """Return the q < 0 at which the line across the channel at u meets the zero-velocity curve V = energy; NaN if nowhere.
+    """Return the q < 0 at which the line across the channel at u meets the zero-velocity curve V = energy; NaN if it does not.
 
     The coordinates (u, q) are measured from the saddle along `outward` and along the direction 90° counterclockwise from it.
     """
@@ -57,16 +58,16 @@ def shoot(
 ):
     """Start at rest on the zero-velocity curve at u, q < 0, and follow the orbit until its motion across the channel turns back.
 
-    Returns (u̇ and the time at the turning point, number of steps): u̇ < 0 for a start too close to the well, > 0 for a start too
-    far out, 0 for the Lyapunov orbit. If an orbit moves further than `reach` along the channel before it turns, returns ∓1 and
-    NaN.
-    steps (m, 5): x, y, px, py, t at the start of each step, written in place.
+    Returns u̇ and the time at the turning point, and the number of steps: u̇ < 0 for a start too close to the well, u̇ > 0 for a
+    start too far out, u̇ = 0 for the Lyapunov orbit. If an orbit moves farther than `reach` along the channel before it turns,
+    returns −1 or 1 and NaN. Without a start, returns NaN.
+    steps (m, 5): set to x, y, px, py, t at the start of each step.
     """
     now = np.zeros((ROWS, LANES))
     new = np.zeros((ROWS, LANES))
     flag = np.zeros(LANES, np.int64)
     crossed = np.zeros(LANES, np.int64)
-    # No step passes these gates, so that exits are ignored.
+    # No step passes these gates, so exits are ignored.
     gates = np.zeros((_MOST_CHANNELS, 3))
     gates[:, 2] = np.inf
     q = find_wall(potential_value, coefficients, u, saddle_x, saddle_y, outward_x, outward_y, energy)
@@ -80,9 +81,10 @@ def shoot(
         call_step(step, coefficients, 1, tolerance, np.inf, gates, now, new, flag, crossed)
         if outward_x * new[3, 0] - outward_y * new[2, 0] <= 0.0:
             return _turning_point(jets, coefficients, now, new[SIZE_ROW, 0], outward_x, outward_y, count)
-        moved = outward_x * (new[0, 0] - saddle_x) + outward_y * (new[1, 0] - saddle_y) - u
-        if not abs(moved) < reach:
-            return (1.0 if moved > 0.0 else -1.0), np.nan, count + 1
+        excursion = outward_x * (new[0, 0] - saddle_x) + outward_y * (new[1, 0] - saddle_y) - u
+        # `not … <` also rejects NaN.
+        if not abs(excursion) < reach:
+            return (1.0 if excursion > 0.0 else -1.0), np.nan, count + 1
         now, new = new, now
     return np.nan, np.nan, 0
 
@@ -103,5 +105,5 @@ def _turning_point(jets, coefficients, now, h, outward_x, outward_y, count):
         else:
             high = tau
     tau = 0.5 * (low + high)
-    along = outward_x * series_slope(x_jet, 0, tau) + outward_y * series_slope(y_jet, 0, tau)
-    return along, now[TIME_ROW, 0] + tau, count + 1
+    u_rate = outward_x * series_slope(x_jet, 0, tau) + outward_y * series_slope(y_jet, 0, tau)
+    return u_rate, now[TIME_ROW, 0] + tau, count + 1

@@ -2,9 +2,9 @@
 
 The kernel is compiled once for all potentials: `step` and `jets` are the addresses of the functions of one potential, see
 `engine.integrator.jit.function_pointers`. Vector code steps a fixed number of lanes together, and a lane whose orbit ends takes
-the next orbit. The vector step sets flags of lanes that need scalar code. Steps that contain an exit, the horizon or possibly
+the next orbit. The vector step sets flags for lanes that need scalar code. Steps that contain an exit, the horizon or possibly
 hidden crossings are collected in a buffer, and the series of a full buffer are computed together. The arithmetic of an orbit does
-not depend on the other lanes, so that results do not depend on the order, the budget or the threads.
+not depend on the other lanes, so results do not depend on the order of the orbits, on the budget or on the threads.
 """
 
 from __future__ import annotations
@@ -32,14 +32,13 @@ from engine.integrator.source.series import ORDER
 from engine.integrator.source.step_flags import GATE, HIDDEN, NEAR, OVERSHOOT
 
 VECTOR = 8
-"""The number of active lanes is rounded up to a multiple of this, so that no lane falls into the scalar remainder of a loop."""
-
+"""Number of lanes to a multiple of which active lanes are rounded up, so that no lane is in the scalar remainder of a loop."""
 
 NO_TRACE = np.empty((0, 5))
 """The argument `trace` of `propagate` for orbits whose steps are not recorded."""
 
 GOES_ON = -1
-"""Replaces the channel in the buffer of steps if the orbit does not end in the step."""
+"""Value of the channel in the buffer of steps for an orbit that does not end in the step."""
 
 
 class Exits(NamedTuple):
@@ -48,8 +47,8 @@ class Exits(NamedTuple):
     Attributes
     ----------
     gates
-        (exits, 3) g_x, g_y, g, the same for all energies. For a channel, an orbit can be outside only beyond the line g_x x + g_y
-        y = g. For a disc or the escape circle, they are its centre and its radius.
+        (exits, 3) three numbers for each exit, the same for all energies. For a channel, they are g_x, g_y and g: an orbit can be
+        outside only beyond the line g_x x + g_y y = g. For a disc or the escape circle, they are its centre and its radius.
     curves
         (energies, exits, columns) exits, see `engine.integrator.kernels.exit_geometry`.
     curve_row
@@ -94,8 +93,9 @@ class Orbits(NamedTuple):
 class _StepBuffer(NamedTuple):
     """Steps whose events have not been located yet.
 
-    start (4, lanes): state; h, orbit, channel (lanes,): size of the step, number of the orbit, and the channel through which it
-    escapes, 0 if the step passes the horizon, or GOES_ON; x_jet, y_jet (ORDER + 1, lanes): work space for their series.
+    start (4, lanes): state at the start of each step; h (lanes,): its size; orbit (lanes,): the number of its orbit; channel
+    (lanes,): the channel through which the orbit escapes, 0 if the step passes the horizon, or GOES_ON; x_jet, y_jet (ORDER + 1,
+    lanes): work space for the series.
     """
 
     start: np.ndarray
@@ -123,16 +123,16 @@ def _make_buffer(lanes):
 def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget, least, exits, orbits, trace):
     """Propagate the orbits numbered `todo` until they escape, pass `horizon`, or `budget` steps of lanes are taken.
 
-    The kernel also ends when fewer than `least` orbits are left, because these would not fill the lanes. exits: `Exits`; orbits:
-    `Orbits`. With `final` the horizon is t_max: events of the last, partial step are located, and an orbit still inside is
-    BOUNDED; otherwise it stays NOT_COMPUTED. trace (m, 5): x, y, px, py, t at the start of each step of the first lane, written
-    until it is full; `NO_TRACE` for more than one orbit. Returns the total number of steps of all orbits.
+    The kernel also ends when fewer than `least` orbits are active, because they would not fill the lanes. exits: `Exits`; orbits:
+    `Orbits`, changed in place. With `final`, the horizon is t_max: events of the last, partial step are located, and an orbit
+    still inside becomes BOUNDED; otherwise it stays NOT_COMPUTED. trace (m, 5): set to x, y, px, py, t at the start of each step
+    of the first lane, until it is full; `NO_TRACE` for more than one orbit. Returns the total number of steps of all orbits.
     """
     # Only `np.zeros` is used: Numba takes about 0.1 s to compile each function that makes arrays, for each type of array.
     now, new = np.zeros((ROWS, LANES)), np.zeros((ROWS, LANES))
     flag, crossed, lane_orbit = np.zeros(LANES, np.int64), np.zeros(LANES, np.int64), np.zeros(LANES, np.int64)
     buffer, buffered = _make_buffer(LANES), 0
-    # These arrays hold one step; WebAssembly computes the series of pairs.
+    # A buffer for one step; it has two lanes, because WebAssembly computes the series of pairs.
     single = _make_buffer(2)
     active = min(LANES, todo.shape[0])
     next_orbit, taken, traced, left = active, 0, 0, budget
@@ -149,12 +149,12 @@ def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget,
         for i in range(active - 1, -1, -1):
             if flag[i] == 0:
                 continue
-            j = lane_orbit[i]
-            ends, channel, failed, has_events = _judge_step(jets, coefficients, flag[i], now, new, i, final, exits, j, single)
+            orbit = lane_orbit[i]
+            ends, channel, fails, has_events = _judge_step(jets, coefficients, flag[i], now, new, i, final, exits, orbit, single)
             if ends:
-                _end_orbit(now, i, crossed, orbits, j, failed)
+                _end_orbit(now, i, crossed, orbits, orbit, fails)
             if has_events:
-                _buffer_step(now, new, i, j, channel if ends else GOES_ON, buffer, buffered)
+                _buffer_step(now, new, i, orbit, channel if ends else GOES_ON, buffer, buffered)
                 buffered += 1
                 if buffered == LANES:
                     _locate_events(jets, coefficients, buffer, buffered, horizon, exits, orbits)
@@ -188,16 +188,16 @@ def _trace_step(now, trace, number):
 
 
 @subroutine
-def _end_orbit(now, i, crossed, orbits, orbit, failed):
+def _end_orbit(now, i, crossed, orbits, orbit, fails):
     """Store the orbit of lane i, which ends in this step; its events may still have to be located."""
     _store_orbit(now, i, crossed, orbits, orbit)
     orbits.pending[orbit] = 0
-    orbits.fate[orbit] = FAILED if failed else NOT_COMPUTED
+    orbits.fate[orbit] = FAILED if fails else NOT_COMPUTED
 
 
 @subroutine
 def _refill_lane(orbits, todo, next_orbit, active, lanes, i, lane_orbit, crossed):
-    """Load the next orbit into lane i, or move the last active lane there; return the numbers of lanes and of the next orbit."""
+    """Load the next orbit into lane i, or move the last active lane there; return the number of lanes and the next orbit."""
     if next_orbit < todo.shape[0]:
         _load_orbit(orbits, todo[next_orbit], lanes, i, lane_orbit, crossed)
         return active, next_orbit + 1
@@ -211,17 +211,17 @@ def _judge_step(jets, coefficients, flags, now, new, i, final, exits, orbit, sin
 
     now, new: lanes at the start and the end of the step; i: lane of the orbit; single: buffer for one step.
     """
-    failed = not (np.isfinite(new[0, i]) and np.isfinite(new[1, i]) and new[SIZE_ROW, i] > 0.0)
-    late = flags & OVERSHOOT != 0
+    fails = not (np.isfinite(new[0, i]) and np.isfinite(new[1, i]) and new[SIZE_ROW, i] > 0.0)
+    is_late = flags & OVERSHOOT != 0
     curves = exits.curves[exits.curve_row[orbit]]
     channel = 0
-    if not late and flags & (GATE | NEAR) != 0:
+    if not is_late and flags & (GATE | NEAR) != 0:
         channel = crossed_exit(now[0, i], now[1, i], new[0, i], new[1, i], curves, exits.gates)
-    if flags & NEAR != 0 and not late and channel == 0 and not failed:
+    if flags & NEAR != 0 and not is_late and channel == 0 and not fails:
         channel = _passes_exit(jets, coefficients, now, i, new[SIZE_ROW, i], curves, single)
-    ends = late or channel > 0 or failed
-    has_events = channel > 0 or (late and final) or (not late and flags & HIDDEN != 0)
-    return ends, channel, failed, has_events and not failed
+    ends = is_late or channel > 0 or fails
+    has_events = channel > 0 or (is_late and final) or (not is_late and flags & HIDDEN != 0)
+    return ends, channel, fails, has_events and not fails
 
 
 @subroutine
@@ -259,6 +259,7 @@ def _store_orbit(lanes, i, crossed, orbits, orbit):
 
 @subroutine
 def _move_lane(lanes, source, target, lane_orbit, crossed):
+    """Copy one lane to another."""
     for c in range(ROWS):
         lanes[c, target] = lanes[c, source]
     lane_orbit[target] = lane_orbit[source]
@@ -281,13 +282,13 @@ def _locate_events(jets, coefficients, buffer, n, horizon, exits, orbits):
     start, x_jet, y_jet = buffer.start, buffer.x_jet, buffer.y_jet
     call_jets(jets, coefficients, start.shape[1], start[0], start[1], start[2], start[3], x_jet, y_jet)
     for i in range(n):
-        j = buffer.orbit[i]
+        orbit = buffer.orbit[i]
         h = buffer.h[i]
         channel = buffer.channel[i]
         if channel == GOES_ON:
-            orbits.crossings[j] += count_upward_crossings(y_jet, i, h)
+            orbits.crossings[orbit] += count_upward_crossings(y_jet, i, h)
             continue
-        curves = exits.curves[exits.curve_row[j]]
+        curves = exits.curves[exits.curve_row[orbit]]
         if channel == 0:
             x_end, y_end = series_value(x_jet, i, h), series_value(y_jet, i, h)
             channel = crossed_exit(start[0, i], start[1, i], x_end, y_end, curves, exits.gates)
@@ -295,17 +296,17 @@ def _locate_events(jets, coefficients, buffer, n, horizon, exits, orbits):
                 channel = passed_exit(x_jet, y_jet, i, h, curves)
         # The series of the whole step is used, so that the escape time is the same to the bit for every horizon.
         tau = find_exit_time(x_jet, y_jet, i, h, curves[channel - 1]) if channel > 0 else h
-        if channel == 0 or orbits.t[j] + tau > horizon:
+        if channel == 0 or orbits.t[orbit] + tau > horizon:
             # The state stays at the start of the step that would pass t_max, so that the orbit can be continued.
-            orbits.last_crossings[j] = count_upward_crossings(y_jet, i, horizon - orbits.t[j])
-            orbits.fate[j] = BOUNDED
+            orbits.last_crossings[orbit] = count_upward_crossings(y_jet, i, horizon - orbits.t[orbit])
+            orbits.fate[orbit] = BOUNDED
             continue
-        orbits.crossings[j] += count_upward_crossings(y_jet, i, tau)
-        orbits.t[j] += tau
-        orbits.state[j, 0] = series_value(x_jet, i, tau)
-        orbits.state[j, 1] = series_value(y_jet, i, tau)
-        orbits.state[j, 2] = series_slope(x_jet, i, tau)
-        orbits.state[j, 3] = series_slope(y_jet, i, tau)
-        orbits.remainder[j] = 0.0
+        orbits.crossings[orbit] += count_upward_crossings(y_jet, i, tau)
+        orbits.t[orbit] += tau
+        orbits.state[orbit, 0] = series_value(x_jet, i, tau)
+        orbits.state[orbit, 1] = series_value(y_jet, i, tau)
+        orbits.state[orbit, 2] = series_slope(x_jet, i, tau)
+        orbits.state[orbit, 3] = series_slope(y_jet, i, tau)
+        orbits.remainder[orbit] = 0.0
         # Only rounding errors can carry an orbit at rest on the saddle of a closed channel over this saddle.
-        orbits.fate[j] = BOUNDED if curves[channel - 1, SHAPE] == CLOSED else channel
+        orbits.fate[orbit] = BOUNDED if curves[channel - 1, SHAPE] == CLOSED else channel

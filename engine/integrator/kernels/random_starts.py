@@ -13,13 +13,13 @@ from engine.integrator.jit.function_pointers import call_potential_value
 from engine.integrator.kernels.exit_geometry import CURVE, HALF_WIDTH, OUTWARD_X, OUTWARD_Y, SHAPE, exit_point, is_open_channel
 
 BEFORE_EXIT = 9.0
-"""Orbits near the edge of a tube start this long before they reach the exit, in units of the well."""
+"""Time from the start of an orbit near the edge of a tube to its exit, in units of the well."""
 
 # Mask of 32 bits.
 _WORD = 0xFFFFFFFF
 # Number of parts of an exit, for each of which the flux is computed.
 _PARTS = 200
-# Distance of entering orbits from the exit, as a share of its half width. On the exit, rounding would decide which are inside.
+# Distance of entering orbits from the exit, as a share of its half width; on the exit, rounding would decide which are inside.
 _SHIFT = 1e-7
 # Distance of orbits near a tube from its edge, measured at the exit, as a share of the half width of the exit.
 _FROM_EDGE = 3e-3
@@ -37,18 +37,18 @@ def _draw_number(seed):
 
 @kernel
 def scatter_points(seed, window, is_round, points):
-    """Set `points` (axes, n) to random points, uniform in a window (4,) or in the ellipse inscribed in it.
+    """Set `points` (axes, n) to random points, uniform in a window (4,) or, if `is_round`, in the ellipse inscribed in it.
 
     A third coordinate is an angle from 0 to 2π. seed (1,) is changed.
     """
     width, height = window[1] - window[0], window[3] - window[2]
     for i in range(points.shape[1]):
-        one, other = _draw_number(seed), _draw_number(seed)
+        x_share, y_share = _draw_number(seed), _draw_number(seed)
         if is_round:
-            radius, angle = 0.5 * np.sqrt(one), 2.0 * np.pi * other
-            one, other = 0.5 + radius * np.cos(angle), 0.5 + radius * np.sin(angle)
-        points[0, i] = window[0] + width * one
-        points[1, i] = window[2] + height * other
+            radius, angle = 0.5 * np.sqrt(x_share), 2.0 * np.pi * y_share
+            x_share, y_share = 0.5 + radius * np.cos(angle), 0.5 + radius * np.sin(angle)
+        points[0, i] = window[0] + width * x_share
+        points[1, i] = window[2] + height * y_share
         for axis in range(2, points.shape[0]):
             points[axis, i] = 2.0 * np.pi * _draw_number(seed)
 
@@ -57,11 +57,12 @@ def scatter_points(seed, window, is_round, points):
 def draw_at_exits(potential_value, coefficients, curves, energy, of_tubes, seed, states):
     """Set `states` (n, 4) to random states on the open exits over saddles (exits, columns); return their number.
 
-    The states move into the well, with the distribution of the flux, like those of `engine.sample_entrances`. With `of_tubes`,
-    they lie near the edge of the tubes of orbits that, in backward time, approach the Lyapunov orbits: half of them inside, where
-    orbits pass the exit, and half outside, where they turn back. In a rotating frame the exits are lines, not Lyapunov orbits,
-    and have no tubes.
+    The states move into the well, with the distribution of the flux, like those of `sample_entrances`. With `of_tubes`, the
+    states lie near the edges of the tubes of orbits that, in backward time, approach the Lyapunov orbits: half of them inside a
+    tube, where orbits pass the exit, and half outside, where orbits turn back. In a rotating frame the exits are lines, not
+    Lyapunov orbits, and have no tubes. seed (1,) is changed.
     """
+    # The flux through all parts up to each part of an exit.
     flux = np.zeros(curves.shape[0] * _PARTS)
     total = 0.0
     for exit in range(curves.shape[0]):
@@ -75,15 +76,15 @@ def draw_at_exits(potential_value, coefficients, curves, energy, of_tubes, seed,
     if not total > 0.0:
         return 0
     for i in range(states.shape[0]):
-        place = _find_above(flux, total * _draw_number(seed))
-        s = _middle(place % _PARTS) + (2.0 * _draw_number(seed) - 1.0) / _PARTS
+        index = _find_above(flux, total * _draw_number(seed))
+        s = _middle(index % _PARTS) + (2.0 * _draw_number(seed) - 1.0) / _PARTS
         share, shift = 2.0 * _draw_number(seed) - 1.0, _SHIFT
         if of_tubes:
             side = 1.0 if share < 0.0 else -1.0
             is_inside = _draw_number(seed) < 0.5
             share = side * (np.sqrt(1.0 - _FROM_EDGE * _FROM_EDGE) if is_inside else 1.0)
             shift = _SHIFT if is_inside else _FROM_EDGE
-        _launch(potential_value, coefficients, energy, curves[place // _PARTS], s, share, shift, states[i])
+        _launch(potential_value, coefficients, energy, curves[index // _PARTS], s, share, shift, states[i])
     return states.shape[0]
 
 
@@ -108,31 +109,31 @@ def _middle(part):
 
 @subroutine
 def _launch(potential_value, coefficients, energy, curve, s, share, shift, state):
-    """Set a state at s of an exit, shifted inward; `share` is the component of its direction along the exit."""
+    """Set `state` (4,) at s of an exit, shifted inward; `share` is the component of its direction along the exit."""
     x, y, along_x, along_y = _point_and_slope(curve, s)
     length = np.sqrt(along_x * along_x + along_y * along_y)
     along_x, along_y = along_x / length, along_y / length
     side = -1.0 if along_y * curve[OUTWARD_X] - along_x * curve[OUTWARD_Y] > 0.0 else 1.0
     inward_x, inward_y = side * along_y, -side * along_x
-    rest = np.sqrt(max(1.0 - share * share, 0.0))
+    inward_share = np.sqrt(max(1.0 - share * share, 0.0))
     state[0] = x + shift * curve[HALF_WIDTH] * inward_x
     state[1] = y + shift * curve[HALF_WIDTH] * inward_y
     speed = _speed(potential_value, coefficients, energy, state[0], state[1])
-    state[2] = speed * (share * along_x + rest * inward_x)
-    state[3] = speed * (share * along_y + rest * inward_y)
+    state[2] = speed * (share * along_x + inward_share * inward_x)
+    state[3] = speed * (share * along_y + inward_share * inward_y)
 
 
 @subroutine
 def _point_and_slope(curve, s):
     """Return x and y of a point of an exit, and their derivatives with respect to s."""
-    half = 0.5 / _PARTS
+    step = 0.5 / _PARTS
     x, y = exit_point(curve, s)
-    x_before, y_before = exit_point(curve, s - half)
-    x_after, y_after = exit_point(curve, s + half)
-    return x, y, (x_after - x_before) / (2.0 * half), (y_after - y_before) / (2.0 * half)
+    x_before, y_before = exit_point(curve, s - step)
+    x_after, y_after = exit_point(curve, s + step)
+    return x, y, (x_after - x_before) / (2.0 * step), (y_after - y_before) / (2.0 * step)
 
 
 @subroutine
 def _speed(potential_value, coefficients, energy, x, y):
-    """Return the speed at a point."""
+    """Return the speed at a point; 0 where it is forbidden."""
     return np.sqrt(max(2.0 * (energy - call_potential_value(potential_value, coefficients, x, y)), 0.0))

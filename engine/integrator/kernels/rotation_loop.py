@@ -11,11 +11,11 @@ from engine.integrator.jit.decorator import kernel, subroutine
 
 @kernel
 def arrange_loop(points, loop):
-    """Sort points (n, 2) along their closed curve into `loop` (n, 2); return the largest height of an arc, −1 without a curve.
+    """Write points (n, 2) into `loop` (n, 2), sorted along their closed curve; return the largest height of an arc.
 
-    The neighbours of the first point on the curve are its nearest returns ahead and behind, after a and b steps. As no other
-    point is nearer, there are at most a + b points (three-gap theorem, Sós 1958), in the order of the rotation by p/(a + b) with
-    p a ≡ 1.
+    Return −1 if the points are not on a closed curve. The neighbours of the first point on the curve are its nearest returns
+    ahead and behind, after a and b steps. As no other point is nearer, there are at most a + b points (three-gap theorem, Sós
+    1958). They are in the order of the rotation by p/(a + b), where p a ≡ 1 modulo a + b.
     """
     a, b = _nearest_returns(points)
     if a == 0 or b == 0 or points.shape[0] > a + b:
@@ -23,11 +23,12 @@ def arrange_loop(points, loop):
     p = _inverse(a, a + b)
     if p == 0:
         return -1.0
+    # Index of the point at each position along the curve; −1 for a position without a point.
     point_at = np.full(a + b, -1)
-    place = 0
+    position = 0
     for i in range(points.shape[0]):
-        point_at[place] = i
-        place = (place + p) % (a + b)
+        point_at[position] = i
+        position = (position + p) % (a + b)
     n = 0
     for i in point_at:
         if i >= 0:
@@ -39,7 +40,7 @@ def arrange_loop(points, loop):
 
 @subroutine
 def _nearest_returns(points):
-    """Return the steps to the nearest later point on either side of the first point, the nearer one first; 0 for none."""
+    """Return the steps to the nearest later point on either side of the first point, the nearer point first; 0 for no point."""
     nearest = 1
     for i in range(2, points.shape[0]):
         if _squared_distance(points, i) < _squared_distance(points, nearest):
@@ -56,7 +57,7 @@ def _nearest_returns(points):
 
 @subroutine
 def _squared_distance(points, i):
-    """Return the squared distance of point i from the first one."""
+    """Return the squared distance of point i from the first point."""
     return (points[i, 0] - points[0, 0]) ** 2 + (points[i, 1] - points[0, 1]) ** 2
 
 
@@ -74,15 +75,15 @@ def _inverse(a, modulus):
 
 @subroutine
 def _largest_arc_height(loop):
-    """Return the largest height of the curve's arc over a gap of a loop (n, 2), from the larger turn at its ends."""
+    """Return the largest height of the curve's arc over a gap of a loop (n, 2), from the larger turn at the ends of the gap."""
     n = loop.shape[0]
     largest = 0.0
-    before = _turn(loop, 0)
+    turn = _turn(loop, 0)
     for i in range(n):
-        after = _turn(loop, (i + 1) % n)
+        next_turn = _turn(loop, (i + 1) % n)
         gap = math.hypot(loop[(i + 1) % n, 0] - loop[i, 0], loop[(i + 1) % n, 1] - loop[i, 1])
-        largest = max(largest, gap * max(before, after) / 8.0)
-        before = after
+        largest = max(largest, gap * max(turn, next_turn) / 8.0)
+        turn = next_turn
     return largest
 
 

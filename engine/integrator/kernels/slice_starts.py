@@ -1,6 +1,6 @@
 """Starts at the points of a slice, in units of the well, and the pixels of a picture with the outcomes of their orbits.
 
-Kernels call the subroutines with numbers, and Python with arrays, so that `engine.slices.slice_starts` uses the same formulas.
+Kernels call the subroutines with numbers, and `engine.slices.slice_starts` calls them with arrays, so both use the same formulas.
 """
 
 from __future__ import annotations
@@ -13,24 +13,25 @@ from engine.integrator.kernels.events import BOUNDED, FORBIDDEN, NOT_COMPUTED, O
 
 # Columns of the coordinates that vary along the axes of a slice: the state, an angle of the velocity, and the energy.
 X, Y, PX, PY, ANGLE, H = range(6)
+# Number of these columns.
 COORDINATES = 6
 
-# What the energy determines: a momentum, given by its column, or the speed, at an angle from the x axis or from the radius.
+# Codes for what the energy determines: besides PX and PY, the speed at an angle from the x axis or from the radius.
 LAUNCHED, LAUNCHED_FROM_RADIUS = 6, 7
 
-# Largest reported number of crossings, that of 16 bits.
+# Largest reported number of crossings: the largest integer of 16 bits.
 _MOST_CROSSINGS = 65535.0
 
 
 @subroutine
-def interval_centre(low, high, place, count):
+def interval_centre(low, high, index, count):
     """Return the centre of one of `count` equal parts of an interval; the centres are exactly symmetric if the interval is."""
-    return 0.5 * (low + high) + (high - low) * ((2 * place + 1 - count) / (2 * count))
+    return 0.5 * (low + high) + (high - low) * ((2 * index + 1 - count) / (2 * count))
 
 
 @subroutine
 def rest_energy(momentum, value):
-    """Return the energy of a start without the momentum that the energy determines; value: V at the start."""
+    """Return the energy of a start whose determined momentum is 0; momentum: the other momentum; value: V at the start."""
     return 0.5 * (momentum * momentum) + value
 
 
@@ -61,7 +62,7 @@ def launch_from_radius(x, y, speed, angle):
 
 @subroutine
 def _place(motion, points, i, start):
-    """Set the coordinates of a start (COORDINATES,); the momentum that the energy determines is set from `motion`."""
+    """Set the coordinates of a start (COORDINATES,); the momentum that the energy determines is set later."""
     for column in range(COORDINATES):
         start[column] = motion[0, column]
         for axis in range(points.shape[0]):
@@ -69,14 +70,14 @@ def _place(motion, points, i, start):
 
 
 @subroutine
-def _held_momentum(start, decided):
-    """Return the momentum that the energy does not determine; 0 if it determines the speed."""
-    held = 0.0
+def _fixed_momentum(start, decided):
+    """Return the momentum that the energy does not determine; 0 if the energy determines the speed."""
+    momentum = 0.0
     if decided == PX:
-        held = start[PY]
+        momentum = start[PY]
     elif decided == PY:
-        held = start[PX]
-    return held
+        momentum = start[PX]
+    return momentum
 
 
 @kernel
@@ -90,13 +91,14 @@ def find_starts(potential_value, coefficients, motion, decided, sign, points, st
     for i in range(points.shape[1]):
         _place(motion, points, i, start)
         value = call_potential_value(potential_value, coefficients, start[X], start[Y])
-        found = decided_momentum(start[H], value, _held_momentum(start, decided), sign)
+        # The speed, if the energy determines the speed.
+        momentum = decided_momentum(start[H], value, _fixed_momentum(start, decided), sign)
         if decided == LAUNCHED:
-            start[PX], start[PY] = launch(found, start[ANGLE])
+            start[PX], start[PY] = launch(momentum, start[ANGLE])
         elif decided == LAUNCHED_FROM_RADIUS:
-            start[PX], start[PY] = launch_from_radius(start[X], start[Y], found, start[ANGLE])
+            start[PX], start[PY] = launch_from_radius(start[X], start[Y], momentum, start[ANGLE])
         else:
-            start[decided] = found
+            start[decided] = momentum
         for row in range(4):
             states[row, i] = start[row]
         energies[i] = start[H]
@@ -118,7 +120,7 @@ def find_required_energies(potential_value, coefficients, motion, decided, windo
             point[0, 0] = window[0] + (window[1] - window[0]) * column / (columns - 1)
             _place(motion, point, 0, start)
             value = call_potential_value(potential_value, coefficients, start[X], start[Y])
-            required[row, column] = rest_energy(_held_momentum(start, decided), value) - start[H]
+            required[row, column] = rest_energy(_fixed_momentum(start, decided), value) - start[H]
 
 
 @kernel
@@ -147,23 +149,23 @@ def place_pixels(window, columns, rows, part_rows, part_columns, energy_axis, po
     """Set `points` (2, n) to the centres of the pixels in some rows (m,) of a picture and in its first columns, row by row.
 
     window (4,): lowest and highest abscissa and ordinate; columns, rows: size of the whole picture; energy_axis: 0, 1, or −1 for
-    none. energy_rows (n,) is set to the position of each pixel along the axis of the energy; 0 without such an axis.
+    none. energy_rows (n,) is set to the index of each pixel in the part along the axis of the energy; 0 without such an axis.
     """
-    for place in range(part_rows.shape[0]):
-        ordinate = interval_centre(window[2], window[3], part_rows[place], rows)
+    for part_row in range(part_rows.shape[0]):
+        ordinate = interval_centre(window[2], window[3], part_rows[part_row], rows)
         for column in range(part_columns):
-            pixel = place * part_columns + column
+            pixel = part_row * part_columns + column
             points[0, pixel] = interval_centre(window[0], window[1], column, columns)
             points[1, pixel] = ordinate
-            energy_rows[pixel] = column if energy_axis == 0 else place if energy_axis == 1 else 0
+            energy_rows[pixel] = column if energy_axis == 0 else part_row if energy_axis == 1 else 0
 
 
 @kernel
 def select_starts(states, outside, rows, fate, kept, kept_states, kept_rows):
-    """Select the starts that exist and lie inside all exits, return their number, and set the `fate` (n,) of the other starts.
+    """Select the starts that exist and lie inside all exits, and return their number; the `fate` (n,) of other starts is set.
 
-    states (4, n): NaN where forbidden; outside (n,): number of an exit, 0 for none; rows (n,): rows of the exits at the energies.
-    The kernel sets kept (n,), the numbers of the selected starts, kept_states (n, 4) and kept_rows (n,).
+    states (4, n): NaN where forbidden; outside (n,): number of an exit, 0 for none; rows (n,): rows of the exits at the energies;
+    kept (n,), kept_states (n, 4), kept_rows (n,): set to the indices, the states and the rows of the selected starts.
     """
     count = 0
     for i in range(outside.shape[0]):
@@ -182,7 +184,7 @@ def select_starts(states, outside, rows, fate, kept, kept_states, kept_rows):
 
 @kernel
 def report_ends(orbits, kept, fate, time, crossings):
-    """Set `fate`, `time` of the escape, NaN if there is none, and `crossings` (n,) for the orbits numbered `kept`.
+    """Set `fate` (n,), `time` (n,) of the escape or NaN, and `crossings` (n,) at the pixels `kept` of the orbits.
 
     Orbits that are inside at the horizon are undecided. For `orbits` see `engine.integrator.kernels.propagate.Orbits`.
     """

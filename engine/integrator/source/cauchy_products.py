@@ -14,7 +14,7 @@ Polynomial = Mapping[Monomial, float]
 
 X, Y = (1, 0), (0, 1)
 
-# Coefficients count as equal up to this relative difference; coefficients such as that of −x³ ε/3 have a few rounding errors.
+# Largest relative difference of coefficients that count as equal; some, such as that of −x³ ε/3, have a few rounding errors.
 _ROUNDING = 1e-15
 # Number of cached results of `_cheapest`, of 1 kB each; a potential of degree 8 needs about 4 000.
 _CHEAPEST_PRODUCTS = 4096
@@ -24,8 +24,8 @@ _CHEAPEST_PRODUCTS = 4096
 class Product:
     """One Cauchy product: the series of `monomial` from the series of two known factors.
 
-    Only half of a square is computed, which saves a multiplication in every other coefficient. Therefore the series of a monomial
-    has a scale factor, see `find_scales`.
+    Of a square, half the series is computed, which saves a multiplication in every other coefficient. Therefore the series of a
+    monomial has a scale factor, see `find_scales`.
     """
 
     monomial: Monomial
@@ -36,11 +36,11 @@ class Product:
 def plan_products(needed: AbstractSet[Monomial]) -> list[Product]:
     """Return a short list of Cauchy products that yields every needed monomial.
 
-    The search is greedy, monomial by monomial, and is repeated with each divisor of a needed monomial formed first; the cheapest
-    plan wins.
+    The search is greedy, monomial by monomial. It is repeated with each divisor of a needed monomial formed first, and the
+    cheapest plan wins.
     """
-    seeds = {(a, b) for i, j in needed for a in range(i + 1) for b in range(j + 1) if a + b > 1}
-    plans = [_greedy_plan([*seed, *sorted(needed, key=_by_degree)]) for seed in ([], *([m] for m in sorted(seeds)))]
+    divisors = {(a, b) for i, j in needed for a in range(i + 1) for b in range(j + 1) if a + b > 1}
+    plans = [_greedy_plan([*first, *sorted(needed, key=_by_degree)]) for first in ([], *([m] for m in sorted(divisors)))]
     return min(plans, key=lambda plan: sum(map(_cost, plan)))
 
 
@@ -53,10 +53,11 @@ def _cost(product: Product) -> float:
     return 0.55 if product.left == product.right else 1.0
 
 
-def _greedy_plan(wanted: list[Monomial]) -> list[Product]:
+def _greedy_plan(monomials: list[Monomial]) -> list[Product]:
+    """Return the products that yield the monomials, with the cheapest way to form each in turn."""
     known = {X, Y, (0, 0)}
     plan: list[Product] = []
-    for monomial in wanted:
+    for monomial in monomials:
         for product in _cheapest(monomial, frozenset(known))[1]:
             known.add(product.monomial)
             plan.append(product)
@@ -65,7 +66,7 @@ def _greedy_plan(wanted: list[Monomial]) -> list[Product]:
 
 @functools.lru_cache(maxsize=_CHEAPEST_PRODUCTS)
 def _cheapest(monomial: Monomial, known: frozenset[Monomial]) -> tuple[float, list[Product]]:
-    """Return the cost and the products of the cheapest way to form a monomial."""
+    """Return the cost and the products of the cheapest way to form a monomial, given known monomials."""
     if monomial in known:
         return 0.0, []
     best: tuple[float, list[Product]] = (float("inf"), [])
@@ -85,23 +86,23 @@ def _cheapest(monomial: Monomial, known: frozenset[Monomial]) -> tuple[float, li
 def find_scales(plan: Sequence[Product]) -> dict[Monomial, float]:
     """Return {monomial: scale}; a computed series is the series of the monomial times this scale."""
     scales = {X: 1.0, Y: 1.0, (0, 0): 1.0}
-    for p in plan:
-        scales[p.monomial] = scales[p.left] * scales[p.right] * (0.5 if p.left == p.right else 1.0)
+    for product in plan:
+        scales[product.monomial] = scales[product.left] * scales[product.right] * (0.5 if product.left == product.right else 1.0)
     return scales
 
 
 def find_difference(products: Sequence[Product], polynomials: Sequence[Polynomial]) -> tuple[Product, Product] | None:
     """Return two squares that enter all `polynomials` only as their difference, to rounding, so that one series replaces both.
 
-    Their series must have the same scale, because the difference is formed from the series.
+    The series of the squares must have the same scale, because the difference is formed from the series.
     """
     scales = find_scales(products)
-    factors = {monomial for p in products for monomial in (p.left, p.right)}
-    squares = [p for p in products if p.left == p.right and p.monomial not in factors]
-    for one, other in itertools.combinations(squares, 2):
-        if scales[one.monomial] != scales[other.monomial]:
+    factors = {monomial for product in products for monomial in (product.left, product.right)}
+    squares = [product for product in products if product.left == product.right and product.monomial not in factors]
+    for first, second in itertools.combinations(squares, 2):
+        if scales[first.monomial] != scales[second.monomial]:
             continue
-        pairs = [(polynomial.get(one.monomial, 0.0), -polynomial.get(other.monomial, 0.0)) for polynomial in polynomials]
+        pairs = [(polynomial.get(first.monomial, 0.0), -polynomial.get(second.monomial, 0.0)) for polynomial in polynomials]
         if all(math.isclose(a, b, rel_tol=_ROUNDING) for a, b in pairs):
-            return one, other
+            return first, second
     return None

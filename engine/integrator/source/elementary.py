@@ -1,10 +1,10 @@
 """exp, log, sin, cos and real powers of a value of a straight-line program, written in its own operations.
 
-A call of a library function in each lane would prevent vectorisation, and vector libraries round differently from scalar
-functions, so that results would depend on the lane. The functions here reduce the argument by exact multiples of log 2 or π/2 and
-evaluate polynomials, without branches: the operations are the same in each lane and in WebAssembly. Their relative errors are
-below 1e-15, except for `power_of` with exponents that are not halves of integers, where they are |a log u| times as large. NaN or
-an infinite result marks an argument outside the domain, and a step from there fails.
+A call of a library function in each lane would prevent vectorisation. Vector libraries round differently from scalar functions,
+so results would depend on the lane. The functions here reduce the argument by exact multiples of log 2 or π/2 and evaluate
+polynomials, without branches: the operations are the same in each lane and in WebAssembly. Relative errors are below 1e-15; those
+of `power_of` with an exponent a that is no half of an integer are |a log u| times as large. NaN or an infinite result marks an
+argument outside the domain, and a step from there fails.
 """
 
 from __future__ import annotations
@@ -19,25 +19,26 @@ from engine.integrator.source.straight_line import Value, where
 _PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459")
 _LN_2 = Fraction("0.69314718055994530941723212145817656807550013436025525412068")
 
-# When this number is added to a number below 2^51 in magnitude, the sum is rounded to an integer, which its bits contain.
+# The sum of this number and a number below 2^51 in magnitude is rounded to an integer, which the bits of the sum contain.
 _ROUND = 1.5 * 2.0**52
+# Bits of this number, as an integer.
 _ROUND_BITS = 0x4338000000000000
 # Bits of doubles, as integers: a unit of the exponent, the number 1, and √½.
 _EXPONENT = 1 << 52
 _ONE_BITS = 1023 << 52
 _ROOT_HALF_BITS = 0x3FE6A09E667F3BCD
 
-# exp of larger arguments is treated as infinite, because no orbit meets such a force.
+# Largest argument of exp; larger arguments are replaced by it, because no orbit meets such a force.
 _LARGEST_EXPONENT = 700.0
 _SMALLEST_NORMAL = 2.0**-1022
-# Larger multiples of π/2 have too many bits to be exact.
+# Largest argument of sin and cos; larger multiples of π/2 have too many bits to be exact.
 _LARGEST_ANGLE = 1e6
-# Bits of each part of a number but the last.
+# Number of bits of each part of a number, except the last part.
 _HIGH_BITS = 30
 
 
 def _parts(value: Fraction, count: int) -> list[float]:
-    """Split a number into doubles, all but the last with few bits, so that their products with integers are exact."""
+    """Split a number into doubles. All but the last have few bits, so that their products with integers are exact."""
     parts = []
     for _ in range(count - 1):
         _, exponent = math.frexp(float(value))
@@ -49,7 +50,9 @@ def _parts(value: Fraction, count: int) -> list[float]:
 
 _LN_2_PARTS, _HALF_PI_PARTS = _parts(_LN_2, 2), _parts(_PI / 2, 3)
 
-# Coefficients of polynomials, the highest first: exp r for |r| ≤ log 2 / 2.
+# Coefficients of polynomials, the highest first.
+
+# exp r for |r| ≤ log 2 / 2.
 _EXP = [1.0 / math.factorial(k) for k in range(14, -1, -1)]
 # sin r / r in r² for |r| ≤ π/4.
 _SIN = [(-1.0) ** k / math.factorial(2 * k + 1) for k in range(8, -1, -1)]
@@ -109,14 +112,14 @@ def power_of(u: Value, exponent: float) -> Value:
     """Return u^a: by products and a square root if 2a is an integer, otherwise as exp(a log u), which is NaN for u ≤ 0."""
     if 2.0 * exponent != int(2.0 * exponent):
         return exp_of(exponent * log_of(u))
-    whole, size = int(abs(exponent)), abs(exponent)
-    factors = [u.program.apply("sqrt", u)] if size != whole else []
+    remaining = int(abs(exponent))
+    factors = [u.program.apply("sqrt", u)] if abs(exponent) != remaining else []
     square = u
-    while whole:
-        if whole % 2:
+    while remaining:
+        if remaining % 2:
             factors.append(square)
-        whole //= 2
-        square = square * square if whole else square
+        remaining //= 2
+        square = square * square if remaining else square
     result = factors[0]
     for factor in factors[1:]:
         result = result * factor
@@ -128,13 +131,13 @@ FUNCTIONS: Mapping[str, Callable[[Value], Value]] = MappingProxyType({"exp": exp
 
 
 def _nearest_integer(u: Value) -> tuple[Value, Value]:
-    """Return the nearest integer as a double and as an integer."""
+    """Return the integer nearest to u as a double and as an integer."""
     shifted = u + _ROUND
     return shifted - _ROUND, u.program.apply("bits_of", shifted) - _ROUND_BITS
 
 
 def _reduce(u: Value, n: Value, parts: list[float]) -> Value:
-    """Return u minus n times the number that is the sum of `parts`."""
+    """Return u minus n times the sum of `parts`, part by part."""
     for part in parts:
         u = u - n * part
     return u

@@ -35,19 +35,21 @@ from engine.integrator.source.series import (
 from engine.integrator.source.series_plan import plan_series
 from engine.integrator.source.straight_line import StraightLine, Value
 
+# Exponent of a square root.
 _ROOT = 0.5
 
+# Axes of the second derivatives of V.
 _HESSIAN = ((0, 0), (0, 1), (1, 1))
 
-# If the norm of the last coefficients is above this, the step would be too short to change t.
+# Largest norm of the last coefficients; above it, the step would be too short to change t.
 _LARGEST_NORM = 1e180
 
 Entry = tuple[str, int]
-"""(graph, place): an entry of the table, which contains a number of one of the graphs of a structure."""
+"""(graph, index): an entry of the table, which contains a number of one of the graphs of a structure."""
 
 
 class ExpressionStructure(NamedTuple):
-    """The graphs of V, of its gradient, of gradient and Hessian, and of V and gradient; and the zeros of the Hessian."""
+    """The graphs of V, of its gradient, of gradient and Hessian, and of V and gradient; and which second derivatives are zero."""
 
     setting: Setting
     value: Graph
@@ -108,7 +110,7 @@ class ExpressionStructure(NamedTuple):
     def tabulate(self, expression: Expression, entries: Sequence[Entry]) -> list[float]:
         """Return the numbers of the graphs."""
         numbers = {name: values for name, (_, values) in _graphs(expression).items()}
-        return [numbers[graph][place] for graph, place in entries]
+        return [numbers[graph][index] for graph, index in entries]
 
 
 def structure_of_expression(expression: Expression, setting: Setting) -> ExpressionStructure:
@@ -118,6 +120,7 @@ def structure_of_expression(expression: Expression, setting: Setting) -> Express
 
 
 def _graphs(expression: Expression) -> dict[str, tuple[Graph, tuple[float, ...]]]:
+    """Return the graphs of an `ExpressionStructure`, by name, each with its numbers."""
     gradient = slopes(expression)
     return {
         "value": make_graph((expression,)),
@@ -128,7 +131,7 @@ def _graphs(expression: Expression) -> dict[str, tuple[Graph, tuple[float, ...]]
 
 
 class _Recurrence:
-    """The series of all nodes of a graph along an orbit."""
+    """Appends the operations for the series of all nodes of a graph along an orbit to a program."""
 
     def __init__(
         self,
@@ -150,6 +153,7 @@ class _Recurrence:
         self._inner_sums: dict[tuple[int, int, bool, int], Value] = {}
         # Sums of series, see `_common_product`.
         self._common_sums: dict[tuple[int, int], list[Value]] = {}
+        # Number of known coefficients of each node.
         self._orders = 0
 
     def advance_to(self, k: int) -> None:
@@ -167,30 +171,33 @@ class _Recurrence:
                 self.series[index].append(self._first(node))
             elif index in self._plan.needed:
                 self.series[index].append(_RULES[planned.kind](self, index, planned, k))
+        # The first two results of the graph are the gradient of V.
         for axis, slope in zip((self.x, self.y), self.graph.results, strict=False):
             axis.append(self.series[slope][k] * (-1.0 / ((k + 1) * (k + 2))))
         if self.rotates:
             add_coriolis(self.program, self.x, self.y)
 
     def _first(self, node: Node) -> Value:
+        """Return coefficient 0 of a node: its value at the start of the step."""
         value = _value_of(self.program, self.name, node, {index: series[0] for index, series in enumerate(self.series) if series})
         return reduce(add, self._remainders(node), value)
 
     def _remainders(self, node: Node) -> Iterator[Value]:
         """Yield the terms that remainders add to a sum with x or y, such as the distance from a body.
 
-        Elsewhere remainders do not matter.
+        In other nodes, remainders do not matter.
         """
-        for operand, place in zip(node.operands, node.numbers, strict=False):
+        for operand, number in zip(node.operands, node.numbers, strict=False):
             remainder = self.remainders.get(self.graph.nodes[operand].kind)
             if remainder is not None and node.kind in ("sum", "shift"):
-                yield remainder if node.kind == "shift" else self.program.entry((self.name, place)) * remainder
+                yield remainder if node.kind == "shift" else self.program.entry((self.name, number)) * remainder
 
     def slopes(self, index: int, k: int) -> list[Value]:
-        """Return j u_j of a node for j = 0 … k; the first is not used."""
-        known, series = self._slopes.setdefault(index, [self.series[index][0]]), self.series[index]
-        known += [float(j) * series[j] if j > 1 else series[j] for j in range(len(known), k + 1)]
-        return known
+        """Return j u_j of a node for j = 0 … k; the first value is not used."""
+        series = self.series[index]
+        slopes = self._slopes.setdefault(index, [series[0]])
+        slopes += [float(j) * series[j] if j > 1 else series[j] for j in range(len(slopes), k + 1)]
+        return slopes
 
     def reciprocal(self, index: int) -> Value:
         """Return 1 / u_0 of a node."""
@@ -200,24 +207,29 @@ class _Recurrence:
 
     def add(self, index: int, node: Node, k: int) -> Value:
         """Return (Σ c u)_k = Σ c u_k."""
-        entries = {each: self.program.entry((self.name, place)) for each, place in zip(node.operands, node.numbers, strict=False)}
+        factors = {
+            operand: self.program.entry((self.name, number)) for operand, number in zip(node.operands, node.numbers, strict=False)
+        }
         groups = self._plan.groups[index]
-        grouped = {each for products in groups.values() for each in products}
-        single = (entries[each] * self.series[each][k] for each in node.operands if each not in grouped)
-        common = (self._common_product(index, root, {each: entries[each] for each in groups[root]}, k) for root in groups)
-        return total(self.program, chain(single, common))
+        grouped = {operand for products in groups.values() for operand in products}
+        single_terms = (factors[operand] * self.series[operand][k] for operand in node.operands if operand not in grouped)
+        group_terms = (
+            self._common_product(index, root, {operand: factors[operand] for operand in groups[root]}, k) for root in groups
+        )
+        return total(self.program, chain(single_terms, group_terms))
 
     def _common_product(self, index: int, root: int, entries: Mapping[int, Value], k: int) -> Value:
         """Return (Σ c f (x + d))_k = Σ (x + d)_0 c f_k + Σ x_j (Σ c f)_(k − j) over j = 1 … k.
 
         The factor x + d is almost 0 near a body.
         """
-        factors = {product: self.graph.nodes[product].operands for product in entries}
-        combined = self._common_sums.setdefault((index, root), [])
-        for j in range(len(combined), k + 1):
-            combined.append(reduce(add, (entries[each] * self.series[f][j] for each, (f, _) in factors.items())))
-        pairs = [(self.series[root][j], combined[k - j]) for j in range(1, k + 1)]
-        pairs += [(self.series[d][0], entries[each] * self.series[f][k]) for each, (f, d) in factors.items()]
+        # For each product, the nodes f and x + d.
+        operands = {product: self.graph.nodes[product].operands for product in entries}
+        common_sums = self._common_sums.setdefault((index, root), [])
+        for j in range(len(common_sums), k + 1):
+            common_sums.append(reduce(add, (entries[product] * self.series[f][j] for product, (f, _) in operands.items())))
+        pairs = [(self.series[root][j], common_sums[k - j]) for j in range(1, k + 1)]
+        pairs += [(self.series[d][0], entries[product] * self.series[f][k]) for product, (f, d) in operands.items()]
         return sum_of_products(pairs)
 
     def shift(self, _index: int, node: Node, k: int) -> Value:
@@ -227,23 +239,25 @@ class _Recurrence:
     def product(self, _index: int, node: Node, k: int) -> Value:
         """Return (u v)_k = Σ u_j v_(k − j).
 
-        Products of u + c and v + d for all c and d differ only in the first and the last term.
+        The products of u + c and v + d for all c and d differ only in the first and the last term.
         """
-        one, other = node.operands
-        u, v = self.series[one], self.series[other]
-        if one == other:
-            half = reduce(add, [*self._inner_sum(one, one, k), u[0] * u[k]])
+        left, right = node.operands
+        u, v = self.series[left], self.series[right]
+        if left == right:
+            half = reduce(add, [*self._inner_sum(left, left, k), u[0] * u[k]])
             return half + half
-        return reduce(add, [*self._inner_sum(one, other, k), u[0] * v[k], u[k] * v[0]])
+        return reduce(add, [*self._inner_sum(left, right, k), u[0] * v[k], u[k] * v[0]])
 
-    def _inner_sum(self, one: int, other: int, k: int) -> list[Value]:
+    def _inner_sum(self, left: int, right: int, k: int) -> list[Value]:
         """Return Σ u_j v_(k − j) over j = 1 … k − 1, or half of it for a square; an empty list for an empty sum."""
         if k == 1:
             return []
-        key = self._plan.roots[one], self._plan.roots[other], one == other, k
+        key = self._plan.roots[left], self._plan.roots[right], left == right, k
         if key not in self._inner_sums:
-            u, v = self.series[one], self.series[other]
-            self._inner_sums[key] = sum_of_products(islice(half_square(u, k), k // 2) if one == other else inner_pairs(u, v, k))
+            u, v = self.series[left], self.series[right]
+            # Without the last pair of `half_square`, that of u_0.
+            pairs = islice(half_square(u, k), k // 2) if left == right else inner_pairs(u, v, k)
+            self._inner_sums[key] = sum_of_products(pairs)
         return [self._inner_sums[key]]
 
     def quotient(self, index: int, node: Node, k: int) -> Value:
@@ -253,25 +267,26 @@ class _Recurrence:
 
     def power(self, index: int, node: Node, k: int) -> Value:
         """Return w_k of w = u^a from k u_0 w_k = Σ (a (k − j) − j) u_(k − j) w_j over j = 0 … k − 1, because u w' = a u' w."""
-        (argument, *higher), a = node.operands, node.exponent
+        # A node of a higher power, if there is one, is the numerator of u^a = u^(a + 1)/u.
+        (argument, *numerator), a = node.operands, node.exponent
         if a == _ROOT:
             return self._root(index, argument, k)
-        if higher or a == -1.0:
-            return self._quotient(index, higher, argument, k)
+        if numerator or a == -1.0:
+            return self._quotient(index, numerator, argument, k)
         u, w = self.series[argument], self.series[index]
         pairs = [((a * (k - j) - j) * u[k - j], w[j]) for j in range(k) if a * (k - j) != j]
         return total(self.program, iter([sum_of_products(pairs)] if pairs else [])) * (1.0 / k) * self.reciprocal(argument)
 
     def _root(self, index: int, argument: int, k: int) -> Value:
         """Return w_k of w = √u from 2 w_0 w_k = u_k − Σ w_j w_(k − j) over 0 < j < k, a quarter of the work of other powers."""
-        half, lower = 0.5 * self.series[argument][k], list(islice(half_square(self.series[index], k), k // 2))
-        return (half - sum_of_products(lower) if lower else half) * self.reciprocal(index)
+        half, lower_pairs = 0.5 * self.series[argument][k], list(islice(half_square(self.series[index], k), k // 2))
+        return (half - sum_of_products(lower_pairs) if lower_pairs else half) * self.reciprocal(index)
 
     def _quotient(self, index: int, numerator: list[int], argument: int, k: int) -> Value:
         """Return w_k of w = v/u, with v = 1 if there is no numerator, in half the work of other powers."""
         u, w = self.series[argument], self.series[index]
-        lower = sum_of_products((u[k - j], w[j]) for j in range(k))
-        return (self.series[numerator[0]][k] - lower if numerator else -1.0 * lower) * self.reciprocal(argument)
+        lower_sum = sum_of_products((u[k - j], w[j]) for j in range(k))
+        return (self.series[numerator[0]][k] - lower_sum if numerator else -1.0 * lower_sum) * self.reciprocal(argument)
 
     def exponential(self, index: int, node: Node, k: int) -> Value:
         """Return w_k of w = exp u from k w_k = Σ j u_j w_(k − j) over j = 1 … k."""
@@ -283,8 +298,8 @@ class _Recurrence:
         u = self.series[argument]
         if k == 1:
             return u[1] * self.reciprocal(argument)
-        lower = sum_of_products((slope, u[k - j]) for j, slope in enumerate(self.slopes(index, k - 1)) if j)
-        return (u[k] - lower * (1.0 / k)) * self.reciprocal(argument)
+        lower_sum = sum_of_products((slope, u[k - j]) for j, slope in enumerate(self.slopes(index, k - 1)) if j)
+        return (u[k] - lower_sum * (1.0 / k)) * self.reciprocal(argument)
 
     def sine(self, _index: int, node: Node, k: int) -> Value:
         """Return (sin u)_k from k (sin u)_k = Σ j u_j (cos u)_(k − j) over j = 1 … k."""
@@ -310,20 +325,23 @@ _RULES: Mapping[str, Callable[[_Recurrence, int, Node, int], Value]] = {
 }
 
 
-def _weighted_sum(slopes: Series, other: Series, k: int) -> Value:
-    """Return Σ j u_j v_(k − j) over j = 1 … k, the newest products last."""
-    pairs: Iterable[tuple[Value, Value]] = ((slopes[j], other[k - j]) for j in range(1, k + 1))
+def _weighted_sum(slopes: Series, v: Series, k: int) -> Value:
+    """Return Σ j u_j v_(k − j) over j = 1 … k, the newest products last; `slopes` are j u_j."""
+    pairs: Iterable[tuple[Value, Value]] = ((slopes[j], v[k - j]) for j in range(1, k + 1))
     return sum_of_products(pairs)
 
 
 def _value_of(program: StraightLine, name: str, node: Node, values: Mapping[int, Value]) -> Value:
-    """Return the value of a node from those of its operands."""
+    """Return the value of a node from the values of its operands."""
     match node.kind:
         case "sum":
-            places = iter(node.numbers)
-            parts = (program.entry((name, place)) * values[each] for each, place in zip(node.operands, places, strict=False))
-            constant = [program.entry((name, place)) for place in node.numbers[len(node.operands) :]]
-            return total(program, iter([*constant, *parts]))
+            terms = (
+                program.entry((name, number)) * values[operand]
+                for operand, number in zip(node.operands, node.numbers, strict=False)
+            )
+            # A number without an operand is a constant.
+            constant = [program.entry((name, number)) for number in node.numbers[len(node.operands) :]]
+            return total(program, iter([*constant, *terms]))
         case "shift":
             return values[node.operands[0]] + program.entry((name, node.numbers[0]))
         case "product":

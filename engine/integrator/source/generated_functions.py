@@ -9,13 +9,13 @@ from typing import Any, NamedTuple
 from engine.integrator.source.straight_line import TABLE, StraightLine, Value
 
 ADDED = ("crossed", "sums")
-"""Arrays to which kernels add their results; in other arrays the results replace the previous numbers."""
+"""Names of the arrays to which kernels add results; in other arrays, results replace the previous numbers."""
 
 
 class Place(NamedTuple):
-    """The place of a number in an array: ``array[row, column]``, where a column of None stands for the column of the lane.
+    """The place of a number in an array: ``array[row, column]``. A column of None stands for the column of the lane.
 
-    For a one-dimensional array the row is None.
+    For a one-dimensional array, the row is None.
     """
 
     array: str
@@ -33,13 +33,13 @@ class GeneratedFunction(NamedTuple):
     Attributes
     ----------
     name, program, kernel
-        Name of the kernel; its program; its source.
+        Name, program and source of the kernel.
     arguments
-        Names of its arguments.
+        Names of the arguments of the kernel.
     reads
-        Places of those inputs of the program that are not arguments.
+        Places of those inputs of the program that are not arguments, by name.
     writes
-        Places for its results, in order; empty if the kernel returns them.
+        Places for the results of the program, in order; empty if the kernel returns the results.
     """
 
     name: str
@@ -60,10 +60,10 @@ def lane_loop(
 ) -> GeneratedFunction:
     """Return a kernel that, for each lane, reads inputs from arrays, runs a straight-line program and writes its results.
 
-    reads, constants: places of the inputs; writes: values of the program, or source. Constants are read before the loop. If they
-    were read in the loop, each would be checked for overlap with every array that the loop writes, and with more than about 100
-    checks nothing is vectorised. rows: arrays with rows of a fixed length. The compiler then knows that these do not overlap;
-    the checks of separate arrays would take as long as 16 lanes.
+    reads, constants: places of the inputs, by name; writes: values of the program, or source, by place; rows: lengths of the rows
+    of arrays with a fixed length. Constants are read before the loop. If they were read in the loop, each would be checked for
+    overlap with every array that the loop writes, and with more than about 100 checks nothing is vectorised. The compiler knows
+    that rows of a fixed length do not overlap; the checks of separate arrays would take as long as 16 lanes.
     """
     program.results = [value.index for value in writes.values() if isinstance(value, Value)]
     sources = {place: f"r{value.index}" if isinstance(value, Value) else value for place, value in writes.items()}
@@ -72,20 +72,20 @@ def lane_loop(
     lines = [
         "@kernel",
         f"def {name}(coefficients, n, {arguments}):",
-        *(f"    if {each}.shape[1] != {n}: raise ValueError('{each}: must have {n} columns')" for each, n in rows.items()),
-        *(f"    {each} = {source}" for each, source in {TABLE: "read_table(coefficients)", **constants}.items()),
+        *(f"    if {array}.shape[1] != {n}: raise ValueError('{array}: must have {n} columns')" for array, n in rows.items()),
+        *(f"    {variable} = {source}" for variable, source in {TABLE: "read_table(coefficients)", **constants}.items()),
         "    for i in range(n):",
-        *(f"        {each} = {place}" for each, place in reads.items()),
+        *(f"        {variable} = {place}" for variable, place in reads.items()),
         f"        ({''.join(f'r{index}, ' for index in program.results)}) = {program.name}({', '.join(program.parameters)})",
         *(f"        {place} {'+=' if place.array in ADDED else '='} {source}" for place, source in sources.items()),
     ]
-    written = tuple(place for place, value in writes.items() if isinstance(value, Value))
+    result_places = tuple(place for place, value in writes.items() if isinstance(value, Value))
     names = ("coefficients", "n", *arguments.split(", "))
-    return GeneratedFunction(name, program, "\n".join(lines) + "\n", names, {**constants, **reads}, written)
+    return GeneratedFunction(name, program, "\n".join(lines) + "\n", names, {**constants, **reads}, result_places)
 
 
 def point_function(name: str, append: Callable[[StraightLine], Mapping[str, Value]], table: dict[Any, int]) -> GeneratedFunction:
-    """Return a function of one point (x, y)."""
+    """Return a function of one point (x, y); `append` writes its program and returns its results by name."""
     program = StraightLine(f"_{name}", table)
     values = append(program)
     program.results = [value.index for value in values.values()]

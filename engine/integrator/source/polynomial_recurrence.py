@@ -44,30 +44,33 @@ _PLANS = 64
 # Radius of a circle that contains all steps of orbits inside the exits of a well of size 1.
 _REACH = 3.0
 
-# If the norm of the last coefficients is above this, the step would be too short to change t.
+# Largest norm of the last coefficients; above it, the step would be too short to change t.
 _LARGEST_NORM = 1e90
 
 Terms = tuple[tuple[int, int, float], ...]
+"""((i, j, c), …): the terms c x^i y^j of V."""
 
 Entry = tuple[Monomial, float, int]
 """(term, multiple, divisor): an entry of the table with the value −multiple · (the coefficient of a term of V) / divisor."""
 
-# A derivative of V: for each of its monomials, the term of V from which it arises and the factor of its differentiation.
+# A derivative of V: for each of its monomials, the term of V from which it arises, and the factor due to the differentiation.
 _Derivative = Mapping[Monomial, tuple[Monomial, float]]
 
-# Derivatives of V with respect to x (0) and y (1) in the equations of motion.
+# Axes, x (0) and y (1), of the derivatives of V in the equations of motion.
 _GRADIENT = (0,), (1,)
-# The same for the variational equations.
+# Axes of the derivatives of V in the variational equations.
 _HESSIAN = (0, 0), (0, 1), (1, 1)
 _GRADIENT_AND_HESSIAN = (*_GRADIENT, *_HESSIAN)
 
+# Two squares that enter only as their difference, see `find_difference`.
 _Difference = tuple[Product, Product] | None
 
 
 class PolynomialStructure(NamedTuple):
-    """The facts on which generated code depends.
+    """The facts about a polynomial V on which generated code depends.
 
-    `_find_difference` returns `difference` for the gradient alone, and `tangent_difference` for the gradient and the Hessian.
+    `difference` is the result of `_find_difference` for the gradient alone, and `tangent_difference` its result for the gradient
+    and the Hessian.
     """
 
     monomials: tuple[Monomial, ...]
@@ -83,7 +86,7 @@ class PolynomialStructure(NamedTuple):
 
     @property
     def largest_norm(self) -> float:
-        """Return the norm of a step of 3e-7."""
+        """Return the norm for a step of 3e-7."""
         return _LARGEST_NORM
 
     @property
@@ -92,13 +95,13 @@ class PolynomialStructure(NamedTuple):
         return False
 
     def orbit(self, program: StraightLine, _remainders: Mapping[str, Value] = NO_REMAINDERS) -> tuple[Series, Series]:
-        """Return the recurrence with the products for the equations of motion only."""
+        """Return the series of x and y, from the products for the equations of motion only."""
         products = _plan(self.monomials, _GRADIENT)
         series = _recurrence(program, self.monomials, products, self.difference, self.setting.rotates)
         return series[X], series[Y]
 
     def hessian(self, program: StraightLine) -> Hessian:
-        """Return each entry, from the products for the equations of motion and the variational equations."""
+        """Return each second derivative, from the products for the equations of motion and the variational equations."""
         products = _plan(self.monomials, _GRADIENT_AND_HESSIAN)
         scales = find_scales(products)
         series = _recurrence(program, self.monomials, products, self.tangent_difference, self.setting.rotates)
@@ -115,11 +118,12 @@ class PolynomialStructure(NamedTuple):
 
     def _value(self, program: StraightLine) -> Value:
         x, y = program.input("x"), program.input("y")
-        parts = (functools.reduce(operator.mul, [x] * i + [y] * j, program.entry(((i, j), 1.0, -1))) for i, j in self.monomials)
-        return total(program, parts)
+        # The divisor −1 makes the entry the coefficient of V itself.
+        terms = (functools.reduce(operator.mul, [x] * i + [y] * j, program.entry(((i, j), 1.0, -1))) for i, j in self.monomials)
+        return total(program, terms)
 
     def tabulate(self, terms: Any, entries: Sequence[Entry]) -> list[float]:
-        """Return multiples of the coefficients."""
+        """Return the values of entries for a polynomial, see `Entry`."""
         polynomial = _sort_terms(terms)
         return [-1.0 / divisor * (polynomial[term] * multiple) for term, multiple, divisor in entries]
 
@@ -135,20 +139,25 @@ def _derivative(monomials: Iterable[Monomial], axes: Sequence[int]) -> _Derivati
 @functools.lru_cache(maxsize=_PLANS)
 def _plan(monomials: tuple[Monomial, ...], derivatives: tuple[tuple[int, ...], ...]) -> tuple[Product, ...]:
     """Return the products from which the series of some derivatives of V are formed."""
-    return tuple(plan_products(frozenset(m for axes in derivatives for m in _derivative(monomials, axes))))
+    return tuple(plan_products(frozenset(monomial for axes in derivatives for monomial in _derivative(monomials, axes))))
 
 
 def _find_difference(polynomial: Polynomial, derivatives: tuple[tuple[int, ...], ...]) -> _Difference:
     """Return two squares that enter some derivatives of V only as their difference."""
     derived = [_derivative(polynomial, axes) for axes in derivatives]
-    values = [{m: factor * polynomial[term] for m, (term, factor) in each.items()} for each in derived]
-    return find_difference(_plan(tuple(polynomial), derivatives), values)
+    polynomials = [
+        {monomial: factor * polynomial[term] for monomial, (term, factor) in derived_terms.items()} for derived_terms in derived
+    ]
+    return find_difference(_plan(tuple(polynomial), derivatives), polynomials)
 
 
 def _formed_derivative(monomials: Iterable[Monomial], axes: Sequence[int], difference: _Difference) -> _Derivative:
-    """Write a derivative of V as a sum over computed series. The series of a difference replaces the series of both squares."""
-    contained = difference[1].monomial if difference is not None else None
-    return {m: origin for m, origin in _derivative(monomials, axes).items() if m != contained}
+    """Write a derivative of V as a sum over computed series.
+
+    The series of a difference is that of its first square; the second square is left out.
+    """
+    omitted = difference[1].monomial if difference is not None else None
+    return {monomial: origin for monomial, origin in _derivative(monomials, axes).items() if monomial != omitted}
 
 
 def _linear_combination(
@@ -164,12 +173,13 @@ def _linear_combination(
     Low degrees come last: a sum of two products contracts into the first product, and the linear term is known earliest.
     """
 
-    def part(m: Monomial) -> Value:
-        term, multiple = derived[m]
-        entry = program.entry((term, multiple / scales[m], divisor))
-        return entry * series[m][k] if sum(m) > 0 else entry
+    def summand(monomial: Monomial) -> Value:
+        term, multiple = derived[monomial]
+        entry = program.entry((term, multiple / scales[monomial], divisor))
+        return entry * series[monomial][k] if sum(monomial) > 0 else entry
 
-    return total(program, (part(m) for m in reversed(list(derived)) if sum(m) > 0 or k == 0))
+    # A constant has coefficient 0 only.
+    return total(program, (summand(monomial) for monomial in reversed(list(derived)) if sum(monomial) > 0 or k == 0))
 
 
 def _recurrence(
@@ -183,20 +193,20 @@ def _recurrence(
     series: dict[Monomial, list[Value]] = {
         X: [program.input("x0"), program.input("x1")],
         Y: [program.input("y0"), program.input("y1")],
-        **{p.monomial: [] for p in products},
+        **{product.monomial: [] for product in products},
     }
     forces = {axis: _formed_derivative(monomials, axes, difference) for axis, axes in zip((X, Y), _GRADIENT, strict=True)}
     scales = find_scales(products)
     if difference is not None:
-        one, other = difference
-        products = [p for p in products if p not in difference]
+        minuend, subtrahend = difference
+        products = [product for product in products if product not in difference]
     for k in range(ORDER - 1):
-        for p in products:
-            series[p.monomial].append(cauchy(series[p.left], series[p.right], k))
+        for product in products:
+            series[product.monomial].append(cauchy(series[product.left], series[product.right], k))
         if difference is not None:
-            subtracted = (left * right for left, right in half_square(series[other.left], k))
-            square = cauchy(series[one.left], series[one.left], k)
-            series[one.monomial].append(functools.reduce(operator.sub, subtracted, square))
+            subtracted_products = (left * right for left, right in half_square(series[subtrahend.left], k))
+            square = cauchy(series[minuend.left], series[minuend.left], k)
+            series[minuend.monomial].append(functools.reduce(operator.sub, subtracted_products, square))
         for axis, force in forces.items():
             series[axis].append(_linear_combination(program, force, series, scales, k, (k + 1) * (k + 2)))
         if rotates:
@@ -215,8 +225,8 @@ def structure_of_polynomial(terms: Terms, setting: Setting) -> PolynomialStructu
 def _crossings_can_hide(terms: Polynomial) -> bool:
     """Return whether, without rotation, the signs of y at the ends of a step can miss two crossings of y = 0 in the step.
 
-    If V is even in y, ÿ = −g(x, y) y. With g below (π/h)², two zeros of y are further than h apart, by Sturm's comparison with
-    the oscillator of that frequency. Terms of g that are nowhere positive cannot raise g.
+    If V is even in y, ÿ = −g(x, y) y. With g below (π/h)², two zeros of y are farther than h apart, by Sturm's comparison with
+    the oscillator of the frequency π/h. Terms of g that are nowhere positive cannot raise g.
     """
     force = derivative(terms, 1)
     if any(j % 2 == 0 for _, j in force):

@@ -1,12 +1,12 @@
 """Straight-line programs of the Taylor kernels of a potential.
 
-Along an orbit every quantity is a power series in time, and the series of a product is a Cauchy product. With
-ẍ = −V_x, ÿ = −V_y and V a polynomial, coefficient k + 2 of x and y follows from coefficients 0 … k of the monomials in
-V_x and V_y (Jorba & Zou 2005, Experimental Mathematics 14, 99). Written as one assignment per coefficient inside
-one loop over orbits, this recurrence has neither branches nor calls, so the compiler vectorises all of it. Formulas with other
-functions use the recurrences of `engine.integrator.source.expression_recurrence`; the functions below are the same for both.
+Along an orbit every quantity is a power series in time, and the series of a product is a Cauchy product. With ẍ = −V_x, ÿ = −V_y
+and V a polynomial, coefficient k + 2 of x and y follows from coefficients 0 … k of the monomials in V_x and V_y (Jorba & Zou
+2005, Experimental Mathematics 14, 99). Written as one assignment per coefficient inside one loop over orbits, this recurrence has
+neither branches nor calls, so the compiler vectorises all of it. Formulas with other functions have the recurrences of
+`engine.integrator.source.expression_recurrence`; the following functions are the same for both.
 
-For each potential there are four functions with a loop over lanes `i`, and one for a single point:
+For each potential there are four functions with a loop over lanes `i`, and one or two for a single point:
 
 ``step``             one step of each orbit with a size chosen from the last coefficients, and flags for steps that may
                      contain an event;
@@ -17,7 +17,7 @@ For each potential there are four functions with a loop over lanes `i`, and one 
 
 The code depends only on the structure of V: the graph of an expression, or the exponents of a polynomial and a few facts about
 its coefficients that save work (`find_difference`, `PolynomialStructure.can_hide`). The numbers are passed at run time in a
-table, the first argument of every function, so that potentials of the same structure share compiled code.
+table, the first argument of every function. Potentials of the same structure therefore share compiled code.
 """
 
 from __future__ import annotations
@@ -52,14 +52,14 @@ from engine.integrator.source.straight_line import StraightLine, Value, where
 TOLERANCE = 3e-15
 """Norm of the last coefficients of a step's series times the 16th power of the step size."""
 
-# Weight of the third coefficient from the end in the step size, found together with ORDER and TOLERANCE by `benchmarks/steps.py`.
+# Weight of the third coefficient from the end in the norm, found together with ORDER and TOLERANCE by `benchmarks/steps.py`.
 _EARLIER_WEIGHT = 0.3
 # Size of the steps for which this weight was found.
 _USUAL_STEP = 0.35
-# Factor of the norm where frequencies differ, because coefficients of functions with singularities decrease more slowly than
-# those of polynomials: a power of 10 with which energies are conserved to 1e-11.
+# Factor of the norm where frequencies differ: a power of 10 with which energies are conserved to 1e-11. It is above 1 because
+# coefficients of functions with singularities decrease more slowly than those of polynomials.
 _CAUTION = 10.0
-# Added to the speed that limits a step, so that no step is longer than 16.
+# Speed that is added to the speed that limits a step, so that no step is longer than 16.
 _LEAST_SPEED = 1.0 / 16.0
 # Number of orders of the last coefficients in the norm.
 _ORDERS_OF_NORM = 3
@@ -131,22 +131,22 @@ class GeneratedCode:
 
 
 def _step_size(program: StraightLine, x: Series, y: Series, structure: Structure) -> Value:
-    """Return the h whose 16th power times a norm of the last coefficients is the tolerance, without call, square root or branch.
+    """Return the h whose 16th power times a norm of the last coefficients is the tolerance, without calls and branches.
 
-    The norm contains three orders of both coordinates, so that a step is not too long if one coefficient happens to vanish. This
-    suits a well of one frequency. Where frequencies differ from place to place, a first step h defines units of time and length
-    in which the second step is found: in these units h is 0.35, and the orbit moves by about 1 in a unit of time. Thus steps and
-    their errors become smaller near bodies. NaN marks an orbit that has failed.
+    The norm contains three orders of both coordinates, so that a step is not too long if one coefficient happens to vanish. In a
+    well of one frequency, this h is the size of the step. Where frequencies differ from place to place, it defines units of time
+    and length in which the size is found: in these units h is 0.35, and the orbit moves by about 1 in a unit of time. Thus steps
+    and their errors become smaller near bodies. NaN marks an orbit that has failed.
     """
-    last, before, earlier = (abs(x[-k]) + abs(y[-k]) for k in range(1, _ORDERS_OF_NORM + 1))
-    norm = last + before + _EARLIER_WEIGHT * earlier
+    last, second_last, third_last = (abs(x[-k]) + abs(y[-k]) for k in range(1, _ORDERS_OF_NORM + 1))
+    norm = last + second_last + _EARLIER_WEIGHT * third_last
     h = _root_of_tolerance(program, norm)
     longest: Value | float = LONGEST_STEP
     if structure.has_many_scales:
         unit = h * (1.0 / _USUAL_STEP)
-        scaled = _EARLIER_WEIGHT * earlier + unit * (before + unit * last)
+        scaled_norm = _EARLIER_WEIGHT * third_last + unit * (second_last + unit * last)
         speed, force = abs(x[1]) + abs(y[1]), abs(x[2]) + abs(y[2])
-        h = _root_of_tolerance(program, _CAUTION * program.apply("/", scaled, speed + unit * force))
+        h = _root_of_tolerance(program, _CAUTION * program.apply("/", scaled_norm, speed + unit * force))
         longest = 1.0 / (speed + program.apply("sqrt", force) + _LEAST_SPEED)
     h = where(h < longest, h, longest)
     return where(norm < structure.largest_norm, h, math.nan)
@@ -158,9 +158,10 @@ def _root_of_tolerance(program: StraightLine, norm: Value) -> Value:
     The bits of a double, read as an integer, are its binary logarithm with a piecewise linear mantissa; a shift by four bits
     divides this logarithm by 16.
     """
-    one = 1023 << 52
+    # The bits of 1.0.
+    one_bits = 1023 << 52
     bits = program.apply("bits_of", norm * (1.0 / program.input("tolerance")))
-    return program.apply("double_of", (one + one // 16) - (bits >> 4))
+    return program.apply("double_of", (one_bits + one_bits // 16) - (bits >> 4))
 
 
 def _horner(series: Series, h: Value) -> tuple[Value, Value]:
@@ -174,9 +175,9 @@ def _horner(series: Series, h: Value) -> tuple[Value, Value]:
 
 
 def _end_of_step(series: Series, h: Value, remainder: Value | None) -> tuple[Value, Value, list[Value]]:
-    """Evaluate like `_horner`, with a remainder added to the first coefficient; also return the remainder of the value.
+    """Return value and slope as `_horner` does, with a remainder added to the first coefficient, and the remainder of the value.
 
-    The remainder is the rounding error of the last sum, computed exactly (Knuth's TwoSum).
+    The latter is the rounding error of the last sum, computed exactly (Knuth's TwoSum). Without a remainder, the list is empty.
     """
     if remainder is None:
         return *_horner(series, h), []
@@ -186,11 +187,12 @@ def _end_of_step(series: Series, h: Value, remainder: Value | None) -> tuple[Val
     return end, slope, [(series[0] - (end - rounded)) + (change - rounded)]
 
 
+# Inputs of the recurrence, read from separate arrays.
 _START = {"x0": Place("x"), "y0": Place("y"), "x1": Place("px"), "y1": Place("py")}
 
 
 def _start_in(lanes: str) -> dict[str, Place]:
-    """Return the inputs of the recurrence, read from the first rows of an array of lanes."""
+    """Return the same inputs, read from the first rows of an array of lanes."""
     return {name: Place(lanes, row) for row, name in enumerate(_START)}
 
 
@@ -225,7 +227,7 @@ def _fixed_step(structure: Structure, table: dict[Any, int]) -> GeneratedFunctio
     h = program.input("h")
     x_end, px_end = _horner(x, h)
     y_end, py_end = _horner(y, h)
-    # The sums are computed in the loop, because within the program they would make it up to a sixth slower.
+    # The sums are written as source, because within the program they would make it up to a sixth slower.
     writes: dict[Place, Value | str] = {
         Place("sums", 0): "weight*(x0*x0)",
         Place("sums", 1): "weight*(y0*y0)",
@@ -241,22 +243,23 @@ def _jets(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
     return lane_loop(program, "x, y, px, py, x_jet, y_jet", _START, writes)
 
 
-# A deviation vector: inputs of the recurrence, and the arrays of its components.
+# A deviation vector: the inputs of the recurrence, with the arrays of its components.
 _VECTOR = {"u0": "wx", "v0": "wy", "u1": "wpx", "v1": "wpy"}
 
 
 def _tangent(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
-    """Return the variational equations ẅ = −(Hessian of V on the orbit) w, with w = (δx, δy, δpx, δpy); eq. 4 of Zotos (2014)."""
+    """Return the function for the variational equations ẅ = −(Hessian of V on the orbit) w, w = (δx, δy); Zotos (2014), eq. 4."""
     program = StraightLine("_tangent", table)
     hessian = structure.hessian(program)
+    # The series of the second derivatives of −V.
     second: dict[tuple[int, int], list[Value]] = {axes: [] for axes in hessian}
     u, v = ([program.input(f"{name}{k}") for k in (0, 1)] for name in "uv")
     for k in range(ORDER - 1):
         for axes, (coefficient, _) in hessian.items():
             second[axes].append(coefficient(k))
         for w, row in ((u, ((0, 0), (0, 1))), (v, ((0, 1), (1, 1)))):
-            parts = (cauchy(second[axes], other, k) for axes, other in zip(row, (u, v), strict=True) if hessian[axes][1])
-            w.append(total(program, parts) * (1.0 / ((k + 1) * (k + 2))))
+            terms = (cauchy(second[axes], factor, k) for axes, factor in zip(row, (u, v), strict=True) if hessian[axes][1])
+            w.append(total(program, terms) * (1.0 / ((k + 1) * (k + 2))))
         if structure.setting.rotates:
             add_coriolis(program, u, v)
     h = program.input("h")
@@ -293,6 +296,7 @@ def generate(structure: Structure) -> GeneratedCode:
 
 
 def _write_code(structure: Structure) -> GeneratedCode:
+    # All programs share the table, which each of them extends.
     table: dict[Any, int] = {}
     functions = [
         *(generate(structure, table) for generate in (_step, _fixed_step, _jets, _tangent)),

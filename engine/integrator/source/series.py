@@ -14,7 +14,7 @@ ORDER = 19
 """Order of the series; with `TOLERANCE` it is the fastest choice with an energy error well below 1e-11 over 1e5 time units."""
 
 LONGEST_STEP = 1.0
-"""Upper limit of a step in units of the well, for motion near rest or nearly linear in time; well within the convergence."""
+"""Upper limit of a step in units of the well, which matters near rest or for motion linear in time; all series converge there."""
 
 ROTATION = "rotation"
 """The entry of the table with 2Ω."""
@@ -22,14 +22,15 @@ ROTATION = "rotation"
 Series = Sequence[Value]
 
 Hessian = Mapping[tuple[int, int], tuple[Callable[[int], Value], bool]]
-"""{axes: (coefficient, is_nonzero)} for the axes (0, 0), (0, 1) and (1, 1): a function of k that returns coefficient k of the
-series of this second derivative of −V, to be called for each k in turn, and whether the derivative is not zero everywhere."""
-
+"""{axes: (coefficient, is_nonzero)} for the axes (0, 0), (0, 1) and (1, 1) of the second derivatives of −V. `coefficient` is a
+function of k, to be called for each k in turn, that returns coefficient k of the series of the derivative. `is_nonzero` is False
+if the derivative is zero everywhere."""
 
 PointFunctions = Mapping[str, Callable[[StraightLine], Mapping[str, Value]]]
 """{name: function}; each function appends operations to a program with inputs x and y, and returns the results by name."""
 
 NO_REMAINDERS: Mapping[str, Value] = MappingProxyType({})
+"""The remainders of steps that carry none."""
 
 
 class Setting(NamedTuple):
@@ -51,7 +52,7 @@ class Setting(NamedTuple):
 
     @property
     def needs_whole_steps(self) -> bool:
-        """Whether an orbit can cross and recross an exit within a step, which exits over saddles in a frame at rest exclude."""
+        """Whether an orbit can cross and recross an exit within a step. Exits over saddles in a frame at rest exclude this."""
         return bool(self.sides) or self.rotates
 
 
@@ -76,13 +77,16 @@ class Structure(Hashable, Protocol):
 
     @property
     def largest_norm(self) -> float:
-        """Norm of the last coefficients above which steps would be too short to change t. Such an orbit fails, as with NaN."""
+        """Norm of the last coefficients above which steps would be too short to change t; an orbit fails there, as with NaN."""
 
     def orbit(self, program: StraightLine, remainders: Mapping[str, Value] = NO_REMAINDERS) -> tuple[Series, Series]:
-        """Return the series of x and y to `ORDER` from the inputs x0, x1, y0 and y1; `remainders` are added to x0 and y0."""
+        """Append the recurrence of the motion, and return the series of x and y to `ORDER`.
+
+        The inputs are x0, x1, y0 and y1; `remainders` are added to x0 and y0.
+        """
 
     def hessian(self, program: StraightLine) -> Hessian:
-        """Return the second derivatives of −V along the orbit from the same inputs."""
+        """Append the recurrence of the motion with the same inputs, and return the second derivatives of −V along the orbit."""
 
     def point_functions(self) -> PointFunctions:
         """Return functions of one point."""
@@ -91,17 +95,18 @@ class Structure(Hashable, Protocol):
         """Return the values of the entries of the table for a potential of this structure."""
 
 
-def total(program: StraightLine, parts: Iterator[Value]) -> Value:
-    """Return the sum from left to right, each part computed just before it is added; 0.0 for no parts."""
-    first = next(parts, None)
-    return program.constant(0.0) if first is None else functools.reduce(operator.add, parts, first)
+def total(program: StraightLine, terms: Iterator[Value]) -> Value:
+    """Return the sum from left to right; each term is computed just before it is added. Without terms, the sum is 0.0."""
+    first = next(terms, None)
+    return program.constant(0.0) if first is None else functools.reduce(operator.add, terms, first)
 
 
 def add_coriolis(program: StraightLine, x: list[Value], y: list[Value]) -> None:
     """Add 2Ωẏ and −2Ωẋ, integrated twice, to the last coefficients of the series of x and y, which lack these terms."""
     k = len(x) - 1
-    twice = program.entry(ROTATION) * (1.0 / k)
-    x[k], y[k] = x[k] + twice * y[k - 1], y[k] - twice * x[k - 1]
+    # 2Ω ẏ contributes 2Ω (k − 1) y_(k − 1) / (k (k − 1)) to x_k.
+    factor = program.entry(ROTATION) * (1.0 / k)
+    x[k], y[k] = x[k] + factor * y[k - 1], y[k] - factor * x[k - 1]
 
 
 def sum_of_products(pairs: Iterable[tuple[Value, Value]]) -> Value:
@@ -110,7 +115,7 @@ def sum_of_products(pairs: Iterable[tuple[Value, Value]]) -> Value:
 
 
 def cauchy(left: Series, right: Series, k: int) -> Value:
-    """Return coefficient k of the product of two series, or of half a square; the newest terms come last."""
+    """Return coefficient k of the product of two series, or of half the square of a series; the newest terms come last."""
     if left is right:
         return sum_of_products(half_square(left, k))
     return sum_of_products([*inner_pairs(left, right, k), (left[0], right[k]), *([(left[k], right[0])] if k else [])])

@@ -1,4 +1,4 @@
-"""Plans to compute the series of the nodes of a graph with few sums over all lower orders."""
+"""Plans for the series of the nodes of a graph that need few sums over all lower orders."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ Groups = Mapping[int, Sequence[int]]
 
 @dataclass(frozen=True)
 class SeriesPlan:
-    """What is computed for each node.
+    """How the series of each node of a graph is computed.
 
     Attributes
     ----------
     nodes
         The nodes; a product with 1/u is replaced by a ``quotient`` by u.
     roots
-        For each node the node from which it differs by a constant, or itself.
+        For each node, the node from which it differs by a constant, or the node itself.
     groups
-        For each node its `Groups` of two or more products that no other node uses.
+        For each node, its `Groups` of two or more products that no other node uses.
     needed
-        The nodes whose higher coefficients are needed, not only coefficient 0.
+        The nodes of which more than coefficient 0 is needed.
     """
 
     nodes: tuple[Node, ...]
@@ -48,29 +48,32 @@ def plan_series(graph: Graph) -> SeriesPlan:
 def _as_quotient(graph: Graph, node: Node) -> Node:
     """Return a product with 1/u as a quotient, and any other node unchanged."""
     if node.kind == "product":
-        for one, other in (node.operands, node.operands[::-1]):
-            inverse = graph.nodes[other]
-            if inverse.kind == "power" and inverse.exponent == -1.0 and one != other:
-                return Node("quotient", (one, inverse.operands[0]))
+        for numerator, factor in (node.operands, node.operands[::-1]):
+            inverse = graph.nodes[factor]
+            if inverse.kind == "power" and inverse.exponent == -1.0 and numerator != factor:
+                return Node("quotient", (numerator, inverse.operands[0]))
     return node
 
 
 def _find_groups(node: Node, nodes: Sequence[Node], roots: Sequence[int], uses: Counter[int]) -> Groups:
-    found: dict[int, list[int]] = {}
-    for each in node.operands if node.kind == "sum" else ():
-        kind, operands = nodes[each].kind, nodes[each].operands
-        if kind == "product" and operands[0] != operands[1] and uses[each] == 1:
-            found.setdefault(roots[operands[1]], []).append(each)
-    return {root: products for root, products in found.items() if len(products) > 1}
+    """Return `SeriesPlan.groups` of a node."""
+    products_by_root: dict[int, list[int]] = {}
+    for operand in node.operands if node.kind == "sum" else ():
+        kind, factors = nodes[operand].kind, nodes[operand].operands
+        if kind == "product" and factors[0] != factors[1] and uses[operand] == 1:
+            products_by_root.setdefault(roots[factors[1]], []).append(operand)
+    return {root: products for root, products in products_by_root.items() if len(products) > 1}
 
 
 def _find_needed(results: Sequence[int], nodes: Sequence[Node], groups: Sequence[Groups]) -> frozenset[int]:
-    needed, waiting = set[int](), list(results)
-    while waiting:
-        index = waiting.pop()
+    """Return `SeriesPlan.needed`: the results, and the nodes from which needed nodes are computed."""
+    needed, pending = set[int](), list(results)
+    while pending:
+        index = pending.pop()
         if index not in needed:
             needed.add(index)
-            grouped = {each: root for root, products in groups[index].items() for each in products}
-            waiting += [each for each in nodes[index].operands if each not in grouped]
-            waiting += [used for each, root in grouped.items() for used in (nodes[each].operands[0], root)]
+            # The sum over a group is computed from the first factors of its products, and from the root of the group.
+            root_by_product = {product: root for root, products in groups[index].items() for product in products}
+            pending += [operand for operand in nodes[index].operands if operand not in root_by_product]
+            pending += [node for product, root in root_by_product.items() for node in (nodes[product].operands[0], root)]
     return frozenset(needed)

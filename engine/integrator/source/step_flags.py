@@ -17,21 +17,21 @@ OVERSHOOT = 4
 NEAR = 8
 """Flag of a step that may cross and recross an exit although its end is not beyond the gate."""
 
-# Maxima of σ − σ^k for 0 ≤ σ ≤ 1, rounded up; 1 for larger k.
+# Maxima of σ − σ^k for 0 ≤ σ ≤ 1, by k, rounded up; for larger k, 1 is used.
 _LARGEST_SAGS = {2: 0.25, 3: 0.385, 4: 0.473}
 
 
 def _bend(series: Series, h: Value) -> Value:
     """Return ½ Σ_{k≥2} |y_k| (2h)^k, which is at least twice the distance of y from its chord over a step."""
-    twice = h + h
+    two_h = h + h
     bound = abs(series[ORDER])
     for k in reversed(range(2, ORDER)):
-        bound = bound * twice + abs(series[k])
-    return bound * twice * h
+        bound = bound * two_h + abs(series[k])
+    return bound * two_h * h
 
 
 def _sag(series: Series, h: Value) -> Value:
-    """Bound the distance of a coordinate from its chord over a step by Σ_{k≥2} max(σ − σ^k) |x_k| h^k with 0 ≤ σ ≤ 1."""
+    """Return Σ_{k≥2} max(σ − σ^k) |x_k| h^k, which is at least the distance of a coordinate from its chord over a step."""
     bound = abs(series[ORDER])
     for k in reversed(range(2, ORDER)):
         bound = bound * h + (_LARGEST_SAGS.get(k, 1.0) * abs(series[k]))
@@ -41,23 +41,25 @@ def _sag(series: Series, h: Value) -> Value:
 def flag_hidden_crossings(y: Series, end: Value, h: Value) -> Value:
     """Return the test of a step for hidden crossings of y = 0, for potentials where these are possible: HIDDEN or 0.
 
-    The bound of `_bend` is at least h · max|ẏ − ẏ(0)|. So there are no hidden crossings if ẏ keeps its sign (|ẏ(0)| h > bound),
-    or if both ends lie on one side, further away than bound/2.
+    The bound of `_bend` is at least h · max|ẏ − ẏ(0)|. Therefore there are no hidden crossings if ẏ keeps its sign
+    (|ẏ(0)| h > bound), or if both ends lie on one side, farther away than bound/2.
     """
     bound = _bend(y, h)
-    near, far = abs(y[0]), abs(end)
-    near = where(near < far, near, far)
-    return where(abs(y[1]) * h > bound, 0, where((y[0] * end > 0.0) & (near > 0.5 * bound), 0, HIDDEN))
+    start_distance, end_distance = abs(y[0]), abs(end)
+    distance = where(start_distance < end_distance, start_distance, end_distance)
+    return where(abs(y[1]) * h > bound, 0, where((y[0] * end > 0.0) & (distance > 0.5 * bound), 0, HIDDEN))
 
 
 def flag_gates(
     setting: Setting, program: StraightLine, series: tuple[Series, Series], end: tuple[Value, Value], h: Value
 ) -> tuple[dict[str, tuple[int, int]], Value]:
-    """Return the inputs of the gates with their rows and columns of `gates`, and GATE, NEAR or 0.
+    """Return the inputs of the gates with their rows and columns of `gates`, and the flag of a step: GATE, NEAR or 0.
 
-    A row of `gates` is g_x, g_y, g: for a channel the line g_x x + g_y y = g, for a circle its centre and its radius.
+    A row of `gates` is g_x, g_y, g. For a channel, it stands for the line g_x x + g_y y = g; for a circle, it contains the centre
+    and the radius.
     """
     count = setting.channels + len(setting.sides)
+    # Suffixes of the names of inputs, with their columns.
     columns = {"x": 0, "y": 1, "": 2}
     sources = {f"g{k}{name}": (k, column) for k in range(count) for name, column in columns.items()}
     flag = program.constant(0)
@@ -69,14 +71,14 @@ def flag_gates(
         return sources, flag
     start = series[0][0], series[1][0]
     # All points of the step are within this distance of its chord.
-    bend = _sag(series[0], h) + _sag(series[1], h)
+    sag = _sag(series[0], h) + _sag(series[1], h)
     half_chord = 0.5 * (abs(end[0] - start[0]) + abs(end[1] - start[1]))
     for g_x, g_y, g in lines:
         for x, y in (start, end):
-            flag = where(g_x * x + g_y * y + bend > g, NEAR, flag)
+            flag = where(g_x * x + g_y * y + sag > g, NEAR, flag)
     for side, (c_x, c_y, radius) in zip(setting.sides, circles, strict=True):
         squares = [(x - c_x) * (x - c_x) + (y - c_y) * (y - c_y) for x, y in (start, end)]
-        edge = radius + (bend + half_chord) if side < 0 else where(radius > bend, radius - bend, 0.0)
+        edge = radius + (sag + half_chord) if side < 0 else where(radius > sag, radius - sag, 0.0)
         for square in squares:
             flag = where(square < edge * edge if side < 0 else square > edge * edge, NEAR, flag)
     return sources, flag

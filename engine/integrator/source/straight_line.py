@@ -23,8 +23,8 @@ class StraightLine:
     operations
         (symbol, operands): ``input`` with a name, ``constant`` with a number, ``entry`` with an index of the table, or an
         operation on the results with the given indices: + − · / on doubles, + − · >> on 64-bit integers, < <= > >= == on two
-        of a kind, & on booleans, ``abs`` and ``sqrt`` of doubles, ``where`` (condition, value, other value), ``bits_of`` and
-        ``double_of``, which reinterpret a double as an integer and back.
+        values of the same type, & on booleans, ``abs`` and ``sqrt`` of doubles, ``where`` (condition, value, other value),
+        ``bits_of``, which reinterprets a double as an integer, and its inverse ``double_of``.
     results
         Indices of the results that are returned.
     """
@@ -48,12 +48,12 @@ class StraightLine:
         return self._append("constant", number)
 
     def entry(self, key: Any) -> Value:
-        """Return a number of the table."""
+        """Return a number of the table by its key, with a new index for a new key."""
         return self._append("entry", self.table.setdefault(key, len(self.table)))
 
     def apply(self, symbol: str, *operands: Value | float) -> Value:
         """Return the result of an operation; numbers among the operands become constants."""
-        values = [each if isinstance(each, Value) else self.constant(each) for each in operands]
+        values = [operand if isinstance(operand, Value) else self.constant(operand) for operand in operands]
         return self._append(symbol, *(value.index for value in values))
 
     def _append(self, symbol: str, *operands: Any) -> Value:
@@ -66,8 +66,10 @@ class StraightLine:
 
 
 def _binary(symbol: str, *, swapped: bool = False) -> Callable[[Value, Value | float], Value]:
-    def method(one: Value, other: Value | float) -> Value:
-        return one.program.apply(symbol, *((other, one) if swapped else (one, other)))
+    """Return the method of `Value` for an operation; `swapped` for the methods of a right operand."""
+
+    def method(self: Value, other: Value | float) -> Value:
+        return self.program.apply(symbol, *((other, self) if swapped else (self, other)))
 
     return method
 
@@ -87,6 +89,6 @@ class Value:
         return self.program.apply("abs", self)
 
 
-def where(condition: Value, chosen: Value | float, otherwise: Value | float) -> Value:
-    """Return one of two values; both are computed."""
-    return condition.program.apply("where", condition, chosen, otherwise)
+def where(condition: Value, value: Value | float, otherwise: Value | float) -> Value:
+    """Return `value` if the condition holds, and `otherwise` if not; both are computed."""
+    return condition.program.apply("where", condition, value, otherwise)

@@ -25,7 +25,7 @@ from engine.systems.potential import Potential
 DEFAULT_DURATION = 10.0
 """Default τ in units of the well, about one and a half periods of the motion in the well."""
 
-# Number of parts of the pixels that are computed one after the other.
+# Number of parts into which the pixels are divided; the parts are computed one after the other.
 _PARTS = 16
 
 
@@ -53,7 +53,7 @@ class DescriptorMap(PixelAnalysis):
     power
         p.
     direction
-        The directions of time over which the integral extends.
+        The directions of time of the integral.
     complete
         Whether all pixels are computed.
     """
@@ -70,12 +70,15 @@ class DescriptorMap(PixelAnalysis):
 
     def describe(self) -> str:
         """Return the integral and its range in one sentence."""
-        known, so_far = self.descriptor[np.isfinite(self.descriptor)], "" if self.complete else " so far"
-        if not known.size:
+        values = self.descriptor[np.isfinite(self.descriptor)]
+        so_far = "" if self.complete else " so far"
+        if not values.size:
             return f"No start has a Lagrangian descriptor{so_far}."
-        ways = {TimeDirection.BOTH: "−τ to τ", TimeDirection.FORWARD: "0 to τ", TimeDirection.BACKWARD: "−τ to 0"}
-        integral = f"The Lagrangian descriptor ∫ |v|ᵖ dt, p = {self.power:g}, from {ways[self.direction]}, τ = {self.duration:g}"
-        return f"{integral}, at most up to an exit, lies between {known.min():.4g} and {known.max():.4g}{so_far}."
+        limits = {TimeDirection.BOTH: "−τ to τ", TimeDirection.FORWARD: "0 to τ", TimeDirection.BACKWARD: "−τ to 0"}
+        integral = (
+            f"The Lagrangian descriptor ∫ |v|ᵖ dt, p = {self.power:g}, from {limits[self.direction]}, τ = {self.duration:g}"
+        )
+        return f"{integral}, at most up to an exit, lies between {values.min():.4g} and {values.max():.4g}{so_far}."
 
 
 @shows_progress("Lagrangian descriptor")
@@ -95,7 +98,7 @@ def compute_lagrangian_descriptor(
     of unstable periodic orbits if integrated forward in time, and across the unstable manifolds if integrated backward.
 
     An integral ends where its orbit crosses an exit, collides or passes the escape radius. Beyond an exit the motion is
-    unbounded: in most wells orbits reach infinity within a finite time, so the integral diverges, and their motion there gives no
+    unbounded: in most wells orbits reach infinity within a finite time, so the integral would diverge, and this motion gives no
     information on the well. Therefore M also jumps where orbits begin to escape within τ.
 
     Parameters
@@ -108,7 +111,7 @@ def compute_lagrangian_descriptor(
     power
         p, above 0 and at most 1.
     direction
-        ``"forward"`` from 0 to τ, ``"backward"`` from −τ to 0, or ``"both"``. For a map backward in time, forward means its past.
+        ``"forward"`` from 0 to τ, ``"backward"`` from −τ to 0, or ``"both"``. For a map backward in time, "forward" is the past.
     on_frame
         Called in this thread with the result so far.
     execution
@@ -135,8 +138,8 @@ def compute_lagrangian_descriptor(
     --------
     >>> from escape_explorer import CASES, MapSpec, Plane, compute_lagrangian_descriptor, compute_map
     >>> escapes = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.45, (20, 20), t_max=100.0))
-    >>> found = compute_lagrangian_descriptor(escapes, duration=5.0)
-    >>> round(float(found.descriptor[10, 5]), 6)
+    >>> descriptors = compute_lagrangian_descriptor(escapes, duration=5.0)
+    >>> round(float(descriptors.descriptor[10, 5]), 6)
     7.549268
     """
     escape_map = as_complete_map("escape_map", escape_map)
@@ -150,9 +153,10 @@ def compute_lagrangian_descriptor(
 
 def checked_choices(potential: Potential, duration: float | None, power: float, direction: TimeDirection | str) -> dict[str, Any]:
     """Return the parameters of `compute_lagrangian_descriptor` by name, with defaults; ValueError if one is out of range."""
-    given = DEFAULT_DURATION * potential.units.time if duration is None else duration
+    if duration is None:
+        duration = DEFAULT_DURATION * potential.units.time
     return {
-        "duration": potential.checked_t_max(given, name="duration"),
+        "duration": potential.checked_t_max(duration, name="duration"),
         "power": _checked_power(power),
         "direction": _checked_direction(direction),
     }
@@ -173,21 +177,25 @@ def _checked_direction(direction: TimeDirection | str) -> TimeDirection:
 
 def _specs(spec: MapSpec, direction: TimeDirection) -> list[MapSpec]:
     """Return the maps whose orbits run in these directions of time, in units of the well."""
-    past = replace(spec, backward=not spec.backward)
-    ways = {TimeDirection.FORWARD: [spec], TimeDirection.BACKWARD: [past], TimeDirection.BOTH: [spec, past]}
-    return [way.in_well_units() for way in ways[direction]]
+    reversed_spec = replace(spec, backward=not spec.backward)
+    specs = {
+        TimeDirection.FORWARD: [spec],
+        TimeDirection.BACKWARD: [reversed_spec],
+        TimeDirection.BOTH: [spec, reversed_spec],
+    }
+    return [each.in_well_units() for each in specs[direction]]
 
 
 class _DescriptorRun:
     """Computes the integrals of the pixels of a map of one potential, or of a line, in units of the well."""
 
     def __init__(self, escape_map: EscapeMap, duration: float, power: float, direction: TimeDirection) -> None:
-        self._given, self._duration, self._power, self._direction = escape_map.spec, duration, power, direction
+        self._given_spec, self._duration, self._power, self._direction = escape_map.spec, duration, power, direction
         self._map, self._specs = escape_map.in_well_units(), _specs(escape_map.spec, direction)
         self._mirror = MirrorPixels(self._map.spec, self._map.x, self._map.ordinate)
         self._pixels = self._mirror.firsts_of(np.flatnonzero(self._map.interior))
         self._values = np.full(self._map.fate.shape, np.nan)
-        self._done = 0
+        self._done_count = 0
 
     def stages(self, execution: Execution, _on_change: OnChange) -> Iterator[Stage]:
         """Yield the stages, see `Staged`; each computes a part of the pixels."""
@@ -197,27 +205,29 @@ class _DescriptorRun:
             yield partial(self._compute, part, execution)
 
     def _compute(self, part: np.ndarray, execution: Execution) -> None:
+        """Compute the integrals of some pixels over all directions of time."""
         values = sum(self._integrate(spec, part, execution) for spec in self._specs)
         if not execution.is_cancelled:
             self._values.ravel()[part] = values
-            self._done += part.size
+            self._done_count += part.size
 
     def _integrate(self, spec: MapSpec, part: np.ndarray, execution: Execution) -> np.ndarray:
+        """Return the integrals of some pixels over one direction of time, in units of the well."""
         x, ordinate = self._map.coordinates(part)
         energies, curve_row = np.unique(spec.energies(x, ordinate), return_inverse=True)
         curves = exit_curves_at(spec.potential, energies)
-        duration = self._duration / self._given.potential.units.time
+        duration = self._duration / self._given_spec.potential.units.time
         states = spec.start_states(x, ordinate)
         return integrate_speed(spec.potential, curves, states, curve_row, duration, self._power, execution=execution)
 
     def progress(self) -> float:
         """Return the share of the pixels that are computed."""
-        return self._done / max(self._pixels.size, 1)
+        return self._done_count / max(self._pixels.size, 1)
 
     def frame(self) -> DescriptorMap:
         """Return the result so far."""
-        units, power = self._given.potential.units, self._power
+        units, power = self._given_spec.potential.units, self._power
         values = self._values * (units.length**power * units.time ** (1.0 - power))
         self._mirror.copy_to_seconds(values)
-        complete = self._done == self._pixels.size
-        return DescriptorMap(self._given, read_only(values), self._duration, power, self._direction, complete=complete)
+        complete = self._done_count == self._pixels.size
+        return DescriptorMap(self._given_spec, read_only(values), self._duration, power, self._direction, complete=complete)

@@ -21,10 +21,10 @@ from engine.propagation.deviation_vectors import attach_deviations, propagate_de
 from engine.propagation.evidence import Evidence
 from engine.propagation.fates import MIN_REGULAR_TIME, Fate, Regularity, is_chaotic
 
-# SALI is computed up to these times, in units of the well, with a test for tori after each. The SALI of strongly chaotic orbits
+# Times up to which SALI is computed, with a test for tori after each, in units of the well. The SALI of strongly chaotic orbits
 # falls early, and most regular orbits are found to be on a torus, so only few orbits are integrated to t_max.
 _SALI_TIMES = (1000.0, 5000.0, 20000.0)
-# Time after which the remaining orbits are judged again, in units of the well.
+# Interval after which the remaining orbits are judged again, in units of the well.
 _INTERVAL = 5000.0
 
 
@@ -57,20 +57,20 @@ class RegularityMap(PixelAnalysis):
         return self.share_of(Regularity.CHAOTIC)
 
     def describe(self) -> str:
-        """Describe the share of chaotic orbits, or of orbits still to be judged, in one sentence."""
-        bounded = self.character[self.character != Regularity.NOT_APPLICABLE]
-        if not bounded.size:
+        """Describe the share of chaotic orbits or, before the end, of orbits still to be judged, in one sentence."""
+        characters = self.character[self.character != Regularity.NOT_APPLICABLE]
+        if not characters.size:
             return "No orbit is bounded."
         if not self.complete:
-            return f"{format_share(code_share(bounded, Regularity.NOT_JUDGED))} of the bounded orbits are not judged yet."
-        unsure = self.share_of(Regularity.NO_SIGN_OF_CHAOS)
-        chaotic, without_sign = (format_share(share, 2) for share in (self.chaotic_share, unsure))
+            return f"{format_share(code_share(characters, Regularity.NOT_JUDGED))} of the bounded orbits are not judged yet."
+        shares = self.chaotic_share, self.share_of(Regularity.NO_SIGN_OF_CHAOS)
+        chaotic, without_sign = (format_share(share, 2) for share in shares)
         return f"{chaotic} of the bounded orbits are chaotic, {without_sign} show no sign of chaos until t_max."
 
     def share_of(self, character: Regularity) -> float:
         """Return the share of orbits of a character among the judged bounded orbits; NaN if there are none."""
-        judged = ~np.isin(self.character, (Regularity.NOT_APPLICABLE, Regularity.NOT_JUDGED))
-        return code_share(self.character[judged], character)
+        is_judged = ~np.isin(self.character, (Regularity.NOT_APPLICABLE, Regularity.NOT_JUDGED))
+        return code_share(self.character[is_judged], character)
 
 
 @shows_progress("regularity")
@@ -83,10 +83,10 @@ def compute_regularity(
 ) -> RegularityMap:
     """Judge the bounded orbits of a complete map as regular or chaotic.
 
-    Orbits with evidence of a torus are regular. Another orbit is chaotic if its SALI falls to 1e-7 by t_max (Zotos 2014, eq. 9).
-    The orbit is regular if its Birkhoff averages show a torus, over windows before t_max or over both halves of the orbit. Any
-    other orbit shows no sign of chaos until t_max; Zotos (2014) calls it regular. An orbit that is bounded on the map only
-    because of rounding, but runs to infinity here, is judged by its smallest SALI until then.
+    An orbit is regular if the map has evidence of its torus, or if its Birkhoff averages show a torus, over windows before t_max
+    or over both halves of the orbit. An orbit is chaotic if its SALI falls to 1e-7 by t_max (Zotos 2014, eq. 9). Any other orbit
+    shows no sign of chaos until t_max; Zotos (2014) calls it regular. An orbit that is bounded on the map only because of
+    rounding, but runs to infinity here, is judged by its smallest SALI until then.
 
     Parameters
     ----------
@@ -117,19 +117,22 @@ def compute_regularity(
 class _RegularityClassification:
     """Judges the bounded orbits of a map by their deviation vectors and averages, in units of the well."""
 
-    def __init__(self, given: EscapeMap) -> None:
-        self._given_spec, escape_map = given.spec, given.in_well_units()
-        self._map, self._spec = escape_map, escape_map.spec
-        codes = np.where(escape_map.fate == Fate.BOUNDED, Regularity.NOT_JUDGED, Regularity.NOT_APPLICABLE)
-        codes[escape_map.evidence == Evidence.QUASI_PERIODIC] = Regularity.REGULAR
-        self._codes = PixelCodes(escape_map, codes, Regularity.NOT_JUDGED)
+    def __init__(self, escape_map: EscapeMap) -> None:
+        self._given_spec = escape_map.spec
+        self._map = escape_map.in_well_units()
+        self._spec = self._map.spec
+        codes = np.where(self._map.fate == Fate.BOUNDED, Regularity.NOT_JUDGED, Regularity.NOT_APPLICABLE)
+        codes[self._map.evidence == Evidence.QUASI_PERIODIC] = Regularity.REGULAR
+        self._codes = PixelCodes(self._map, codes, Regularity.NOT_JUDGED)
+        # The pixels still to be judged, and their orbits with deviation vectors.
         self._pixels = self._codes.pixels
+        self._orbits = attach_deviations(self._spec.start_states(*self._map.coordinates(self._pixels)))
         self._sali = np.full(codes.size, np.nan)
-        self._orbits = attach_deviations(self._spec.start_states(*escape_map.coordinates(self._pixels)))
+        # Time reached by these orbits.
         self._time = 0.0
 
     def stages(self, execution: Execution, _on_change: OnChange) -> Iterator[Stage]:
-        """Yield the stages, see `Staged`; each judges orbits by one criterion, after the integration that it needs."""
+        """Yield the stages, see `Staged`; each judges orbits by one criterion, after the integration for this criterion."""
         for time, window in zip(_SALI_TIMES, WINDOWS, strict=False):
             if 2.0 * time > self._spec.t_max:
                 break
@@ -152,7 +155,7 @@ class _RegularityClassification:
         self._judge(is_chaotic(orbits[:, -1]), Regularity.CHAOTIC)
 
     def _find_tori(self, window: float, execution: Execution) -> None:
-        """Judge quasi-periodic orbits as regular."""
+        """Judge orbits as regular whose averages agree as on a torus, over windows from the time reached."""
         digits = count_agreeing_digits(self._spec.potential, self._orbits[:, :4], window, execution=execution)
         self._judge(digits >= TORUS_DIGITS, Regularity.REGULAR)
 
@@ -163,13 +166,14 @@ class _RegularityClassification:
         self._judge(digits >= REGULAR_DIGITS, Regularity.REGULAR)
 
     def _judge_rest(self) -> None:
+        """Judge all remaining orbits as without a sign of chaos."""
         self._judge(np.ones(self._pixels.size, bool), Regularity.NO_SIGN_OF_CHAOS)
 
-    def _judge(self, which: np.ndarray, character: Regularity) -> None:
-        """Assign a code to the orbits in the mask `which`, and drop these orbits."""
-        self._codes.assign(self._pixels[which], character)
-        self._sali[self._pixels[which]] = self._orbits[which, -1]
-        self._pixels, self._orbits = self._pixels[~which], self._orbits[~which]
+    def _judge(self, mask: np.ndarray, character: Regularity) -> None:
+        """Assign a code to the orbits in a mask, and drop these orbits."""
+        self._codes.assign(self._pixels[mask], character)
+        self._sali[self._pixels[mask]] = self._orbits[mask, -1]
+        self._pixels, self._orbits = self._pixels[~mask], self._orbits[~mask]
 
     def progress(self) -> float:
         """Return the share of the orbits that are judged."""

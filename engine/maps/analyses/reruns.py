@@ -16,15 +16,15 @@ SHIFT = 1e-11
 """Shift of a start along x and along the ordinate, in units of the well: far above rounding errors and far below a pixel."""
 
 LARGEST_SHARE_OF_PIXEL = 0.01
-"""Largest shift as a share of the pixel; this limits the shift in deep zooms."""
+"""Largest shift as a share of the pixel, which matters in deep zooms."""
 
 SECOND_TOLERANCE = 10.0 * TOLERANCE
-"""Tolerance of the second rerun. Its steps are a sixth longer, so its errors are independent of those of the map."""
+"""Tolerance of the second rerun. Its steps are a sixth longer, so its errors are independent of the errors of the map."""
 
 LARGEST_DELAY = 0.01
 """Largest change of an escape time by a rerun, in units of the well.
 
-Near the boundary of a basin the escape time diverges like the logarithm of the distance. A shift by a fraction d of that distance
+Near the boundary of a basin the escape time diverges like the logarithm of the distance. A shift by a fraction d of the distance
 changes the time by about d. Below this limit, shifts of the same size in other directions therefore stay within the basin.
 """
 
@@ -32,10 +32,10 @@ changes the time by about d. Below this limit, shifts of the same size in other 
 def shifted_starts(spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
     """Shift points of the plane in two directions, so that mirror images stay mirror images.
 
-    The shift is `SHIFT`, but at most a hundredth of a pixel, and at least `FINEST_PIXEL` so that it exceeds rounding errors. The
-    first shift is towards 0 in both coordinates, so that the points stay inside; the second changes the abscissa only. An axis h
-    is not shifted, so that the energy and its exits do not change. In this case, the other coordinate is shifted first towards 0
-    and second away from 0.
+    The shift is `SHIFT`, but at most a hundredth of a pixel, and at least `FINEST_PIXEL`, so that it exceeds rounding errors. The
+    first shift is towards 0 in both coordinates, so that the points stay inside. The second shift changes the abscissa only.
+    Along an axis h nothing is shifted, so that the energy and its exits do not change. In this case, the first shift is towards 0
+    in the other coordinate, and the second shift is away from 0.
 
     Parameters
     ----------
@@ -50,17 +50,18 @@ def shifted_starts(spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> tuple[
     """
     window, (columns, rows) = spec.find_window(), spec.resolution
     sides = window.width / columns, window.height / rows
-    is_free = spec.plane.free_axes
+    free_axes = spec.plane.free_axes
     points = x, ordinate
-    axes = zip(points, sides, is_free, strict=True)
-    nearer = tuple(_shifted_towards_zero(along, side) if free else along for along, side, free in axes)
-    if all(is_free):
+    axes = zip(points, sides, free_axes, strict=True)
+    nearer = tuple(_shifted_towards_zero(values, side) if is_free else values for values, side, is_free in axes)
+    if all(free_axes):
         return (nearer[0], nearer[1]), (nearer[0], ordinate)
-    away = tuple(along + (along - shifted) for along, shifted in zip(points, nearer, strict=True))
-    return (nearer[0], nearer[1]), (away[0], away[1])
+    farther = tuple(values + (values - shifted) for values, shifted in zip(points, nearer, strict=True))
+    return (nearer[0], nearer[1]), (farther[0], farther[1])
 
 
 def _shifted_towards_zero(coordinate: np.ndarray, pixel: float) -> np.ndarray:
+    """Return coordinates (n,) shifted towards 0, given the side of a pixel."""
     distance = np.maximum(min(SHIFT, LARGEST_SHARE_OF_PIXEL * pixel), FINEST_PIXEL * np.maximum(1.0, np.abs(coordinate)))
     # A start on y = 0 is shifted up, because from below it would cross y = 0 once more.
     shifted: np.ndarray = np.where(coordinate > 0.0, coordinate - distance, coordinate + distance)
@@ -68,7 +69,7 @@ def _shifted_towards_zero(coordinate: np.ndarray, pixel: float) -> np.ndarray:
 
 
 def _same_starts(_spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
-    """Return the points unchanged."""
+    """Return the points unchanged, for one rerun."""
     return ((x, ordinate),)
 
 
@@ -102,10 +103,14 @@ class Rerun:
         return decided
 
     def has_changed(self) -> np.ndarray:
-        """Return whether each outcome differs from that of the map, or must because there are already more crossings."""
-        batch, escaped = self.batch, self.fate >= 1
-        other_fate = self.is_decided() & (batch.fate != self.fate)
-        other_crossings = (batch.fate == self.fate) & (batch.crossings != self.crossings)
-        delayed = (batch.fate == self.fate) & (np.abs(batch.t - self.escape_time) > self.largest_delay)
-        changed: np.ndarray = other_fate | escaped & (other_crossings | delayed | (batch.crossings > self.crossings))
-        return changed
+        """Return whether each outcome differs from that of the map, of shape (n,).
+
+        An undecided orbit with more crossings than on the map will have another outcome.
+        """
+        batch, has_escaped = self.batch, self.fate >= 1
+        has_other_fate = self.is_decided() & (batch.fate != self.fate)
+        has_other_crossings = (batch.fate == self.fate) & (batch.crossings != self.crossings)
+        is_delayed = (batch.fate == self.fate) & (np.abs(batch.t - self.escape_time) > self.largest_delay)
+        has_other_escape = has_escaped & (has_other_crossings | is_delayed | (batch.crossings > self.crossings))
+        has_changed: np.ndarray = has_other_fate | has_other_escape
+        return has_changed

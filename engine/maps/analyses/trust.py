@@ -29,27 +29,28 @@ from engine.propagation.fates import CHAOS_THRESHOLD, Fate
 from engine.systems.compiled import kernels_of
 
 APART = SHIFT / CHAOS_THRESHOLD
-"""Distance of two reruns in phase space, in units of the well, from which a bounded orbit counts as chaotic.
+"""Largest distance of two reruns of a bounded orbit in phase space, in units of the well, with which it is not chaotic.
 
 Along a chaotic orbit SALI falls as exp(−λt) while a shift grows as exp(λt): the shift reaches this distance when SALI reaches its
 threshold. Along a regular orbit a shift grows like t, to about 1e-6 at t = 1e5.
 """
 
-# Horizons are doubled in each stage, so that few orbits are integrated longer than needed. One horizon is FIRST_TEST_TIME.
+# Horizon of the first stage, in units of the well; with the following factor, FIRST_TEST_TIME is one of the horizons.
 _FIRST_HORIZON = FIRST_TEST_TIME / 8.0
+# Ratio of successive horizons; it is small, so that few orbits are integrated longer than needed.
 _HORIZON_FACTOR = 2.0
 # A grid index on the coarsest lattice of `BoundedOrbitSearch`. The bounded pixels to test are few and lie around islands, so one
-# round with all of them fills the lanes of the kernels better than one round per lattice.
+# round with all of these pixels fills the lanes of the kernels better than one round per lattice.
 _COARSEST_LATTICE_INDEX = 8
 
 
 class Trust(IntEnum):
     """Whether the outcome of a pixel is robust against small changes.
 
-    ``NOT_APPLICABLE``: forbidden, outside or failed. ``LIKE_NEIGHBOURS``: not tested because all neighbours have the same
-    outcome, and the orbit escapes or is bounded on evidence. ``CONFIRMED``: tested and unchanged. ``DOUBTFUL``: its fate, its
-    number of crossings before the escape or its escape time changed, or it is bounded only by chance. ``NOT_TESTED``: not
-    computed yet.
+    ``NOT_APPLICABLE``: the start is forbidden or outside, or the orbit failed. ``LIKE_NEIGHBOURS``: not tested, because all
+    neighbours have the same outcome, and the orbit escapes or is bounded on evidence. ``CONFIRMED``: tested and unchanged.
+    ``DOUBTFUL``: the fate, the number of crossings before the escape or the escape time changed, or the orbit is bounded only by
+    chance. ``NOT_TESTED``: not computed yet.
     """
 
     NOT_APPLICABLE = 0
@@ -112,14 +113,14 @@ def compute_trust(
 ) -> TrustMap:
     """Find the pixels of a complete map whose outcome changes under a perturbation far smaller than a pixel.
 
-    A pixel is tested if one of its eight neighbours has another fate, or escapes likewise but after another number of crossings,
-    and also if the pixel is bounded without evidence. Its orbit is integrated twice more, from two starts shifted in different
-    directions by 1e-11 length units of the well, but at most a hundredth of a pixel; the second time with ten times the
-    tolerance. The pixel is doubtful if in either rerun its fate changes, or its crossings before the escape, or its escape time
-    by more than 0.01 time units of the well. Crossings of bounded orbits are not compared, because orbits that are bounded on
-    evidence are not integrated to t_max.
+    A pixel is tested if one of its eight neighbours has another fate, or the same exit but another number of crossings, and also
+    if the pixel is bounded without evidence. Its orbit is integrated twice more, from two starts shifted in different directions
+    by 1e-11 length units of the well, but at most a hundredth of a pixel; the second time with ten times the tolerance. The pixel
+    is doubtful if a rerun changes the fate, the crossings before the escape, or the escape time by more than 0.01 time units of
+    the well. Crossings of bounded orbits are not compared, because orbits that are bounded on evidence are not integrated to
+    t_max.
 
-    A pixel that is bounded without evidence is also doubtful if the distance of the two reruns in phase space reaches 1e-4. Such
+    A pixel that is bounded without evidence is also doubtful if the distance of the two reruns in phase space exceeds 1e-4. Such
     an orbit is chaotic, and only chance keeps it inside until t_max. If two pixels are mirror images, only the first is tested.
 
     Parameters
@@ -166,6 +167,7 @@ def find_unlike_neighbours(fate: np.ndarray, crossings: np.ndarray) -> np.ndarra
     -------
     (rows, columns) bool.
     """
+    # One number for each fate and, for escaping orbits, number of crossings.
     outcome = np.where(fate >= 1, crossings.astype(np.int64) * (int(fate.max(initial=0)) + 1) + fate, 0)
     interior = fate >= Fate.BOUNDED
     rows, columns = fate.shape
@@ -178,7 +180,7 @@ def find_unlike_neighbours(fate: np.ndarray, crossings: np.ndarray) -> np.ndarra
 
 
 def _find_without_evidence(escape_map: EscapeMap) -> np.ndarray:
-    """Return which pixels are bounded, above the escape energy, without evidence, of shape (rows, columns)."""
+    """Return whether each pixel is bounded, above the escape energy, without evidence, of shape (rows, columns)."""
     spec = escape_map.spec
     energy = spec.energies(*np.meshgrid(escape_map.x, escape_map.ordinate))
     without_evidence: np.ndarray = (escape_map.evidence == Evidence.INTEGRATED) & ~spec.potential.well.is_closed_at(energy)
@@ -188,21 +190,22 @@ def _find_without_evidence(escape_map: EscapeMap) -> np.ndarray:
 class TrustTest:
     """Tests pixels of a map by reruns, in units of the well; for `unlike` see `find_unlike_neighbours`."""
 
-    def __init__(self, given: EscapeMap, unlike: np.ndarray, perturbation: Perturbation) -> None:
-        self._given_spec, escape_map = given.spec, given.in_well_units()
-        self.spec = escape_map.spec
-        codes = np.where(escape_map.fate >= Fate.BOUNDED, Trust.LIKE_NEIGHBOURS, Trust.NOT_APPLICABLE)
-        without_evidence = _find_without_evidence(escape_map)
+    def __init__(self, escape_map: EscapeMap, unlike: np.ndarray, perturbation: Perturbation) -> None:
+        self._given_spec, scaled_map = escape_map.spec, escape_map.in_well_units()
+        self.spec = scaled_map.spec
+        codes = np.where(scaled_map.fate >= Fate.BOUNDED, Trust.LIKE_NEIGHBOURS, Trust.NOT_APPLICABLE)
+        without_evidence = _find_without_evidence(scaled_map)
         codes[without_evidence | unlike] = Trust.NOT_TESTED
-        self._codes = PixelCodes(escape_map, codes, Trust.NOT_TESTED)
-        # For the tested pixels: whether both reruns must stay together, whether they have not, and the time up to which they have
-        # been compared.
+        self._codes = PixelCodes(scaled_map, codes, Trust.NOT_TESTED)
+        # Whether each tested pixel is bounded without evidence, so that its reruns must stay together.
         self._without_evidence = without_evidence.ravel()[self._codes.pixels]
+        # Whether the reruns of each tested pixel have separated.
         self._chaotic = np.zeros(self._codes.pixels.size, bool)
-        self._compared = 0.0
-        # Positions of undecided pixels in the arrays of the reruns.
+        # Time up to which the reruns have been compared.
+        self._compared_time = 0.0
+        # Indices of undecided pixels in the arrays of the reruns.
         self._undecided = np.arange(self._codes.pixels.size)
-        self._curves, self._reruns = self._prepare_reruns(escape_map, perturbation)
+        self._curves, self._reruns = self._prepare_reruns(scaled_map, perturbation)
 
     def _prepare_reruns(self, escape_map: EscapeMap, perturbation: Perturbation) -> tuple[np.ndarray, list[Rerun]]:
         """Return the exit curves of each energy, and the reruns at t = 0."""
@@ -213,6 +216,7 @@ class TrustTest:
         )
         energies, curve_row = np.unique(spec.energies(x, ordinate), return_inverse=True)
         curves = exit_curves_at(potential, energies)
+        # Orbits below every saddle are bounded without integration.
         closed = np.flatnonzero(potential.well.is_closed_at(energies[curve_row]))
         reruns = []
         for start, tolerance in zip(perturbation.starts(spec, x, ordinate), perturbation.tolerances, strict=True):
@@ -235,7 +239,7 @@ class TrustTest:
 
     def _propagate(self, horizon: float, execution: Execution) -> None:
         """Integrate the reruns of all undecided pixels to the horizon."""
-        # Both reruns run concurrently, because one alone may not keep all workers busy; their threads mostly wait for tiles.
+        # The reruns are concurrent, because one alone may not keep all workers busy; their threads mostly wait for tiles.
         with ThreadPoolExecutor(len(self._reruns)) as threads:
             list(threads.map(partial(self._propagate_rerun, horizon, execution), self._reruns))
         self._update_codes()
@@ -250,18 +254,18 @@ class TrustTest:
         )  # fmt: skip
 
     def _find_chaotic(self, time: float) -> None:
-        """Find pixels bounded without evidence whose reruns, all integrated to `time`, are at the distance `APART` or more."""
+        """Find pixels bounded without evidence whose reruns, all integrated to `time`, are farther apart than `APART`."""
         tested = self._undecided[self._without_evidence[self._undecided]]
         kernels = kernels_of(self.spec.potential)
         batches = [rerun.batch for rerun in self._reruns]
         states = np.array([advance_states(kernels, batch.state[tested], time - batch.t[tested]) for batch in batches])
         self._chaotic[tested] = np.linalg.norm(states[0] - states[-1], axis=1) > APART
-        self._compared = time
+        self._compared_time = time
 
     def _find_evidence(self, reached: float, execution: Execution, on_round: Callable[[], None]) -> None:
-        """Mark as bounded reruns of pixels that are bounded on the map, if their states at t = `reached` give evidence.
+        """Mark reruns of pixels that are bounded on the map as bounded if their states at t = `reached` give evidence.
 
-        The evidence of the first rerun holds for both reruns, because on a regular orbit their difference is far below the digits
+        Evidence for the first rerun holds for both reruns, because on a regular orbit their difference is far below the digits
         that are compared.
         """
         first, undecided = self._reruns[0], self._undecided
@@ -285,14 +289,15 @@ class TrustTest:
 
     def _update_codes(self) -> None:
         """Record which pixels are decided."""
-        finished = np.all([rerun.is_decided() for rerun in self._reruns], axis=0)
-        changed = np.any([rerun.has_changed() for rerun in self._reruns], axis=0)
-        changed |= self._chaotic
-        if self._compared < self.spec.t_max:
-            finished &= ~self._without_evidence | (self._reruns[0].batch.evidence != Evidence.NONE)
-        self._codes.assign(self._codes.pixels[finished], Trust.CONFIRMED)
-        self._codes.assign(self._codes.pixels[changed], Trust.DOUBTFUL)
-        self._undecided = np.flatnonzero(~finished & ~changed)
+        is_decided = np.all([rerun.is_decided() for rerun in self._reruns], axis=0)
+        has_changed = np.any([rerun.has_changed() for rerun in self._reruns], axis=0) | self._chaotic
+        if self._compared_time < self.spec.t_max:
+            # Pixels without evidence are decided when their reruns have been compared at t_max.
+            is_decided &= ~self._without_evidence | (self._reruns[0].batch.evidence != Evidence.NONE)
+        # A pixel that is decided and has changed becomes doubtful.
+        self._codes.assign(self._codes.pixels[is_decided], Trust.CONFIRMED)
+        self._codes.assign(self._codes.pixels[has_changed], Trust.DOUBTFUL)
+        self._undecided = np.flatnonzero(~is_decided & ~has_changed)
 
     def progress(self) -> float:
         """Return the share of the pixels that are decided."""

@@ -20,26 +20,28 @@ from engine.propagation.fates import Fate
 HORIZON = 1e4
 """Longest integration time of the pairs, in units of the well.
 
-Continuing to t = 1e5 changed the exponents of I (h = 0.15), II (0.17) and III (0.45) only within their intervals. Stopping at t =
-1000 made the exponent of I at h = 0.15 too large by 0.02, because a slowly leaking chaotic sea looks like an island.
+Integration to t = 1e5 changed the exponents of I (h = 0.15), II (0.17) and III (0.45) only within their intervals. Integration to
+t = 1000 made the exponent of I at h = 0.15 too large by 0.02, because a slowly leaking chaotic sea then looks like an island.
 """
 
 MIN_SEPARATION = 1e-10
-"""Smallest distance of two starts, in units of the well, except in deep zooms, where the pixels themselves are small."""
+"""Smallest distance of two starts, in units of the well; in deep zooms, with small pixels, it can be smaller."""
 
 WORK = 1.5e8
 """Default limit of the total integration time of all orbits, in units of the well: a few seconds of computation."""
 
-# In a deep zoom, the smallest separation is this many decades below a pixel.
+# Number of decades from the smallest separation to a pixel in a deep zoom.
 _DECADES_BELOW_PIXEL = 4.0
 # Lower limit of all separations, in units of the well: a few hundred units in the last place of coordinates of order 1.
 _MIN_ZOOM_SEPARATION = 1e-13
+# Largest number of separations.
 _MAX_SEPARATIONS = 100
+# Largest initial number of pairs at each separation.
 _MAX_PAIRS = 100_000
-# After the requested pairs, each separation gets more pairs until the fitted law expects this many uncertain pairs, which
-# determine a share to 7 %.
+# Number of uncertain pairs, expected from the law fitted to the initial pairs, for which each separation gets more pairs; it
+# determines a share to 7 %.
 _WANTED_UNCERTAIN = 200
-# Each separation gets at most this many times as many pairs; the total integration time also limits their number.
+# Largest ratio of the final and the initial number of pairs; the total integration time also limits the number of pairs.
 _MAX_GROWTH = 2000
 # Cost of a pair besides its integration, in time units of integration.
 _PAIR_COST = 20.0
@@ -47,7 +49,7 @@ _PAIR_COST = 20.0
 _CHUNK = 2**17
 # Times at which the integration stops, to regroup the few remaining orbits, in units of the well.
 _STAGES = (30.0, 300.0)
-# Drawing stops if less than this share of the points drawn in the window is interior.
+# Smallest share of interior points among the points drawn in the window; drawing stops if there are fewer.
 _MIN_YIELD = 1e-3
 
 
@@ -71,9 +73,9 @@ def compute_uncertainty_exponent(
     the energy of a row of pixels, and the second start is displaced along x. Pairs with a forbidden or outside start are drawn
     again.
 
-    Orbits are integrated to t_max, at most 1e4 time units of the well, and being inside at that time is a fate like a channel.
-    In the result, `one_inside` and `both_inside` count the pairs that this choice can affect. The number of pairs in which both
-    orbits escape is ``pairs − one_inside − both_inside``; ``uncertain − one_inside`` of these pairs are uncertain.
+    Orbits are integrated to t_max, at most 1e4 time units of the well. To be inside at that time is a fate like a channel. In the
+    result, `one_inside` and `both_inside` count the pairs that this choice can affect. The number of pairs in which both orbits
+    escape is ``pairs − one_inside − both_inside``; ``uncertain − one_inside`` of these pairs are uncertain.
 
     Separations with few uncertain pairs get more pairs, as many as the law fitted to the first pairs suggests, within a fixed
     total integration time.
@@ -118,11 +120,12 @@ def compute_uncertainty_exponent(
     pairs = checked_count("pairs", pairs, 10, _MAX_PAIRS)
     separations = checked_count("separations", separations, 5, _MAX_SEPARATIONS)
     seed = checked_count("seed", seed, 0, 2**63 - 1)
-    given: object = work
-    if not isinstance(given, numbers.Real) or not work > 0.0:
+    # For type checkers, the type of `work` is known, and the check of it could not fail.
+    given_work: object = work
+    if not isinstance(given_work, numbers.Real) or not work > 0.0:
         raise ValueError(f"work={short_repr(work)}: must be above 0")
-    units, separation = spec.potential.units, _separations(spec, separations)
-    sampler = _PairSampler(spec.in_well_units(), separation, seed, execution)
+    units = spec.potential.units
+    sampler = _PairSampler(spec.in_well_units(), _spaced_separations(spec, separations), seed, execution)
     sampler.sample(np.full(separations, pairs), execution.part(0, 2))
     sampler.sample(sampler.plan_more_pairs(work), execution.part(1, 2))
     execution.report(lambda: 1.0)
@@ -131,16 +134,16 @@ def compute_uncertainty_exponent(
     return replace(units.restore(fit), amplitude=amplitude, made_by=spec.provenance())
 
 
-def _separations(spec: MapSpec, count: int) -> np.ndarray:
+def _spaced_separations(spec: MapSpec, count: int) -> np.ndarray:
     """Return `count` separations ε in units of the well, decreasing from the side of a pixel."""
-    given_window, spec = spec.find_window(), spec.in_well_units()
-    window, (columns, rows) = spec.find_window(), spec.resolution
+    scaled_spec = spec.in_well_units()
+    window, (columns, rows) = scaled_spec.find_window(), spec.resolution
     sides = window.width / columns, window.height / rows
-    pixel = min(side for side, free in zip(sides, spec.plane.free_axes, strict=True) if free)
+    pixel = min(side for side, is_free in zip(sides, scaled_spec.plane.free_axes, strict=True) if is_free)
     smallest = max(min(MIN_SEPARATION, pixel * 10.0**-_DECADES_BELOW_PIXEL), _MIN_ZOOM_SEPARATION)
     if pixel < 100.0 * smallest:
         raise ValueError(
-            f"window={given_window}: pixels of {pixel:.0e} units of the well are too small for double precision; "
+            f"window={spec.find_window()}: pixels of {pixel:.0e} units of the well are too small for double precision; "
             f"must be {100.0 * smallest:.0e} or more"
         )
     return np.geomspace(pixel, smallest, count)
@@ -159,9 +162,11 @@ class _PairSampler:
         self.spec, self.separations = spec, separations
         self.execution = execution
         self.horizon = min(spec.t_max, HORIZON)
+        # Each separation has its own generator, so that its pairs do not depend on the other separations.
         self.random = [np.random.default_rng([seed, index]) for index in range(separations.size)]
         self.pairs, self.uncertain, self.one_inside, self.both_inside = np.zeros((4, separations.size), np.int64)
         self.integrated_time = 0.0
+        # The energies of the pairs: one, or those of the pixels along an axis h.
         axis = spec.plane.energy_axis
         self.row_energy = np.array([spec.common_energy]) if axis is None else spec.pixel_centres()[axis]
         self.is_open = ~spec.potential.well.is_closed_at(self.row_energy)
@@ -176,34 +181,34 @@ class _PairSampler:
         else:
             # One separation does not determine a law. The law of a smooth boundary, f ~ ε, gives the largest number of pairs.
             share = self.uncertain.max() / self.pairs.max() * self.separations / self.separations[0]
-        most = _MAX_GROWTH * self.pairs
-        wanted = np.clip(_WANTED_UNCERTAIN / share, self.pairs, most) - self.pairs
+        most_pairs = _MAX_GROWTH * self.pairs
+        counts = np.clip(_WANTED_UNCERTAIN / share, self.pairs, most_pairs) - self.pairs
         # More pairs are useless if even the largest number does not make the separation count.
-        wanted[share * most < MIN_EXPECTED_PAIRS] = 0.0
+        counts[share * most_pairs < MIN_EXPECTED_PAIRS] = 0.0
         cost = _PAIR_COST + self.integrated_time / self.pairs.sum()
-        affordable = max(work / cost - self.pairs.sum(), 0.0)
-        more: np.ndarray = (wanted * min(1.0, affordable / max(wanted.sum(), 1.0))).astype(np.int64)
-        return more
+        affordable_count = max(work / cost - self.pairs.sum(), 0.0)
+        affordable_counts: np.ndarray = (counts * min(1.0, affordable_count / max(counts.sum(), 1.0))).astype(np.int64)
+        return affordable_counts
 
-    def sample(self, wanted: np.ndarray, execution: Execution) -> None:
-        """Draw and integrate `wanted` (m,) more pairs at each separation, and count their outcomes."""
-        indices = np.repeat(np.arange(wanted.size), wanted)
+    def sample(self, counts: np.ndarray, execution: Execution) -> None:
+        """Draw and integrate `counts` (m,) more pairs at each separation, and count their outcomes."""
+        indices = np.repeat(np.arange(counts.size), counts)
         chunks = np.split(indices, range(_CHUNK, indices.size, _CHUNK)) if indices.size else []
-        for done, chunk in enumerate(chunks):
-            batch, index = self._draw_chunk(np.bincount(chunk, minlength=wanted.size))
-            self._integrate(batch, execution.part(done, len(chunks)))
+        for number, chunk in enumerate(chunks):
+            batch, index = self._draw_chunk(np.bincount(chunk, minlength=counts.size))
+            self._integrate(batch, execution.part(number, len(chunks)))
             self.integrated_time += float(batch.t.sum())
             self._count_outcomes(index, *batch.fate.reshape(2, -1))
 
-    def _draw_chunk(self, wanted: np.ndarray) -> tuple[OrbitBatch, np.ndarray]:
-        """Return the orbits of `wanted` (m,) pairs, all first before all second starts, and the separation index of each pair."""
-        present = np.flatnonzero(wanted)
-        drawn = [self._draw_pairs(index, int(wanted[index])) for index in present.tolist()]
-        states = np.concatenate([states for states, _ in drawn], axis=1).reshape(-1, 4)
-        rows = np.concatenate([rows for _, rows in drawn])
+    def _draw_chunk(self, counts: np.ndarray) -> tuple[OrbitBatch, np.ndarray]:
+        """Return the orbits of `counts` (m,) pairs, all first before all second starts, and the separation index of each pair."""
+        present = np.flatnonzero(counts)
+        samples = [self._draw_pairs(index, int(counts[index])) for index in present.tolist()]
+        states = np.concatenate([states for states, _ in samples], axis=1).reshape(-1, 4)
+        rows = np.concatenate([rows for _, rows in samples])
         batch = OrbitBatch.from_starts(states, np.tile(rows, 2))
         batch.mark_bounded(np.flatnonzero(~self.is_open[batch.curve_row]), Evidence.CLOSED)
-        return batch, np.repeat(present, [rows.size for _, rows in drawn])
+        return batch, np.repeat(present, [rows.size for _, rows in samples])
 
     def _integrate(self, batch: OrbitBatch, execution: Execution) -> None:
         """Integrate all orbits in stages, so that the few long orbits are grouped into full tiles."""
@@ -220,27 +225,28 @@ class _PairSampler:
             execution.raise_if_cancelled()
 
     def _count_outcomes(self, index: np.ndarray, first: np.ndarray, second: np.ndarray) -> None:
-        """Count pairs by their separation index and the fates of their two orbits, all (n,)."""
-        inside = (first == Fate.BOUNDED).astype(int) + (second == Fate.BOUNDED)
-        decided = (first >= Fate.BOUNDED) & (second >= Fate.BOUNDED)
-        for counts, which in (
-            (self.pairs, decided),
-            (self.uncertain, decided & (first != second)),
-            (self.one_inside, decided & (inside == 1)),
-            (self.both_inside, decided & (inside == 2)),
+        """Count pairs, given their separation index and the fates of their first and second orbits, (n,) each."""
+        inside_count = (first == Fate.BOUNDED).astype(int) + (second == Fate.BOUNDED)
+        is_decided = (first >= Fate.BOUNDED) & (second >= Fate.BOUNDED)
+        for counts, mask in (
+            (self.pairs, is_decided),
+            (self.uncertain, is_decided & (first != second)),
+            (self.one_inside, is_decided & (inside_count == 1)),
+            (self.both_inside, is_decided & (inside_count == 2)),
         ):
-            counts += np.bincount(index[which], minlength=counts.size)
+            # This changes the array of the attribute in place.
+            counts += np.bincount(index[mask], minlength=counts.size)
 
     def _draw_pairs(self, index: int, count: int) -> tuple[np.ndarray, np.ndarray]:
         """Return the states, (2, n, 4), and energy rows, (n,), of at most `count` pairs at one separation."""
         states, rows = np.zeros((2, 0, 4)), np.zeros(0, np.int64)
-        drawn = 0
-        while rows.size < count and drawn * _MIN_YIELD < rows.size + 10:
+        drawn_count = 0
+        while rows.size < count and drawn_count * _MIN_YIELD < rows.size + 10:
             self.execution.raise_if_cancelled()
             size = 2 * (count - rows.size) + 100
-            more, more_rows = self._draw_interior_pairs(index, size)
-            states, rows = np.concatenate([states, more], axis=1), np.concatenate([rows, more_rows])
-            drawn += size
+            more_states, more_rows = self._draw_interior_pairs(index, size)
+            states, rows = np.concatenate([states, more_states], axis=1), np.concatenate([rows, more_rows])
+            drawn_count += size
         return states[:, :count], rows[:count]
 
     def _draw_interior_pairs(self, index: int, size: int) -> tuple[np.ndarray, np.ndarray]:
@@ -248,8 +254,8 @@ class _PairSampler:
         points, rows = self._draw_points(index, size)
         batch = OrbitBatch.from_starts(self.spec.start_states(*points), np.tile(rows, 2))
         batch.mark_outside(self.spec.potential, np.arange(2 * size), self.curves)
-        inside = (batch.fate == Fate.NOT_COMPUTED).reshape(2, -1).all(axis=0)
-        return batch.state.reshape(2, -1, 4)[:, inside], rows[inside]
+        is_interior = (batch.fate == Fate.NOT_COMPUTED).reshape(2, -1).all(axis=0)
+        return batch.state.reshape(2, -1, 4)[:, is_interior], rows[is_interior]
 
     def _draw_points(self, index: int, size: int) -> tuple[np.ndarray, np.ndarray]:
         """Return x and ordinate of all first, then all second starts, (2, 2 size), and the energy rows of the pairs, (size,)."""
@@ -257,10 +263,11 @@ class _PairSampler:
         edges = window.ranges
         rows = np.zeros(size, np.int64)
         if axis is None:
-            points = np.array([random.uniform(*interval, size) for interval in edges])
+            points = np.array([random.uniform(*range_, size) for range_ in edges])
             angle = random.uniform(0.0, 2.0 * np.pi, size)
             shift = self.separations[index] * np.array([np.cos(angle), np.sin(angle)])
             return np.concatenate([points, points + shift], axis=1), rows
+        # Along an axis h, points have the energies of pixels, and only the other axis is displaced.
         points, shift = np.zeros((2, size)), np.zeros((2, size))
         points[1 - axis] = random.uniform(*edges[1 - axis], size)
         rows = random.integers(0, self.row_energy.size, size)

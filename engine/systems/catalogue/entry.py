@@ -8,6 +8,7 @@ from types import MappingProxyType
 
 from engine.systems.parameters import WELL_PARAMETERS
 
+# Default values of the parameters of a well.
 _WELL_DEFAULTS = MappingProxyType({name: parameter.default for name, parameter in WELL_PARAMETERS.items()})
 
 
@@ -18,7 +19,7 @@ class EnergyRange:
     Attributes
     ----------
     low, high
-        The ends of the range; `high` is also the upper end of the (x, h) plane.
+        The ends of the range. `high` is also the upper end of the (x, h) plane.
     marked
         Energies of special interest, such as the nine of the paper.
     first
@@ -41,7 +42,7 @@ class CatalogueEntry:
     Attributes
     ----------
     name
-        Its key in `CATALOGUE` and `POTENTIALS`, and the name of the potential.
+        Key in `CATALOGUE` and `POTENTIALS`, and name of the potential.
     title
         Display name.
     formula

@@ -1,4 +1,4 @@
-"""A mapping whose error for an unknown name suggests similar names."""
+"""A mapping by name. Its error for an unknown name suggests similar names."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _LEAST_LIKENESS = 0.6
 
 
 class UnknownNameError(KeyError, ValueError):
-    """A name is not in a mapping; the message is one sentence."""
+    """A name is not in a mapping. The message is one sentence."""
 
     def __str__(self) -> str:
         return str(self.args[0])
@@ -29,9 +29,9 @@ class ByName[Value](Mapping[str, Value]):
     names
         The names.
     make
-        Returns the value of a name; it is called at each look-up.
+        Returns the value of a name. It is called at each look-up.
     titles
-        Alternative titles by name. For an unknown name that resembles a title, the error suggests the name with this title.
+        Titles by name. For an unknown name that resembles a title, the error suggests the name with this title.
     """
 
     def __init__(
@@ -40,13 +40,14 @@ class ByName[Value](Mapping[str, Value]):
         self._kind, self._names, self._make, self._titles = kind, tuple(names), make, dict(titles or {})
 
     def __getitem__(self, name: str) -> Value:
-        """Return the value of a name; for an unknown name, raise an `UnknownNameError` that suggests similar ones."""
-        given: object = name
-        if isinstance(given, str) and given in self._names:
-            return self._make(given)
-        near = self._like(str(name))
-        meant = f"did you mean {' or '.join(map(repr, near))}? The" if near else "the"
-        raise UnknownNameError(f"{self._kind} {short_repr(name)}: {meant} names are {', '.join(self._names)}")
+        """Return the value of a name; for an unknown name, raise an `UnknownNameError` that suggests similar names."""
+        # Users may pass any object.
+        key: object = name
+        if isinstance(key, str) and key in self._names:
+            return self._make(key)
+        similar_names = self._find_similar(str(name))
+        question = f"did you mean {' or '.join(map(repr, similar_names))}? The" if similar_names else "the"
+        raise UnknownNameError(f"{self._kind} {short_repr(name)}: {question} names are {', '.join(self._names)}")
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._names)
@@ -57,11 +58,12 @@ class ByName[Value](Mapping[str, Value]):
     def __repr__(self) -> str:
         return f"<{self._kind}s: {', '.join(self._names)}>"
 
-    def _like(self, name: str) -> list[str]:
+    def _find_similar(self, name: str) -> list[str]:
         """Return up to three names with similar spelling, the most similar first."""
-        spelled = {_plain(other): known for known in self._names for other in (known, self._titles.get(known, known))}
-        found = difflib.get_close_matches(_plain(name), spelled, n=3, cutoff=_LEAST_LIKENESS)
-        return list(dict.fromkeys(spelled[each] for each in found))
+        # Names by the plain spelling of the name and of its title.
+        spellings = {_plain(text): known for known in self._names for text in (known, self._titles.get(known, known))}
+        matches = difflib.get_close_matches(_plain(name), spellings, n=3, cutoff=_LEAST_LIKENESS)
+        return list(dict.fromkeys(spellings[match] for match in matches))
 
 
 def _plain(name: str) -> str:

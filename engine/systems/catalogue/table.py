@@ -1,4 +1,4 @@
-"""The potentials included in the engine, each with a description and a reference; `docs/systems.md` also lists them."""
+"""The potentials included in the engine, with descriptions and references. `docs/systems.md` also lists them."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ def _paper_entry(name: str, formula: str, description: str) -> CatalogueEntry:
 
 def _family_entry(n: int) -> CatalogueEntry:
     count = {3: "Three", 4: "Four", 5: "Five", 6: "Six", 7: "Seven", 8: "Eight"}[n]
-    equal = ": identical to case II" if n == 3 else ""
+    remark = ": identical to case II" if n == 3 else ""
     return CatalogueEntry(
         f"C{n}",
         f"C{n} family",
         f"r²/2 − ({' '.join(_signed_term(n, j) for j in range(0, n + 1, 2)).removeprefix('+ ')})/{n}",
-        f"{count} equal channels at θ = 2πk/{n}, open above {Fraction(1, 2) - Fraction(1, n)}{equal}.",
+        f"{count} equal channels at θ = 2πk/{n}, open above {Fraction(1, 2) - Fraction(1, n)}{remark}.",
         "V = r²/2 − (1/n) rⁿ cos nθ, a family of potentials of this project",
     )
 
@@ -83,4 +83,4 @@ _BY_NAME = {entry.name: entry for entry in (*_ENTRIES, *ROTATING_ENTRIES)}
 CATALOGUE: Mapping[str, CatalogueEntry] = ByName(
     "potential", _BY_NAME, _BY_NAME.__getitem__, {name: entry.title for name, entry in _BY_NAME.items()}
 )
-"""The potentials included in the engine with their descriptions, by name; the three cases of Zotos (2014) come first."""
+"""The potentials included in the engine with their descriptions, by name. The three cases of Zotos (2014) come first."""

@@ -2,9 +2,9 @@
 
 The resultant of two polynomials p and q with respect to y is a polynomial in x that vanishes at the x of each common root. The
 resultant with respect to x gives the values of y. In sheared axes, s = x + k y, the resultant gives the values of s. FLINT
-encloses the real roots of these polynomials by intervals, with proof (Johansson 2017, IEEE Trans. Comput. 66, 1281). If k is such
-that different common roots have different s, each real s belongs to exactly one real root (x, y), the only root with x + k y = s.
-The roots are known when the intervals are so short that only one pair (x, y) is left for each s. The multiplicity of s is that of
+encloses the real roots of these polynomials by intervals, with proof (Johansson 2017, IEEE Trans. Comput. 66, 1281). If different
+common roots have different s, each real s belongs to exactly one real root (x, y), the only root with x + k y = s. The roots are
+known when the intervals are so short that only one pair (x, y) is left for each s. The multiplicity of s is the multiplicity of
 the common root.
 """
 
@@ -21,9 +21,9 @@ from engine.systems.forms.form import UndecidedError
 
 # Arbitrary factors k, tried in turn. Two common roots have the same s only if the line through them has the slope −1/k.
 _SHEARS = (fmpq(37, 101), fmpq(-67, 89), fmpq(113, 71))
-# Bits of the intervals, tried in turn.
+# Numbers of bits of the intervals, tried in turn.
 _PRECISIONS = (128, 256, 512, 1024)
-# Relative distance within which an x is compared with s − k y by intervals.
+# Relative distance of an x from s − k y within which their intervals are compared.
 _NEAR = 1e-9
 
 
@@ -52,14 +52,14 @@ def find_common_roots(p: fmpq_mpoly, q: fmpq_mpoly) -> list[CommonRoot]:
     for shear in _SHEARS:
         sheared = [_shear(each, shear) for each in (p, q)]
         if any(each.degrees()[1] < each.total_degree() for each in sheared):
-            # A leading coefficient vanishes, so that roots at infinity would count.
+            # A leading coefficient vanishes, so roots at infinity would count.
             continue
         along_s = _univariate(sheared[0].resultant(sheared[1], "y"), 0)
         for precision in _PRECISIONS:
             with ctx.workprec(precision):
-                found = _pair_coordinates(_real_roots(along_x), _real_roots(along_y), _real_roots(along_s), shear)
-            if found is not None:
-                return found
+                roots = _pair_coordinates(_real_roots(along_x), _real_roots(along_y), _real_roots(along_s), shear)
+            if roots is not None:
+                return roots
     raise UndecidedError(
         "It cannot be decided whether all points where the force vanishes are known: some are too close together."
     )
@@ -72,7 +72,7 @@ def _univariate(polynomial: fmpq_mpoly, axis: int) -> fmpq_poly:
 
 
 def _shear(polynomial: fmpq_mpoly, shear: fmpq) -> fmpq_mpoly:
-    """Replace x in a polynomial by s − k y; the result has s in place of x."""
+    """Replace x in a polynomial by s − k y. The result has s in place of x."""
     x, y = RING.gens()
     return polynomial.compose(x - shear * y, y)
 
@@ -88,15 +88,18 @@ def _pair_coordinates(
     along_x: list[tuple[arb, int]], along_y: list[tuple[arb, int]], along_s: list[tuple[arb, int]], shear: fmpq
 ) -> list[CommonRoot] | None:
     """Return the only pair (x, y) with x + k y = s for each s; None if an s has no pair or several."""
-    places, k, found = [float(x) for x, _ in along_x], arb(shear), []
+    x_values = [float(x) for x, _ in along_x]
+    k = arb(shear)
+    roots = []
     for s, multiplicity in along_s:
         pairs = []
         for y, _ in along_y:
-            rest = s - k * y
-            near = _NEAR * (abs(float(s)) + abs(float(k * y)))
-            around = range(bisect_left(places, float(rest) - near), bisect_right(places, float(rest) + near))
-            pairs += [(along_x[place][0], y) for place in around if along_x[place][0].overlaps(rest)]
+            expected_x = s - k * y
+            distance = _NEAR * (abs(float(s)) + abs(float(k * y)))
+            first = bisect_left(x_values, float(expected_x) - distance)
+            last = bisect_right(x_values, float(expected_x) + distance)
+            pairs += [(x, y) for x, _ in along_x[first:last] if x.overlaps(expected_x)]
         if len(pairs) != 1:
             return None
-        found.append(CommonRoot(*pairs[0], multiplicity))
-    return found
+        roots.append(CommonRoot(*pairs[0], multiplicity))
+    return roots

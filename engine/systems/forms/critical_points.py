@@ -1,9 +1,9 @@
 """All critical points of a polynomial V, found with proof, in rational arithmetic.
 
-A coefficient represents the decimal that Python prints, or a fraction of small denominator that rounds to the same double. The
-result is therefore the same on every machine, and exact for typed formulas. V_x and V_y are divided by their greatest common
-divisor. The quotients have isolated common roots (`find_common_roots`). Where the divisor vanishes, the force vanishes along
-curves or at single points.
+A coefficient stands for the decimal that Python prints, or for a fraction with a small denominator that rounds to the same
+double. The result is therefore the same on every machine, and exact for typed formulas. V_x and V_y are divided by their greatest
+common divisor. The quotients have isolated common roots (`find_common_roots`). Where the divisor vanishes, the force vanishes
+along curves or at single points.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from engine.systems.forms.form import NotIsolatedError
 
 # Largest denominator of the fractions that are recognised, such as 1/3.
 _LARGEST_DENOMINATOR = 1000
-# An arbitrary point; on each curve of zeros, the point nearest to it is searched for.
+# An arbitrary point. On each curve of zeros, the nearest point to the arbitrary point is searched.
 _ARBITRARY = fmpq(577, 1009), fmpq(-733, 1013)
-# Bits of the intervals in which signs are determined, no fewer than those of the roots.
+# Number of bits of the intervals in which signs are determined: no fewer than the bits of the roots.
 _PRECISION = 1024
-# Relative error of the coefficients; a Hessian that such errors can make singular counts as degenerate.
+# Relative error of the coefficients. A point is degenerate if such errors can make its Hessian singular.
 _ROUNDING = 2.0**-44
 # The precision is a global variable of FLINT.
 _LOCK = threading.Lock()
@@ -42,8 +42,8 @@ def find_critical_points(terms: Terms) -> np.ndarray:
 
     Returns
     -------
-    (n, 3) x, y and index of each point. The index is 1 for a minimum or a maximum, −1 for a saddle, and 0 for a point that is
-    degenerate, or can become degenerate by rounding errors of the coefficients.
+    x, y and index of each point, of shape (n, 3). The index is 1 for a minimum or a maximum, −1 for a saddle, and 0 for a point
+    that is degenerate, or can become degenerate by rounding errors of the coefficients.
 
     Raises
     ------
@@ -54,13 +54,13 @@ def find_critical_points(terms: Terms) -> np.ndarray:
     """
     with _LOCK:
         potential = exact_polynomial({powers: _rational(c) for powers, c in terms.items() if c})
-        first, second = potential.derivative("x"), potential.derivative("y")
-        common = first.gcd(second)
-        if common.is_zero():
+        along_x, along_y = potential.derivative("x"), potential.derivative("y")
+        divisor = along_x.gcd(along_y)
+        if divisor.is_zero():
             raise NotIsolatedError
-        degenerate = _isolated_zeros(common)
-        others = [root for root in find_common_roots(first / common, second / common) if not _is_among(root, degenerate)]
-        rows = [(root, 0) for root in degenerate] + [(root, _index(potential, root)) for root in others]
+        degenerate = _isolated_zeros(divisor)
+        roots = [root for root in find_common_roots(along_x / divisor, along_y / divisor) if not _is_among(root, degenerate)]
+        rows = [(root, 0) for root in degenerate] + [(root, _index(potential, root)) for root in roots]
         return np.array([(float(root.x), float(root.y), index) for root, index in rows], float).reshape(-1, 3)
 
 
@@ -74,16 +74,17 @@ def _rational(c: float) -> Fraction:
 def _isolated_zeros(polynomial: fmpq_mpoly) -> list[CommonRoot]:
     """Return the real zeros of a polynomial if all are isolated points; NotIsolatedError for curves of zeros.
 
-    Each curve of zeros has a point nearest to an arbitrary point; the gradient there is parallel to the line between both points.
+    Each curve of zeros has a nearest point to an arbitrary point, where the gradient is parallel to the line between both points.
     """
     zeros = []
     x, y = RING.gens()
     for factor, _ in polynomial.factor_squarefree()[1]:
         along_x, along_y = factor.derivative("x"), factor.derivative("y")
-        across = (x - _ARBITRARY[0]) * along_y - (y - _ARBITRARY[1]) * along_x
-        if not factor.gcd(across).is_constant():
+        # This vanishes where the gradient is parallel to the line from the arbitrary point.
+        cross_product = (x - _ARBITRARY[0]) * along_y - (y - _ARBITRARY[1]) * along_x
+        if not factor.gcd(cross_product).is_constant():
             raise NotIsolatedError
-        for zero in find_common_roots(factor, across):
+        for zero in find_common_roots(factor, cross_product):
             is_singular = _value(along_x, zero).contains(0) and _value(along_y, zero).contains(0)
             if not (is_singular and _Hessian(factor, zero).determinant > 0):
                 raise NotIsolatedError
@@ -110,7 +111,7 @@ class _Hessian:
         along_x, along_y = polynomial.derivative("x"), polynomial.derivative("y")
         entries = along_x.derivative("x"), along_x.derivative("y"), along_y.derivative("y")
         self.xx, self.xy, self.yy = (_value(entry, root) for entry in entries)
-        self._sizes = [float(_value(entry, root, magnitude=True)) for entry in entries]
+        self._magnitudes = [float(_value(entry, root, magnitude=True)) for entry in entries]
         with ctx.workprec(_PRECISION):
             self.determinant = self.xx * self.yy - self.xy**2
 
@@ -122,13 +123,14 @@ class _Hessian:
         with ctx.workprec(_PRECISION):
             mean = (self.xx + self.yy) / 2
             distance = (((self.xx - self.yy) / 2) ** 2 + self.xy**2).sqrt()
-            smaller = self.determinant / (mean + distance if mean > 0 else mean - distance)
-            vectors = ((self.xy, smaller - self.xx), (smaller - self.yy, self.xy))
-            e = max(([abs(float(part)) for part in vector] for vector in vectors), key=lambda each: math.hypot(*each))
-        length = math.hypot(*e)
-        u, v = (part / length for part in e) if length else (1.0, 1.0)
-        xx, xy, yy = self._sizes
-        return abs(float(smaller)) <= _ROUNDING * (xx * u * u + 2.0 * xy * u * v + yy * v * v)
+            eigenvalue = self.determinant / (mean + distance if mean > 0 else mean - distance)
+            # Both vectors are parallel to the eigenvector. The longer vector has the smaller rounding error.
+            vectors = ((self.xy, eigenvalue - self.xx), (eigenvalue - self.yy, self.xy))
+            vector = max(([abs(float(part)) for part in each] for each in vectors), key=lambda each: math.hypot(*each))
+        length = math.hypot(*vector)
+        u, v = (part / length for part in vector) if length else (1.0, 1.0)
+        xx, xy, yy = self._magnitudes
+        return abs(float(eigenvalue)) <= _ROUNDING * (xx * u * u + 2.0 * xy * u * v + yy * v * v)
 
 
 def _value(polynomial: fmpq_mpoly, root: CommonRoot, *, magnitude: bool = False) -> arb:

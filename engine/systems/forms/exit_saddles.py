@@ -1,9 +1,9 @@
 """Saddles of a potential that lead out of the well at the origin, and the maxima beside them.
 
-From a saddle two lines of steepest descent start, one on each side along its unstable direction. If one ends at the origin and
-the other elsewhere, at another minimum or at infinity, the saddle is an exit of the well. The two lines of steepest ascent run
-along the walls of the channel; above the energy of a maximum at which one line ends, the channel has no wall there. A line that
-reaches a curve where V is infinite, such as x = 3 for V = 1/(x − 3), ends there.
+Two lines of steepest descent start at a saddle, one on each side along the unstable direction. If one line ends at the origin and
+the other line ends elsewhere, at another minimum or at infinity, the saddle is an exit of the well. Two lines of steepest ascent
+run along the walls of the channel. If a line ends at a maximum, the channel has no wall there above the energy of the maximum. A
+line that reaches a curve where V is infinite, such as x = 3 for V = 1/(x − 3), ends there.
 """
 
 from __future__ import annotations
@@ -19,24 +19,24 @@ from engine.systems.forms.form import NO_POINTS, DescentError, Form, Velocity
 _START_DISTANCE = 1e-3
 # Distance from a critical point at which a descent ends, in units of the distance of the critical point nearest to the origin.
 _END_DISTANCE = 1e-4
-# Distance from the origin at which a descent counts as infinite, in units of that of the outermost critical point.
+# Distance from the origin at which a descent counts as infinite, in units of the distance of the outermost critical point.
 _FAR = 10.0
 
-# Rise of V in one step of a descent, in units of the largest value at a critical point, beyond which the step has passed a curve
-# where V is infinite.
+# Rise of V in a step of a descent above which the step has passed a curve where V is infinite, in units of the largest magnitude
+# of V at a critical point.
 _RISE = 1e-6
 
-# Length of a step below which a descent is at rest, in units of the distance of the critical point nearest to the origin.
+# Length of a step below which a descent counts as at rest, in units of the distance of the nearest critical point.
 _AT_REST = 1e-13
 
 # Relative error of a step.
 _RELATIVE_ERROR = 1e-9
 # Length of the first step, in units of the distance of the start from the saddle.
 _FIRST_MOVE = 1e-6
-# Limit on the steps of all descents of a potential, which take some seconds. Most potentials need about 1 000; of 600 wells, one
-# needed 17 000.
+# Limit on the steps of all descents of a potential. So many steps take some seconds. Most potentials need about 1 000 steps; of
+# 600 wells, one needed 17 000.
 _MOST_STEPS = 20_000
-# Limit on the steps of one method along one line. Most lines need 200; lines through long narrow valleys need about 2 000.
+# Limit on the steps of a method along a line. Most lines need 200 steps. Lines through long narrow valleys need about 2 000.
 _MOST_STEPS_ALONG_LINE = 5_000
 
 
@@ -48,23 +48,24 @@ def leads_out_of_well(form: Form, points: np.ndarray, indices: np.ndarray, poles
     form
         The function V.
     points
-        (n, 2) all critical points, including the origin exactly. If the origin is neither a minimum nor a pole, no point leads
-        out.
+        All critical points, of shape (n, 2). A point at the origin is exactly (0, 0). If the origin is neither a minimum nor a
+        pole, no point leads out.
     indices
-        (n,) −1 for saddles, 1 for minima and maxima.
+        −1 for saddles, 1 for minima and maxima, of shape (n,).
     poles
-        (m, 2) points at which V is not defined, where lines of steepest descent can end.
+        Points where V is not defined and lines of steepest descent can end, of shape (m, 2).
     """
     flags = np.zeros(len(points), bool)
     sinks = np.concatenate([points[(indices > 0) & (form.hessian(*points.T)[0] > 0.0)], poles])
-    points, is_saddle = np.concatenate([points, poles]), np.concatenate([indices < 0, np.zeros(len(poles), bool)])
-    origin = np.flatnonzero(np.hypot(*points.T) == 0.0)
-    if not np.any(np.hypot(*sinks.T) == 0.0) or len(points) < 2:
+    all_points = np.concatenate([points, poles])
+    is_saddle = np.concatenate([indices < 0, np.zeros(len(poles), bool)])
+    if not np.any(np.hypot(*sinks.T) == 0.0) or len(all_points) < 2:
         return flags
-    descent = _Descent(form, 1.0, points, is_saddle)
+    origin = int(np.flatnonzero(np.hypot(*all_points.T) == 0.0)[0])
+    descent = _Descent(form, 1.0, all_points, is_saddle)
     for k in np.flatnonzero(is_saddle):
-        one, other = (descent.find_ends(int(k), side) for side in (1.0, -1.0))
-        flags[k] = (int(origin[0]) in one) != (int(origin[0]) in other)
+        ends, ends_on_other_side = (descent.find_ends(int(k), side) for side in (1.0, -1.0))
+        flags[k] = (origin in ends) != (origin in ends_on_other_side)
     return flags
 
 
@@ -76,11 +77,11 @@ def find_maxima_beside(form: Form, points: np.ndarray, indices: np.ndarray, sadd
     form
         The function V.
     points
-        (n, 2) all critical points.
+        All critical points, of shape (n, 2).
     indices
-        (n,) −1 for saddles, 1 for minima and maxima.
+        −1 for saddles, 1 for minima and maxima, of shape (n,).
     saddles
-        (m,) indices of saddles among the points.
+        Indices of saddles among the points, of shape (m,).
     """
     flags = np.zeros((len(saddles), len(points)), bool)
     if not len(saddles) or not np.any((indices > 0) & (form.hessian(*points.T)[0] < 0.0)):
@@ -117,7 +118,8 @@ class _Descent:
         while pending:
             end = self._descend(*pending.pop())
             if end >= 0 and self.is_saddle[end]:
-                pending += [(end, 1.0), (end, -1.0)] if end not in visited else []
+                if end not in visited:
+                    pending += [(end, 1.0), (end, -1.0)]
                 visited.add(end)
             else:
                 ends.add(end)
@@ -127,12 +129,12 @@ class _Descent:
         """Return the index of the critical point where one line of steepest descent ends, −1 for infinity."""
         from scipy.integrate import LSODA, Radau
 
-        # LSODA may not detect that a long narrow valley needs an implicit method. Radau is implicit, but takes ten times as long
-        # and needs a flow of constant speed: after a very slow start its steps would be shorter than the rounding error of the
-        # time.
+        # LSODA may not detect that a long narrow valley needs an implicit method. Radau is implicit, but takes ten times as long,
+        # and needs a flow of constant speed: after a very slow start, the steps of Radau would be shorter than the rounding error
+        # of the time.
         for method, flow in ((LSODA, self.flow), (Radau, self._steady_flow)):
             with warnings.catch_warnings():
-                # If LSODA fails, the other method is tried.
+                # If LSODA fails, Radau is tried.
                 warnings.filterwarnings("ignore", "lsoda: ", UserWarning)
                 end = self._follow(method, flow, saddle, side)
             if end is not None:
@@ -147,7 +149,7 @@ class _Descent:
         return steady
 
     def _follow(self, method: Any, flow: Velocity, saddle: int, side: float) -> int | None:
-        """Descend like `_descend`, along a flow and by one of SciPy's methods; return None if the end is not reached."""
+        """Descend along a flow by one of SciPy's methods, and return the result of `_descend`; None if the end is not reached."""
         others = np.delete(np.arange(len(self.points)), saddle)
         distance = _START_DISTANCE * self._distances(self.points[saddle])[others].min()
         start = self.points[saddle] + side * distance * self.unstable_directions[saddle]
@@ -156,19 +158,20 @@ class _Descent:
         # The first step chosen by LSODA can be too long for its corrector to converge.
         first_step = _FIRST_MOVE * distance / np.hypot(*flow(0.0, start))
         line = method(flow, 0.0, start, np.inf, first_step=first_step, **tolerances)
-        last = max(self.steps_left - _MOST_STEPS_ALONG_LINE, 0)
-        while self.steps_left > last and line.status == "running":
+        steps_left_at_end = max(self.steps_left - _MOST_STEPS_ALONG_LINE, 0)
+        while self.steps_left > steps_left_at_end and line.status == "running":
             self.steps_left -= 1
-            before = line.y
+            previous_place = line.y
             line.step()
             if line.status == "failed":
                 break
             distances = self._distances(line.y)[others]
             if distances.min() < _END_DISTANCE * self.length:
                 return int(others[np.argmin(distances)])
-            moved = float(np.hypot(*(line.y - before)))
-            # A line at rest elsewhere is at a critical point outside the searched region, which is not in the list.
-            if np.hypot(*line.y) > self.far or moved < _AT_REST * self.length or self._rises(before, line.y):
+            step_length = float(np.hypot(*(line.y - previous_place)))
+            # A line at rest elsewhere is at a critical point outside the searched region. The list does not contain this point.
+            is_at_rest = step_length < _AT_REST * self.length
+            if np.hypot(*line.y) > self.far or is_at_rest or self._rises(previous_place, line.y):
                 return -1
         return None
 

@@ -25,18 +25,18 @@ from engine.systems.forms.stationary_points import find_stationary_points
 from engine.systems.well_units import nearest_power_of_two
 
 MOST_CONVOLUTIONS = 120
-"""Largest number of products and functions in the graph of gradient and Hessian, which determines their cost and compile time."""
+"""Largest number of products and functions in the graph of gradient and Hessian. It limits their cost and compile time."""
 
 # Number of cached searches for zeros, of some 0.1 kB each.
 _ZEROS = 1024
-# Share of the usual operations that a search for zeros may take.
+# Largest number of operations of a search for zeros, as a share of the limit for critical points.
 _EFFORT_FOR_ZEROS = 0.1
 
 # Largest order of the rotations that are searched.
 _MOST_ROTATIONS = 12
-# Relative error within which V must agree at the points below before and after a rotation.
+# Largest relative difference of V at points before and after a rotation that leaves V unchanged.
 _ROTATION_ERROR = 1e-11
-# Radii of circles, dimensionless.
+# Radii of the circles of these points, dimensionless.
 _RADII = 2.0 ** np.arange(-6.0, 3.0)[:, None]
 # Angles of points on a circle, in radians, without any symmetry.
 _ANGLES = np.array([0.2, 0.9, 2.1, 3.3, 4.6, 5.9])
@@ -50,14 +50,14 @@ _ANY_ROTATION = 1.0
 class ExpressionForm:
     """V as an expression, with numbers in place of its parameters.
 
-    Polynomials that are divisors or arguments of roots and logarithms are expanded about their isolated zero: (x − 1)² + y²
-    instead of x² − 2x + y² + 1, which would lose digits near the zero.
+    Polynomials that are divisors, or arguments of roots and logarithms, are expanded about their isolated zero: (x − 1)² + y² in
+    place of x² − 2x + y² + 1, which would lose digits near the zero.
     """
 
     expression: Expression
 
     def __post_init__(self) -> None:
-        # An expression that is refused because of its size is not searched for zeros.
+        # Do not search an expression for zeros if it is refused because of its size.
         if self.limits_refusal() is None:
             object.__setattr__(self, "expression", replace_parts(self.expression, _expansions_about_zeros(self.expression)))
 
@@ -97,7 +97,7 @@ class ExpressionForm:
         return isinstance(self.expression, Sum) and self.expression.constant != 0.0
 
     def value(self, x: Any, y: Any) -> Any:
-        """Return V at (x, y); arrays broadcast; NaN where V is not defined."""
+        """Return V at (x, y). Arrays broadcast. The value is NaN where V is not defined."""
         return self._evaluate(x, y, self.expression)[0]
 
     def gradient(self, x: Any, y: Any) -> tuple[Any, Any]:
@@ -128,25 +128,29 @@ class ExpressionForm:
         return find_stationary_points(Derivatives.of(self.expression))
 
     def downhill(self, length: float, sign: float) -> Velocity:
-        """Return −sign ∇V, slowed below the slope of its quadratic part at `length`, or below the mean slope around a centre."""
+        """Return −sign ∇V with its speed limited: by the slope of the quadratic part at `length`, or by the mean slope there."""
         curvature = np.abs(self.hessian(0.0, 0.0)).max()
-        around = self.gradient(length * np.cos(_ANGLES), length * np.sin(_ANGLES))
-        steep = length * curvature if np.isfinite(curvature) else float(np.hypot(*around).mean())
+        if np.isfinite(curvature):
+            largest_speed = length * curvature
+        else:
+            # There is a centre at the origin.
+            slopes_around = self.gradient(length * np.cos(_ANGLES), length * np.sin(_ANGLES))
+            largest_speed = float(np.hypot(*slopes_around).mean())
 
         graph, numbers = make_graph(slopes(self.expression))
 
         def velocity(_time: float, place: np.ndarray) -> np.ndarray:
             along_x, along_y = evaluate_at(graph, numbers, *place.tolist())
-            speed = -sign / (1.0 + math.hypot(along_x, along_y) / steep)
-            return np.array([speed * along_x, speed * along_y])
+            factor = -sign / (1.0 + math.hypot(along_x, along_y) / largest_speed)
+            return np.array([factor * along_x, factor * along_y])
 
         return velocity
 
     @cached_property
     def singular_points(self) -> np.ndarray:
-        """Isolated zeros (n, 2) of divisors and of the arguments of roots and logarithms."""
-        found = [_isolated_zeros(base) for base in singular_bases(self.expression)]
-        return read_only(np.concatenate([NO_POINTS, *found]))
+        """Isolated zeros of divisors and of the arguments of roots and logarithms, of shape (n, 2)."""
+        zeros = [_isolated_zeros(base) for base in singular_bases(self.expression)]
+        return read_only(np.concatenate([NO_POINTS, *zeros]))
 
     def is_singular_on_curve(self, x: np.ndarray, y: np.ndarray) -> bool:
         """Return whether a divisor, or the argument of a root or a logarithm, has both signs at the points."""
@@ -191,15 +195,15 @@ class ExpressionForm:
 
     def _is_turned_by(self, angle: float) -> bool:
         """Return whether a rotation leaves V unchanged where V is defined."""
-        one, other = (self.value(_RADII * np.cos(a), _RADII * np.sin(a)) for a in (_ANGLES, _ANGLES + angle))
-        known = np.isfinite(one).all(axis=1) & np.isfinite(other).all(axis=1)
-        error = np.abs(one[known] - other[known]).max(axis=1)
-        return bool(known.any() and np.all(error <= _ROTATION_ERROR * np.abs(one[known]).max(axis=1)))
+        value, rotated = (self.value(_RADII * np.cos(a), _RADII * np.sin(a)) for a in (_ANGLES, _ANGLES + angle))
+        is_defined = np.isfinite(value).all(axis=1) & np.isfinite(rotated).all(axis=1)
+        error = np.abs(value[is_defined] - rotated[is_defined]).max(axis=1)
+        return bool(is_defined.any() and np.all(error <= _ROTATION_ERROR * np.abs(value[is_defined]).max(axis=1)))
 
     def limits_refusal(self) -> str | None:
         """Return a refusal if V or its derivatives are too large.
 
-        V is checked first, because its derivatives can be a hundred times as large.
+        V is checked first, because derivatives can be a hundred times as large as V.
         """
         graphs = (
             ("V has", lambda: (self.expression,)),
@@ -207,20 +211,20 @@ class ExpressionForm:
             ("The first and second derivatives of V have", lambda: (*slopes(self.expression), *curvatures(self.expression))),
         )
         for subject, expressions in graphs:
-            used = make_graph(expressions())[0].convolutions
-            if used > MOST_CONVOLUTIONS:
-                return f"{subject} {used} products and functions; at most {MOST_CONVOLUTIONS} are allowed."
+            graph, _ = make_graph(expressions())
+            if graph.convolutions > MOST_CONVOLUTIONS:
+                return f"{subject} {graph.convolutions} products and functions; at most {MOST_CONVOLUTIONS} are allowed."
         return None
 
 
 def _expansions_about_zeros(expression: Expression) -> dict[Expression, Expression]:
-    """Map each singular base that is a polynomial with one isolated zero, not at the origin, to its expansion about that zero."""
-    found = {}
+    """Map singular bases to their expansions about their zero, if they are polynomials with one isolated zero off the origin."""
+    expansions = {}
     for base in singular_bases(expression):
         terms, zeros = as_terms(base), _isolated_zeros(base)
         if terms is not None and len(zeros) == 1 and zeros.any():
-            found[base] = _expand_about(terms, *zeros[0].tolist())
-    return found
+            expansions[base] = _expand_about(terms, *zeros[0].tolist())
+    return expansions
 
 
 def as_form(given: Any) -> Form:
@@ -236,8 +240,10 @@ def _expand_about(terms: Terms, a: float, b: float) -> Expression:
     for (i, j), c in terms.items():
         for k, m in np.ndindex(i + 1, j + 1):
             moved[k, m] = moved.get((k, m), 0.0) + c * math.comb(i, k) * math.comb(j, m) * a ** (i - k) * b ** (j - m)
-    largest = max(abs(c) * math.hypot(a, b) ** (k + m) for (k, m), c in moved.items())
-    kept = {(k, m): c for (k, m), c in moved.items() if abs(c) * math.hypot(a, b) ** (k + m) > _ZERO * largest}
+    # Magnitudes of the terms at the distance of the zero from the origin.
+    magnitudes = {(k, m): abs(c) * math.hypot(a, b) ** (k + m) for (k, m), c in moved.items()}
+    largest = max(magnitudes.values())
+    kept = {powers: c for powers, c in moved.items() if magnitudes[powers] > _ZERO * largest}
     x, y = (linear_combination([(1.0, axis), (-place, number(1.0))]) for axis, place in ((X, a), (Y, b)))
     return linear_combination((c, multiply(power(x, k), power(y, m))) for (k, m), c in kept.items())
 
@@ -254,6 +260,7 @@ def _isolated_zeros(expression: Expression) -> np.ndarray:
             points = form.find_critical_points()[:, :2]
     except (NotIsolatedError, UndecidedError):
         return NO_POINTS
-    size = np.abs(np.broadcast_arrays(*form.hessian(*points.T))).max(axis=0) * (1.0 + (points**2).sum(axis=1))
-    zeros: np.ndarray = points[np.abs(form.value(*points.T)) <= _ZERO * size]
+    curvature = np.abs(np.broadcast_arrays(*form.hessian(*points.T))).max(axis=0)
+    scale = curvature * (1.0 + (points**2).sum(axis=1))
+    zeros: np.ndarray = points[np.abs(form.value(*points.T)) <= _ZERO * scale]
     return zeros

@@ -16,7 +16,7 @@ NO_POINTS = read_only(np.empty((0, 2)))
 
 
 class NotIsolatedError(ValueError):
-    """The critical points form a curve, so that they cannot be listed."""
+    """The critical points form a curve, so they cannot be listed."""
 
     def __init__(self, message: str = "the force vanishes along a curve instead of at isolated points") -> None:
         super().__init__(message)
@@ -31,11 +31,11 @@ class DescentError(ValueError):
 
 
 Velocity = Callable[[float, np.ndarray], np.ndarray]
-"""The velocity (2,) of a line of steepest descent as a function of time and position (2,)."""
+"""The velocity of a line of steepest descent, of shape (2,), as a function of time and position."""
 
 
 class Form(Protocol):
-    """A function V(x, y) with its derivatives, immutable and hashable; equal forms have equal results to the bit."""
+    """A function V(x, y) with its derivatives, immutable and hashable. Equal forms have results that are equal to the bit."""
 
     @property
     def definition(self) -> Definition:
@@ -47,7 +47,7 @@ class Form(Protocol):
 
     @property
     def length(self) -> float:
-        """A length over which V changes, a power of 2; used only if there is no exit saddle."""
+        """A length over which V changes, a power of 2. It is used only if there is no exit saddle."""
 
     @property
     def mirror_in_x(self) -> bool:
@@ -62,13 +62,13 @@ class Form(Protocol):
         """Whether V has a constant term that can be left out."""
 
     def value(self, x: Any, y: Any) -> Any:
-        """Return V at (x, y); arrays broadcast."""
+        """Return V at (x, y). Arrays broadcast."""
 
     def gradient(self, x: Any, y: Any) -> tuple[Any, Any]:
-        """Return (V_x, V_y) at (x, y); arrays broadcast."""
+        """Return (V_x, V_y) at (x, y). Arrays broadcast."""
 
     def hessian(self, x: Any, y: Any) -> tuple[Any, Any, Any]:
-        """Return (V_xx, V_xy, V_yy) at (x, y); arrays broadcast."""
+        """Return (V_xx, V_xy, V_yy) at (x, y). Arrays broadcast."""
 
     def force(self, axis: int) -> Form:
         """Return −∂V/∂x (axis 0) or −∂V/∂y (axis 1)."""
@@ -85,7 +85,7 @@ class Form(Protocol):
 
     @property
     def singular_points(self) -> np.ndarray:
-        """Isolated points (n, 2) at which V is not defined: poles, zeros of the argument of a logarithm or a root."""
+        """Isolated points where V is not defined, of shape (n, 2): poles, and zeros of the argument of a logarithm or a root."""
 
     def is_singular_on_curve(self, x: np.ndarray, y: np.ndarray) -> bool:
         """Return whether V is not defined along a curve, such as 1/x along x = 0, between points in arrays of any shape."""

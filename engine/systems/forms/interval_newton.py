@@ -16,15 +16,15 @@ from engine.expressions.singularities import has_central_part, oblique_gradients
 Program = tuple[Graph, tuple[float, ...]]
 """A graph and its numbers."""
 
-# Factor by which the box of a proof is larger than the searched box, on whose edge a point may lie.
+# Factor by which the box of a proof is larger than the searched box, because a point may be on the edge of the searched box.
 _ENLARGEMENT = 1.3
-# Share of the box that covers the rounding errors of Krawczyk's operator.
+# Margin for the rounding errors of Krawczyk's operator, as a share of the box.
 _MARGIN = 1e-9
-# Steps of Newton's method that refine a point after the proof.
+# Number of steps of Newton's method that refine a point after the proof.
 _REFINING_STEPS = 8
 # Cost of operations on intervals in units of a sum or a product.
 _COSTS = {"sin": 10, "cos": 10, "exp": 4, "log": 4, "power": 4}
-# Points of a box in units of half its side, slightly outside the edges, because a wall may run along an edge.
+# Samples of a box, in units of half its side. They are slightly outside the edges, because a wall may run along an edge.
 _SAMPLES = 1.1 * np.stack(np.meshgrid(*[np.linspace(-1.0, 1.0, 3)] * 2), axis=-1).reshape(-1, 2)
 
 
@@ -37,7 +37,7 @@ class Derivatives:
     slopes
         V, its derivatives along two directions that are not parallel, and its derivatives along further directions.
     jacobian
-        The x and y derivatives of the first and the second of these derivatives.
+        The derivatives along x and y of the first two derivatives in `slopes`.
     curvatures
         V_xx, V_xy and V_yy.
     bases
@@ -53,17 +53,17 @@ class Derivatives:
     def of(cls, expression: Expression) -> Derivatives:
         """Return the derivatives of an expression.
 
-        The second direction is along a straight wall, because the derivative of V is small there, while those along x and y are
-        large.
+        The second direction is along a straight wall, if there is one: the derivative of V along a wall is small, while those
+        along x and y are large.
         """
         along_x, along_y = slopes(expression)
         oblique = [linear_combination([(b, along_x), (-a, along_y)]) for a, b in oblique_gradients(expression)]
-        first, second, *others = [along_x, *oblique, along_y]
+        first, second, *other_slopes = [along_x, *oblique, along_y]
         if has_central_part(expression):
             # The derivative along circles around a body at the origin is also small.
-            others.append(linear_combination([(1.0, expand(X, along_y)), (-1.0, expand(Y, along_x))]))
+            other_slopes.append(linear_combination([(1.0, expand(X, along_y)), (-1.0, expand(Y, along_x))]))
         return cls(
-            make_graph((expression, first, second, *others)),
+            make_graph((expression, first, second, *other_slopes)),
             make_graph(tuple(derivative(each, axis) for each in (first, second) for axis in (0, 1))),
             make_graph(curvatures(expression)),
             make_graph(singular_bases(expression)),
@@ -75,20 +75,20 @@ class Derivatives:
         return sum(_COSTS.get(node.kind, 1) for graph, _ in (self.slopes, self.jacobian) for node in graph.nodes)
 
     def slopes_at(self, points: np.ndarray) -> np.ndarray:
-        """Return the first two derivatives at points (n, 2), of the same shape."""
+        """Return the first two derivatives of `slopes` at points (n, 2), of the same shape."""
         return np.column_stack(evaluate(*self.slopes, *points.T)[1:3])
 
     def jacobian_at(self, points: np.ndarray) -> np.ndarray:
-        """Return the Jacobian matrices of these derivatives at points (n, 2), of shape (n, 2, 2)."""
+        """Return the Jacobian matrices of `slopes_at` at points (n, 2), of shape (n, 2, 2)."""
         return np.column_stack(evaluate(*self.jacobian, *points.T)).reshape(-1, 2, 2)
 
     def is_singular_in(self, centres: np.ndarray, half: float) -> np.ndarray:
         """Return whether a base has both signs, or is not defined, at nine points of each box, of shape (n,)."""
         x, y = np.moveaxis(centres[:, None] + half * _SAMPLES, -1, 0)
-        found = np.zeros(len(centres), bool)
+        is_singular = np.zeros(len(centres), bool)
         for base in evaluate(*self.bases, x, y):
-            found |= np.isnan(base).any(axis=1) | ((base < 0.0).any(axis=1) & (base > 0.0).any(axis=1))
-        return found
+            is_singular |= np.isnan(base).any(axis=1) | ((base < 0.0).any(axis=1) & (base > 0.0).any(axis=1))
+        return is_singular
 
     def hessian_at(self, points: np.ndarray) -> np.ndarray:
         """Return the Hessian matrices of V at points (n, 2), of shape (n, 2, 2)."""
@@ -97,7 +97,7 @@ class Derivatives:
 
 
 def box(centres: np.ndarray, half: float) -> tuple[Interval, Interval]:
-    """Return the x and y intervals of squares with given centres (n, 2) and half a side."""
+    """Return the x and y intervals of squares, given by their centres (n, 2) and half a side."""
     x, y = (Interval(centre - half, centre + half) for centre in centres.T)
     return x, y
 
@@ -109,11 +109,11 @@ def excludes_zero(slopes: Enclosure) -> np.ndarray:
 
 
 def solve(derivatives: Derivatives, centres: np.ndarray, half: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return the points (m, 2) of boxes with exactly one point, and flags (n,) of boxes proved to have one point or none.
+    """Return the points (m, 2) of boxes with exactly one point, and whether each box is proved to have one point or none (n,).
 
-    The operator of Krawczyk maps a box c ± h to K = c − Y f + (I − Y J)(± h), with the two derivatives f at c, their Jacobian
-    matrix J on the box and Y its inverse at c. All critical points of the box lie in K. If K lies inside the box, the box has
-    exactly one.
+    The operator of Krawczyk maps a box c ± h to K = c − Y f + (I − Y J)(± h). Here, f are the two derivatives at c, J is their
+    Jacobian matrix on the box, and Y is the inverse of the Jacobian matrix at c. All critical points of the box are in K. If K is
+    inside the box, the box has exactly one critical point.
     """
     jacobian = enclose(*derivatives.jacobian, *box(centres, _ENLARGEMENT * half))
     slopes = enclose(*derivatives.slopes, *box(centres, 0.0))
@@ -122,13 +122,14 @@ def solve(derivatives: Derivatives, centres: np.ndarray, half: float) -> tuple[n
         slope, error = _middle_and_spread(slopes.values[1:3])
         inverse = _inverse(derivatives.jacobian_at(centres))
         step = -np.einsum("nij,nj->ni", inverse, slope)
-        rest = np.abs(np.eye(2) - inverse @ middle) + np.abs(inverse) @ spread
-        reach = _ENLARGEMENT * half * rest.sum(axis=2) + np.einsum("nij,nj->ni", np.abs(inverse), error)
+        # Bounds of |I − Y J|, and half the sides of K.
+        deviation = np.abs(np.eye(2) - inverse @ middle) + np.abs(inverse) @ spread
+        reach = _ENLARGEMENT * half * deviation.sum(axis=2) + np.einsum("nij,nj->ni", np.abs(inverse), error)
         reach = reach * (1.0 + _MARGIN) + _MARGIN * half
-        known = jacobian.defined & slopes.defined & np.isfinite(step + reach).all(axis=1)
-        single = known & (np.abs(step) + reach < _ENLARGEMENT * half).all(axis=1)
-        empty = known & (np.abs(step) - reach > half).any(axis=1)
-    return refined(derivatives, (centres + step)[single]), single | empty
+        is_known = jacobian.defined & slopes.defined & np.isfinite(step + reach).all(axis=1)
+        has_one = is_known & (np.abs(step) + reach < _ENLARGEMENT * half).all(axis=1)
+        is_empty = is_known & (np.abs(step) - reach > half).any(axis=1)
+    return refined(derivatives, (centres + step)[has_one]), has_one | is_empty
 
 
 def _middle_and_spread(values: list[Interval]) -> tuple[np.ndarray, np.ndarray]:
@@ -138,11 +139,11 @@ def _middle_and_spread(values: list[Interval]) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _inverse(matrices: np.ndarray) -> np.ndarray:
-    """Return inverse matrices, of shape (n, 2, 2); products of small entries do not underflow."""
-    size = np.abs(matrices).max(axis=(1, 2))[:, None, None]
-    (a, b), (c, d) = np.moveaxis(matrices / size, 0, -1)
+    """Return inverse matrices, of shape (n, 2, 2). Products of small entries do not underflow."""
+    magnitude = np.abs(matrices).max(axis=(1, 2))[:, None, None]
+    (a, b), (c, d) = np.moveaxis(matrices / magnitude, 0, -1)
     adjugate = np.moveaxis(np.array([[d, -b], [-c, a]]), -1, 0)
-    inverse: np.ndarray = adjugate / (a * d - b * c)[:, None, None] / size
+    inverse: np.ndarray = adjugate / (a * d - b * c)[:, None, None] / magnitude
     return inverse
 
 
@@ -154,7 +155,7 @@ def refined(derivatives: Derivatives, points: np.ndarray) -> np.ndarray:
 
 
 def newton_step(derivatives: Derivatives, points: np.ndarray) -> np.ndarray:
-    """Return the steps of Newton's method from points (n, 2), which are to be subtracted."""
+    """Return the steps of Newton's method from points (n, 2). The caller subtracts them."""
     with np.errstate(all="ignore"):
         step: np.ndarray = np.einsum("nij,nj->ni", _inverse(derivatives.jacobian_at(points)), derivatives.slopes_at(points))
     return step

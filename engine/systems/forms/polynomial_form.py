@@ -31,10 +31,10 @@ MOST_TERMS = 60
 COEFFICIENT_RANGE = (1e-9, 1e9)
 """Smallest and largest magnitude of a coefficient of a formula."""
 
-# Smallest coefficient as a share of the largest; smaller ones have no effect in double precision.
+# Smallest coefficient, as a share of the largest. Smaller coefficients have no effect in double precision.
 _SMALLEST_RATIO = 1e-18
-# Coefficients below this share of the largest, after a shift of the origin or among those of one degree, are rounding errors of
-# 0.
+# Largest share of the largest coefficient at which a coefficient counts as a rounding error of 0: after a shift of the origin, or
+# among coefficients of one degree.
 _ZERO_COEFFICIENT = 1e-12
 
 
@@ -63,7 +63,7 @@ class PolynomialForm:
     def length(self) -> float:
         """The unit of length in which the largest coefficients of the lowest and the highest degree are about equal.
 
-        It is a power of 2, so that conversion to this unit is exact.
+        It is a power of 2, so conversion to this unit is exact.
         """
         largest = {n: c for n, c in largest_coefficients(self.coefficients).items() if n and c}
         if len(largest) < 2:
@@ -87,7 +87,7 @@ class PolynomialForm:
         return (0, 0) in self.coefficients
 
     def value(self, x: Any, y: Any) -> Any:
-        """Return V at (x, y); arrays broadcast."""
+        """Return V at (x, y). Arrays broadcast."""
         return evaluate(self.coefficients, x, y)
 
     def gradient(self, x: Any, y: Any) -> tuple[Any, Any]:
@@ -120,7 +120,7 @@ class PolynomialForm:
         return find_critical_points(self.coefficients)
 
     def downhill(self, length: float, sign: float) -> Velocity:
-        """Return −sign ∇V, slowed down far away, where a descent reaches −∞ in a finite time."""
+        """Return −sign ∇V, slowed far away, where a descent would reach infinity in a finite time."""
         highest = max(map(degree, self.slopes))
         table = np.zeros((2, highest + 1, highest + 1))
         for axis, terms in enumerate(self.slopes):
@@ -132,8 +132,8 @@ class PolynomialForm:
             factors[:, 1:] = place[:, None]
             powers_of_x, powers_of_y = np.multiply.accumulate(factors, axis=1)
             downhill = table @ powers_of_y @ powers_of_x
-            slower: np.ndarray = downhill / (1.0 + (np.hypot(*place) / length) ** (highest - 1))
-            return slower
+            slowed: np.ndarray = downhill / (1.0 + (np.hypot(*place) / length) ** (highest - 1))
+            return slowed
 
         return velocity
 
@@ -147,9 +147,9 @@ class PolynomialForm:
         return False
 
     def plus(self, terms: Terms) -> PolynomialForm:
-        """Add a polynomial; terms that cancel are left out."""
-        added = self.coefficients | {powers: self.coefficients.get(powers, 0.0) + c for powers, c in terms.items()}
-        return checked_form(tuple((i, j, c) for (i, j), c in added.items() if c))
+        """Add a polynomial. Terms that cancel are left out."""
+        total = self.coefficients | {powers: self.coefficients.get(powers, 0.0) + c for powers, c in terms.items()}
+        return checked_form(tuple((i, j, c) for (i, j), c in total.items() if c))
 
     def scaled(self, length: float, energy: float) -> PolynomialForm:
         """Return V(length x, length y) / energy."""
@@ -161,7 +161,7 @@ class PolynomialForm:
         return checked_form(tuple((i, j, c * _parameter_factor(i, j, omega_1, omega_2, epsilon)) for i, j, c in self.terms))
 
     def moved(self, x: float, y: float) -> PolynomialForm:
-        """Expand V about (x, y), without linear terms; each coefficient is rounded once."""
+        """Expand V about (x, y), without linear terms. Each coefficient is rounded once."""
         terms: dict[Powers, Fraction] = {}
         for i, j, c in self.terms:
             for k in range(i + 1):
@@ -169,9 +169,9 @@ class PolynomialForm:
                     part = Fraction(c) * comb(i, k) * comb(j, m) * Fraction(x) ** (i - k) * Fraction(y) ** (j - m)
                     terms[k, m] = terms.get((k, m), Fraction(0)) + part
         rounded = {powers: float(c) for powers, c in terms.items() if sum(powers) != 1}
-        sizes = {powers: abs(c) * self.length ** sum(powers) for powers, c in rounded.items()}
-        smallest = _ZERO_COEFFICIENT * max(sizes.values(), default=0.0)
-        kept = {powers: c for powers, c in rounded.items() if sizes[powers] > smallest}
+        magnitudes = {powers: abs(c) * self.length ** sum(powers) for powers, c in rounded.items()}
+        threshold = _ZERO_COEFFICIENT * max(magnitudes.values(), default=0.0)
+        kept = {powers: c for powers, c in rounded.items() if magnitudes[powers] > threshold}
         return checked_form(tuple((k, m, c) for (k, m), c in kept.items()))
 
     def count_rotations(self) -> int:
@@ -183,6 +183,7 @@ class PolynomialForm:
 
     def _complex_terms(self) -> dict[Powers, complex]:
         """Return {(a, b): c} of V = Σ c z^a z̄^b, without rounding errors of zero coefficients."""
+        # x = (z + z̄)/2 and y = (z − z̄)/2i.
         x, y = {(1, 0): 0.5 + 0j, (0, 1): 0.5 + 0j}, {(1, 0): -0.5j, (0, 1): 0.5j}
         largest = largest_coefficients(self.coefficients)
         terms = substitute(self.coefficients, x, y)
@@ -196,8 +197,9 @@ class PolynomialForm:
         if len(self.terms) > MOST_TERMS:
             return f"V has {len(self.terms)} terms; at most {MOST_TERMS} are allowed."
         # Coefficients are compared in units of `length`, so that the user's units do not matter.
-        sizes = [abs(c) * self.length ** (i + j) for i, j, c in self.terms]
-        if sizes and not min(sizes) >= _SMALLEST_RATIO * max(sizes):
+        magnitudes = [abs(c) * self.length ** (i + j) for i, j, c in self.terms]
+        # The comparison is also False for NaN.
+        if magnitudes and not min(magnitudes) >= _SMALLEST_RATIO * max(magnitudes):
             return f"V has a coefficient below {_SMALLEST_RATIO:g} of the largest one, in units in which its well has the size 1."
         return None
 
@@ -205,12 +207,12 @@ class PolynomialForm:
 def checked_form(terms: Any) -> PolynomialForm:
     """Return the form of ((i, j, c), …); ValueError if the terms are not legal."""
     try:
-        checked = tuple(_checked_term(*term) for term in terms)
+        checked_terms = tuple(_checked_term(*term) for term in terms)
     except TypeError:
         raise ValueError(f"terms={short_repr(terms)}: must be ((i, j, c), …)") from None
-    if len({term[:2] for term in checked}) != len(checked):
-        raise ValueError(f"terms={short_repr(checked)}: each pair of exponents must occur only once")
-    return PolynomialForm(checked)
+    if len({term[:2] for term in checked_terms}) != len(checked_terms):
+        raise ValueError(f"terms={short_repr(checked_terms)}: each pair of exponents must occur only once")
+    return PolynomialForm(checked_terms)
 
 
 def _checked_term(i: Any, j: Any, c: Any) -> tuple[int, int, float]:

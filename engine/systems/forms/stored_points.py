@@ -1,4 +1,4 @@
-"""Points of a potential, stored on disk beside the compiled kernels, because finding them needs SciPy, which loads slowly."""
+"""Points of a potential, stored on disk beside the compiled kernels. Finding them needs SciPy, which loads slowly."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from engine.foundations.cache_files import SUFFIX, cache_folder, read_or_make
 
 
 def stored_points(kind: str, form: object, find: Callable[[], np.ndarray]) -> np.ndarray:
-    """Return the result of `find`, read from a file if the same version has computed it before on this machine.
+    """Return the result of `find`, from a file if the same version has computed the result before on this machine.
 
     Parameters
     ----------
     kind
         The kind of points, used in the name of the file.
     form
-        The object on which the result depends; its `repr` identifies it.
+        The object on which the result depends. Its `repr` identifies the object.
     find
-        Computes the array, of numbers or flags. Its errors are raised and not stored.
+        Computes the array of numbers or flags. Errors are raised and not stored.
     """
     key = repr((form, _versions()))
     path = cache_folder() / f"{kind}.{hashlib.sha256(key.encode()).hexdigest()[:24]}{SUFFIX}"
@@ -40,7 +40,7 @@ def _to_bytes(points: np.ndarray) -> bytes:
 
 @functools.cache
 def _versions() -> tuple[str, ...]:
-    """Return all else that determines the points: hashes of the modules that find them, and versions of the libraries."""
+    """Return hashes of the modules that find points, and versions of the libraries."""
     engine = Path(__file__).parents[2]
     files = [*sorted((engine / "expressions").glob("*.py")), *sorted(Path(__file__).parent.glob("*.py"))]
     sources = (hashlib.sha256(file.read_bytes()).hexdigest() for file in files)

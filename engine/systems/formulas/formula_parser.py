@@ -4,11 +4,12 @@ The text is parsed by recursive descent and expanded with exact fractions as far
 code. The grammar is:
 
     formula  := ["V" ["(x, y)"] "="] sum
-    sum      := [sign] product {sign product}
-    product  := factor {["*" | "/"] factor}            "1/2 x" is ½ x
-    factor   := {sign} base [exponent]
-    exponent := superscript | ("^" | "**") [sign] (digits | letter | "(" sum ")")    a number between −12 and 12
-    base     := number | letter | "x" | "y" | "r" | "(" sum ")" | function "(" sum ")" | "√" base      r = √(x² + y²)
+    sum      := product {sign product}
+    product  := factor {("*" | "/") factor | power}    "1/2 x" is ½ x; a power without "*" must not begin with a number
+    factor   := {sign} power
+    power    := base [exponent]
+    exponent := superscript | ("^" | "**") {sign} (number | letter | superscript | "(" sum ")")    from −12 to 12
+    base     := number | letter | "x" | "y" | "r" | "(" sum ")" | function "(" sum ")" | "√" base    r = √(x² + y²)
     function := "exp" | "log" | "ln" | "sin" | "cos" | "sqrt"
 
 A letter, with or without one digit, is a parameter whose value is substituted: "a", "B", "k1", "α". Clauses can follow, see
@@ -46,10 +47,10 @@ from engine.systems.formulas.formula_values import (
     FormulaValue,
     add,
     constant_of,
-    negative,
-    product,
-    quotient,
-    raised,
+    divide,
+    negate,
+    raise_to,
+    times,
 )
 from engine.systems.formulas.formula_writer import by_degree, write_formula
 from engine.systems.formulas.outcome_clauses import Part, split_clauses
@@ -75,14 +76,24 @@ def parse_formula(text: str, name: str | None = None, parameters: Mapping[str, f
     Parameters
     ----------
     text
-        A formula in x and y, at most 500 characters: numbers (2, 0.5, 1e-3, ½), x, y, r = √(x² + y²), + − * / ^ ** √, exp(),
-        log() or ln(), sin(), cos(), sqrt() and round brackets. "2x²y" is a product; "−", "·" and "×" are operators too; "V ="
-        in front is ignored. "1/2 x" is half of x. Exponents are numbers from −12 to 12. Other letters, Latin except e, t, E, V or
-        Greek, with or without one digit, are parameters, at most 8: "a", "k1", "α". "px", "py", "vx" and "vy" are refused.
-        Clauses can follow: "; centre the Moon (0, 0) 0.0045", a body with a name, its place and its radius of collision;
-        "; escape 10", an escape radius; "; well (1, 0)", a place near a minimum to which the axes are moved, see
-        `Potential.at_minimum`; "; exits L2, L1", names of the exits in channel order; and "; masses (8, 8)", the masses of
-        px²/2m₁ + py²/2m₂, which must be equal: for two masses write V(x/√m₁, y/√m₂), whose axes are √m₁ x and √m₂ y.
+        A formula in x and y of at most 500 characters:
+
+        - numbers (2, 0.5, 1e-3, ½), x, y and r = √(x² + y²);
+        - + − * / ^ ** √ and round brackets, also "·" and "×". "2x²y" is a product, and "1/2 x" is half of x;
+        - exp(), log() or ln(), sin(), cos() and sqrt();
+        - exponents from −12 to 12;
+        - at most 8 letters for parameters, each with or without one digit: "a", "k1", "α". Greek letters and all Latin letters
+          except e, t, E and V are allowed. "px", "py", "vx" and "vy" are refused;
+        - "V =" in front, which is ignored.
+
+        Clauses can follow:
+
+        - "; centre the Moon (0, 0) 0.0045": a body with a name, its place and its radius of collision;
+        - "; escape 10": an escape radius;
+        - "; well (1, 0)": a place near a minimum, to which the axes are moved, see `Potential.at_minimum`;
+        - "; exits L2, L1": names of the exits in channel order;
+        - "; masses (8, 8)": the masses of px²/2m₁ + py²/2m₂, which must be equal. For two masses write V(x/√m₁, y/√m₂), whose
+          axes are √m₁ x and √m₂ y.
     name
         Name of the potential; by default the formula as written by `write_formula`.
     parameters
@@ -96,11 +107,15 @@ def parse_formula(text: str, name: str | None = None, parameters: Mapping[str, f
     Raises
     ------
     ValueError
-        A `FormulaError` with the position and the problem, if the text cannot be parsed, has more than 500 characters, more than
-        50 nested brackets or roots, neither x nor y, or a function of a number outside its domain; if a polynomial has a degree
-        above 12, more than 60 terms or a coefficient whose magnitude is not between 1e-9 and 1e9; or if another formula and its
-        derivatives up to the second have more than 120 products and functions. A ValueError, if a parameter is not a letter
-        of the formula, its value is not legal, or V has no minimum to which the axes could be moved.
+        A `FormulaError` with the position and the problem:
+
+        - the text cannot be parsed, or has more than 500 characters, more than 50 nested brackets or roots, neither x nor y, or a
+          function of a number outside the domain of the function;
+        - a polynomial has a degree above 12, more than 60 terms, or a coefficient whose magnitude is not between 1e-9 and 1e9;
+        - another formula and its derivatives up to the second have more than 120 products and functions.
+
+        Any other ValueError: a parameter is not a letter of the formula, its value is not legal, or V has no minimum to which
+        the axes could be moved.
 
     Examples
     --------
@@ -119,7 +134,7 @@ def parse_formula(text: str, name: str | None = None, parameters: Mapping[str, f
     value = _Parser(clauses.formula, values).parse()
     if isinstance(value, Expression):
         potential = Potential(name or "", value)
-        # All further steps need its derivatives.
+        # Check the size of the derivatives, which all further steps need.
         if (problem := potential.form.limits_refusal()) is not None:
             raise FormulaError(0, problem)
     else:
@@ -129,13 +144,15 @@ def parse_formula(text: str, name: str | None = None, parameters: Mapping[str, f
         potential = Potential(name or "", terms)
     number_of = partial(_number_of, values=values)
     ends = [clause.evaluate(number_of) for clause in clauses.ends]
-    found = Potential(name or write_formula(potential), potential.form, ends=ends, mass=clauses.find_mass(number_of))
-    placed = found if clauses.well is None else found.at_minimum(*map(number_of, clauses.well))
-    return replace(placed, exit_names=clauses.exits) if clauses.exits else placed
+    title = name or write_formula(potential)
+    potential = Potential(title, potential.form, ends=ends, mass=clauses.find_mass(number_of))
+    if clauses.well is not None:
+        potential = potential.at_minimum(*map(number_of, clauses.well))
+    return replace(potential, exit_names=clauses.exits) if clauses.exits else potential
 
 
 def formula_letters(text: str) -> tuple[str, ...]:
-    """Return the letters of a formula that are coefficients, in the order of the text; FormulaError for an unknown character."""
+    """Return the letters of a formula and its clauses in the order of the text; FormulaError for an unknown character."""
     letters: dict[str, int] = {}
     clauses = split_clauses(text)
     for part in (Part(clauses.formula, 0), *clauses.numbers):
@@ -188,11 +205,16 @@ def _check_expanded(expanded: Mapping[Powers, Fraction]) -> None:
             raise FormulaError(0, problem)
 
 
-_NUMBERS = ("number", "fraction")
+# Kinds of tokens that are numbers.
+_NUMBER_KINDS = ("number", "fraction")
+
+
+def _is_r(token: Token) -> bool:
+    return token.kind == "name" and token.text == "r"
 
 
 class _Parser:
-    """Recursive descent over the tokens of a text; each `_parse_…` method handles one rule of the grammar."""
+    """Recursive descent over the tokens of a text. Each `_parse_…` method handles one rule of the grammar."""
 
     def __init__(self, text: str, values: Mapping[str, Fraction]) -> None:
         self.tokens = tokenize(text)
@@ -215,29 +237,30 @@ class _Parser:
         while self.token.kind == "sign":
             sign = self._next_token()
             right = self._parse_product()
-            value = self._apply(sign, add, value, negative(right) if SIGNS[sign.text] == "-" else right)
+            value = self._apply(sign, add, value, negate(right) if SIGNS[sign.text] == "-" else right)
         return value
 
     def _parse_product(self) -> FormulaValue:
         value = self._parse_factor()
         while self.token.kind in ("operator", *BASE_KINDS):
-            operator, before = self.token, self.tokens[self.index - 1]
-            if operator.kind == "operator":
+            # Without an operator, the first token belongs to the right factor.
+            first_token, previous_token = self.token, self.tokens[self.index - 1]
+            if first_token.kind == "operator":
                 self._next_token()
-            elif operator.kind in ("number", "fraction"):
-                problem = f"{operator.text} directly after {before.text}: write * for a product, ^ for a power, as in 2x or x^2"
-                raise FormulaError(operator.position, problem)
+            elif first_token.kind in _NUMBER_KINDS:
+                place = f"{first_token.text} directly after {previous_token.text}"
+                raise FormulaError(first_token.position, f"{place}: write * for a product, ^ for a power, as in 2x or x^2")
             right = self._parse_factor()
-            divides = OPERATORS.get(operator.text) == "/"
-            if divides and constant_of(right) == 0:
-                raise FormulaError(operator.position, "the divisor must not be 0")
-            value = self._apply(operator, quotient if divides else product, value, right)
+            is_division = OPERATORS.get(first_token.text) == "/"
+            if is_division and constant_of(right) == 0:
+                raise FormulaError(first_token.position, "the divisor must not be 0")
+            value = self._apply(first_token, divide if is_division else times, value, right)
         return value
 
     def _parse_factor(self) -> FormulaValue:
         is_negative = self._parse_signs()
         value = self._parse_power()
-        return negative(value) if is_negative else value
+        return negate(value) if is_negative else value
 
     def _parse_signs(self) -> bool:
         """Return whether the number of minus signs that follow is odd."""
@@ -247,31 +270,33 @@ class _Parser:
         return is_negative
 
     def _parse_power(self) -> FormulaValue:
-        start = self.token
-        value = self._parse_base()
+        """Parse a base and its exponent. r^n is (x² + y²)^(n/2): even powers of r are polynomials."""
+        first_token = self.token
+        base = self._parse_base()
         exponent = self._parse_exponent()
-        if start.kind == "name" and start.text == "r":
+        if _is_r(first_token):
             exponent = (1 if exponent is None else exponent) * Fraction(1, 2)
-        return value if exponent is None else self._apply(start, raised, value, exponent)
+        return base if exponent is None else self._apply(first_token, raise_to, base, exponent)
 
     def _parse_exponent(self) -> Fraction | None:
         if self.token.kind not in ("power", "superscript"):
             return None
-        token = self._next_token()
-        if token.kind == "power":
-            token = self.token
+        mark = self._next_token()
+        if mark.kind == "power":
+            position = self.token.position
             exponent = self._parse_number_of_exponent()
         else:
-            exponent = Fraction(token.text.translate(FROM_SUPERSCRIPT))
+            position = mark.position
+            exponent = Fraction(mark.text.translate(FROM_SUPERSCRIPT))
         if abs(exponent) > LARGEST_EXPONENT:
-            raise FormulaError(token.position, f"an exponent must be a number from {-LARGEST_EXPONENT} to {LARGEST_EXPONENT}")
+            raise FormulaError(position, f"an exponent must be a number from {-LARGEST_EXPONENT} to {LARGEST_EXPONENT}")
         if self.token.kind in ("power", "superscript"):
             raise FormulaError(self.token.position, "a power of a power needs brackets, as in (x^2)^3")
         return exponent
 
     def _parse_number_of_exponent(self) -> Fraction:
         is_negative, token = self._parse_signs(), self.token
-        if token.kind not in (*_NUMBERS, "letter", "open", "superscript"):
+        if token.kind not in (*_NUMBER_KINDS, "letter", "open", "superscript"):
             raise FormulaError(token.position, f"an exponent must be a number from {-LARGEST_EXPONENT} to {LARGEST_EXPONENT}")
         if token.kind == "superscript":
             value: FormulaValue = exact_constant(Fraction(self._next_token().text.translate(FROM_SUPERSCRIPT)))
@@ -294,16 +319,16 @@ class _Parser:
         if token.kind != "name":
             return exact_constant(self.values.get(token.text, Fraction(1)) if token.kind == "letter" else read_number(token))
         x, y = RING.gens()
-        # The power of r is halved, so its base is r².
+        # The value of r is r², see `_parse_power`.
         return {"x": x, "y": y, "r": x * x + y * y}[token.text]
 
     def _parse_function(self, token: Token) -> FormulaValue:
-        """Parse what follows the name of a function: its argument in brackets, or after √ any base."""
+        """Parse the argument of a function, in brackets, or of √, which can be any base."""
         if token.kind == "root":
-            start = self.token
-            argument = self._parse_nested(token, self._parse_base) if start.kind == "root" else self._parse_base()
-            if start.kind == "name" and start.text == "r":
-                argument = self._apply(token, raised, argument, Fraction(1, 2))
+            first_token = self.token
+            argument = self._parse_nested(token, self._parse_base) if first_token.kind == "root" else self._parse_base()
+            if _is_r(first_token):
+                argument = self._apply(token, raise_to, argument, Fraction(1, 2))
         else:
             if self.token.kind != "open":
                 raise FormulaError(self.token.position, f"{token.text} needs its argument in brackets, as in {token.text}(x)")

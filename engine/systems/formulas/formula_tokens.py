@@ -8,7 +8,7 @@ from fractions import Fraction
 
 # Largest magnitude of a decimal exponent, which keeps exact arithmetic fast.
 _LARGEST_DECIMAL_EXPONENT = 99
-# Most bits of a numerator or denominator, which keep exact arithmetic fast.
+# Largest number of bits of a numerator or denominator, which keeps exact arithmetic fast.
 _MOST_NUMBER_BITS = 700
 
 FROM_SUPERSCRIPT = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
@@ -32,7 +32,7 @@ _TOKEN = re.compile(
     r"(?P<function>sin|cos|exp|log|ln|sqrt)|(?P<number>(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)|(?P<name>[xyr])|(?P<letter>[A-DF-UW-Za-df-qs-wzΑ-Ωα-ω][0-9₀-₉]?)|(?P<superscript>⁻?[⁰¹²³⁴⁵⁶⁷⁸⁹]+)|(?P<power>\^|\*\*)"
     r"|(?P<fraction>[½⅓⅔¼¾⅕⅙⅛⅒])|(?P<sign>[+\-−–])|(?P<operator>[*·×⋅∗/÷∕⁄])|(?P<root>√)|(?P<open>\()|(?P<close>\))"
 )
-# Names that would otherwise be read as letters or products; momenta, velocities and time cannot occur in a potential.
+# Names that would otherwise be read as letters or products. A potential cannot contain momenta, velocities and time.
 _UNKNOWN = re.compile("tan|abs|pi|[pv][xy]|t")
 _PREFIX = re.compile(r"\s*V\s*(?:\(\s*x\s*,\s*y\s*\)\s*)?=")
 ALLOWED = "allowed are numbers, x, y, r, letters for coefficients, + − * / ^ √, exp, log, sin, cos and round brackets"
@@ -53,7 +53,7 @@ class FormulaError(ValueError):
 
 @dataclass(frozen=True)
 class Token:
-    """A piece of a formula; the digit of a letter is stored as a plain digit."""
+    """A piece of a formula. The text of a letter has a plain digit in place of a subscript."""
 
     kind: str
     text: str
@@ -61,7 +61,7 @@ class Token:
 
 
 def tokenize(text: str) -> list[Token]:
-    """Split a text into tokens, followed by one of kind "end"; FormulaError for an unknown character."""
+    """Split a text into tokens, and add a token of kind "end"; FormulaError for an unknown character."""
     prefix = _PREFIX.match(text)
     position = prefix.end() if prefix else 0
     tokens: list[Token] = []
@@ -75,10 +75,10 @@ def tokenize(text: str) -> list[Token]:
         match = _TOKEN.match(text, position)
         if match is None:
             raise FormulaError(position, f"{text[position]!r} is not understood; {ALLOWED}")
-        text_of_token = match.group()
+        token_text = match.group()
         if match.lastgroup == "letter":
-            text_of_token = text_of_token.translate(_FROM_SUBSCRIPT)
-        tokens.append(Token(str(match.lastgroup), text_of_token, position))
+            token_text = token_text.translate(_FROM_SUBSCRIPT)
+        tokens.append(Token(str(match.lastgroup), token_text, position))
         position = match.end()
     return [*tokens, Token("end", "", len(text))]
 

@@ -45,27 +45,27 @@ def add(one: FormulaValue, other: FormulaValue) -> FormulaValue:
     return limited(one + other)
 
 
-def negative(value: FormulaValue) -> FormulaValue:
+def negate(value: FormulaValue) -> FormulaValue:
     """Return −value."""
     return linear_combination([(-1.0, value)]) if isinstance(value, Expression) else -value
 
 
-def product(one: FormulaValue, other: FormulaValue) -> FormulaValue:
+def times(one: FormulaValue, other: FormulaValue) -> FormulaValue:
     """Return the product of two values."""
     if isinstance(one, Expression) or isinstance(other, Expression):
         return _simplify(multiply(_as_expression(one), _as_expression(other)))
     return limited_product(one, other)
 
 
-def quotient(one: FormulaValue, other: FormulaValue) -> FormulaValue:
+def divide(one: FormulaValue, other: FormulaValue) -> FormulaValue:
     """Return one / other; ZeroDivisionError if the divisor is 0."""
     divisor = constant_of(other)
     if divisor is not None:
-        return product(one, exact_constant(1 / divisor))
-    return product(one, raised(other, Fraction(-1)))
+        return times(one, exact_constant(1 / divisor))
+    return times(one, raise_to(other, Fraction(-1)))
 
 
-def raised(base: FormulaValue, exponent: Fraction) -> FormulaValue:
+def raise_to(base: FormulaValue, exponent: Fraction) -> FormulaValue:
     """Return a power; ArithmeticError or ValueError for a number that is not finite and real."""
     if exponent.denominator == 1 and exponent >= 0 and not isinstance(base, Expression):
         return limited_power(base, int(exponent))
@@ -75,25 +75,25 @@ def raised(base: FormulaValue, exponent: Fraction) -> FormulaValue:
 
 
 def _power_of_factors(base: fmpq_mpoly, exponent: int) -> Expression:
-    """Return a power of a polynomial. Repeated factors are raised separately, so that 1/(x² + 2x + 1) is (x + 1)^−2."""
+    """Return a power of a polynomial. Repeated factors get powers of their own: 1/(x² + 2x + 1) is (x + 1)^−2."""
     constant, factors = base.factor_squarefree()
-    if all(n == 1 for _, n in factors):
+    if all(multiplicity == 1 for _, multiplicity in factors):
         return power(_as_expression(base), float(exponent))
-    raised_factors = []
-    for factor, n in factors:
+    factor_powers = []
+    for factor, multiplicity in factors:
         leading = factor.leading_coefficient()
-        constant *= leading**n
-        raised_factors.append(power(_as_expression(factor * (1 / leading)), float(n * exponent)))
-    return multiply(number(float(Fraction(int(constant.p), int(constant.q)) ** exponent)), *raised_factors)
+        constant *= leading**multiplicity
+        factor_powers.append(power(_as_expression(factor * (1 / leading)), float(multiplicity * exponent)))
+    return multiply(number(float(Fraction(int(constant.p), int(constant.q)) ** exponent)), *factor_powers)
 
 
-def applied(name: str, argument: FormulaValue) -> FormulaValue:
+def apply_named(name: str, argument: FormulaValue) -> FormulaValue:
     """Apply a function of `FUNCTIONS`; ArithmeticError or ValueError for a number outside its domain."""
     return _simplify(apply_function(name, _as_expression(argument)))
 
 
 def constant_of(value: FormulaValue) -> Fraction | None:
-    """Return the value of a formula without x and y; None for other formulas."""
+    """Return the number that a value is; None for a value with x or y."""
     if isinstance(value, Expression) or not value.is_constant():
         return None
     return exact_terms(value).get((0, 0), Fraction(0))
@@ -107,16 +107,16 @@ def _as_expression(value: FormulaValue) -> Expression:
 
 def _simplify(value: Expression) -> FormulaValue:
     """Convert a number or a polynomial to exact coefficients; keep other expressions."""
-    number = as_number(value)
-    if number is not None:
-        return exact_constant(Fraction(number))
+    constant = as_number(value)
+    if constant is not None:
+        return exact_constant(Fraction(constant))
     terms = as_terms(value)
     return value if terms is None else exact_polynomial({powers: Fraction(c) for powers, c in terms.items()})
 
 
 NAMES: dict[str, Callable[[FormulaValue], FormulaValue]] = {
-    **{name: lambda argument, name=name: applied(name, argument) for name in FUNCTIONS},  # type: ignore[misc]
-    "ln": lambda argument: applied("log", argument),
-    "sqrt": lambda argument: raised(argument, Fraction(1, 2)),
+    **{name: lambda argument, name=name: apply_named(name, argument) for name in FUNCTIONS},  # type: ignore[misc]
+    "ln": lambda argument: apply_named("log", argument),
+    "sqrt": lambda argument: raise_to(argument, Fraction(1, 2)),
 }
 """The functions of formulas by name."""

@@ -12,7 +12,7 @@ from engine.systems.forms.polynomial_form import PolynomialForm
 from engine.systems.formulas.outcome_clauses import write_clauses
 from engine.systems.potential import Potential
 
-# Number of digits that determine a double.
+# Number of significant digits that determine a double.
 _MOST_DIGITS = 17
 
 
@@ -25,8 +25,8 @@ def write_formula(potential: Potential, digits: int | None = None) -> str:
     potential
         The potential.
     digits
-        Significant digits of the coefficients, 1 to 17, so that `parse_formula` reads each with a relative error of at
-        most 5·10^−digits; None for all digits needed to read exactly the same terms.
+        Number of significant digits of the coefficients, 1 to 17: `parse_formula` reads each coefficient with a relative error
+        of at most 5·10^−digits. None for all digits that are needed to read exactly the same terms.
 
     Examples
     --------

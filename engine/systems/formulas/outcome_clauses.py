@@ -2,8 +2,8 @@
 
 A clause describes an end, see `engine.systems.outcomes`, by its word, an optional name, its place in brackets and its radius. The
 clause ``well`` with a place moves the axes to the nearest minimum. The clause ``exits`` lists the names of the exits in channel
-order, "exits L2, L1". The clause ``masses`` has the masses of px²/2m₁ + py²/2m₂, which must be equal, "masses (8, 8)". Places,
-radii and masses are formulas without x and y, which can contain the letters of the potential.
+order: "exits L2, L1". The clause ``masses`` has the masses of px²/2m₁ + py²/2m₂, which must be equal: "masses (8, 8)". Places,
+radii and masses are formulas without x and y. They can contain the letters of the potential.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class Part(NamedTuple):
 
 
 class EndClause(NamedTuple):
-    """The clause of an end: its kind, the numbers of its place and radius by key, and its name, which may be empty."""
+    """The clause of an end: its kind, the texts of its place and radius by key, and its name, which may be empty."""
 
     kind: type[End]
     numbers: Mapping[str, Part]
@@ -78,19 +78,19 @@ class Clauses(NamedTuple):
 
 def split_clauses(text: str) -> Clauses:
     """Split a text into the formula and the clauses; FormulaError for a clause that is not understood."""
-    formula, *rest = text.split(SEPARATOR)
+    formula, *clauses = text.split(SEPARATOR)
     position = len(formula) + 1
     ends: list[EndClause] = []
     pairs: dict[re.Pattern[str], tuple[Part, Part]] = {}
     exits: list[str] = []
-    for clause in rest:
+    for clause in clauses:
         pair = _WELL.match(clause) or _MASSES.match(clause)
-        if found := _end_clause(clause, position):
-            ends.append(found)
+        if end := _end_clause(clause, position):
+            ends.append(end)
         elif pair and pair.re not in pairs:
             pairs[pair.re] = _part(pair, "x", position), _part(pair, "y", position)
-        elif (named := _EXITS.match(clause)) and not exits:
-            exits = [name.strip() for name in named["names"].split(",")]
+        elif (exits_match := _EXITS.match(clause)) and not exits:
+            exits = [name.strip() for name in exits_match["names"].split(",")]
         else:
             allowed = ", ".join(kind.syntax.format(kind.word) for kind in end_kinds())
             others = "one well (x, y), one masses (m, m), and once exits NAME, NAME"

@@ -10,9 +10,12 @@ import numpy as np
 
 from engine.systems.potential import Potential
 
+# Largest distance of a critical point from the exit saddle that is the same point, in units of length of the well.
+_SAME_POINT = 1e-6
+
 
 class PointKind(Enum):
-    """The type of a critical point; the value is its name in texts."""
+    """The kind of a critical point. The value is the name of the kind in texts."""
 
     MINIMUM = "minimum"
     SADDLE = "saddle"
@@ -22,7 +25,7 @@ class PointKind(Enum):
 
 @dataclass(frozen=True)
 class CriticalPoint:
-    """A point (x, y) with ∇V = 0 and V = `energy`; `channel` is the number of the channel over this point, or 0."""
+    """A point (x, y) with ∇V = 0 and V = `energy`. `channel` is the number of the channel over this point, or 0."""
 
     x: float
     y: float
@@ -49,8 +52,9 @@ def _kind(potential: Potential, x: float, y: float, index: float) -> PointKind:
 
 
 def _channel(potential: Potential, x: float, y: float) -> int:
-    near = np.flatnonzero(np.hypot(*(potential.saddles - [x, y]).T) < 1e-6 * potential.units.length)
-    return int(near[0]) + 1 if near.size else 0
+    """Return the number of the channel over a point; 0 if there is none."""
+    channels = np.flatnonzero(np.hypot(*(potential.saddles - [x, y]).T) < _SAME_POINT * potential.units.length)
+    return int(channels[0]) + 1 if channels.size else 0
 
 
 def point_at_origin(points: tuple[CriticalPoint, ...]) -> CriticalPoint | None:
@@ -64,9 +68,9 @@ def minima_of(points: tuple[CriticalPoint, ...]) -> list[CriticalPoint]:
 
 
 def other_well(potential: Potential, points: tuple[CriticalPoint, ...]) -> tuple[float, float] | None:
-    """Return the nearest minimum if a clause can move the axes there; otherwise None.
+    """Return the nearest minimum if the clause ``well`` can move the axes there; otherwise None.
 
-    Axes are moved only once, and not in a rotating frame or with an escape radius.
+    Axes can be moved only once, and neither in a rotating frame nor with an escape radius.
     """
     nearest = next(iter(minima_of(points)), None)
     is_moved = any(potential.origin)

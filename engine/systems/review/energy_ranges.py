@@ -11,7 +11,7 @@ from engine.systems.catalogue.entry import EnergyRange
 from engine.systems.potential import Potential
 
 HIGHEST_SHOWN = 4.0
-"""Upper end of the range in units of the depth of the well, unless exits merge at a lower energy."""
+"""Upper end of the range, in units of the depth of the well, unless exits merge at a lower energy."""
 
 # Lower end of the range, in units of the depth of the well.
 _LOW = 0.8
@@ -19,14 +19,14 @@ _LOW = 0.8
 _FIRST = 1.5
 # Upper limit, as a share of the way from the escape energy to the highest energy with separate exits.
 _BELOW_HIGHEST = 0.99
-# Smallest span in units of the depth of the well; rounding dominates narrower spans.
+# Smallest span of a range, in units of the depth of the well. Rounding dominates narrower spans.
 _NARROWEST = 1e-9
 # Smallest span of a range around critical energies, as a share of their largest magnitude.
 _LEAST_SPREAD = 0.25
 
 
 def energy_range(potential: Potential, highest_energy: float, critical_energies: Sequence[float]) -> EnergyRange:
-    """Return a range given by multiples of the depth of the well. With an escape radius, it is around the critical energies.
+    """Return a range of multiples of the depth of the well; with an escape radius, a range around the critical energies.
 
     Parameters
     ----------
@@ -39,16 +39,15 @@ def energy_range(potential: Potential, highest_energy: float, critical_energies:
     """
     if potential.escape_radius is not None:
         return _range_around(potential, np.array(critical_energies or [potential.well.bottom]))
-    escape, depth = potential.escape_energy, potential.escape_energy - potential.well.bottom
+    escape = potential.escape_energy
+    depth = escape - potential.well.bottom
     span = max(_BELOW_HIGHEST * (highest_energy - escape), _NARROWEST * depth)
-    first, high = (
-        min(potential.well.energy_at(_FIRST), escape + 0.5 * span),
-        min(potential.well.energy_at(HIGHEST_SHOWN), escape + span),
-    )
+    low = potential.well.energy_at(_LOW)
+    first = min(potential.well.energy_at(_FIRST), escape + 0.5 * span)
+    high = min(potential.well.energy_at(HIGHEST_SHOWN), escape + span)
     # Enough decimals to keep the three energies distinct.
     decimals = max(2 - math.floor(math.log10(depth)), 1 - math.floor(math.log10(high - escape)))
-    low, first, high = (round(energy, decimals) for energy in (potential.well.energy_at(_LOW), first, high))
-    return EnergyRange(low, high, (), first, decimals)
+    return EnergyRange(round(low, decimals), round(high, decimals), (), round(first, decimals), decimals)
 
 
 def depth_levels(potential: Potential, multiples: Sequence[float]) -> list[float]:
@@ -60,6 +59,6 @@ def _range_around(potential: Potential, energies: np.ndarray) -> EnergyRange:
     """Return energies from below the lowest critical point to above the highest one, where the whole plane is allowed."""
     span = max(float(np.ptp(energies)), _LEAST_SPREAD * float(np.abs(energies).max()), _NARROWEST * potential.units.energy)
     decimals = 2 - math.floor(math.log10(span))
-    ends = energies.min() - 0.5 * span, energies.max() + 0.5 * span, np.median(energies)
-    low, high, first = (round(float(energy), decimals) for energy in ends)
+    exact_energies = energies.min() - 0.5 * span, energies.max() + 0.5 * span, np.median(energies)
+    low, high, first = (round(float(energy), decimals) for energy in exact_energies)
     return EnergyRange(low, high, (), first, decimals)

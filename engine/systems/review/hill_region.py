@@ -8,18 +8,19 @@ import numpy as np
 
 from engine.systems.potential import Potential
 
-# Share of the saddle energy that the tests use, because at the saddle energy itself the ridge is too narrow for the grid.
+# Share of the saddle energy at which the region is tested. At the saddle energy itself, the ridge is too narrow for the grid.
 _ENERGY_SHARE = 0.9
-# Angles of the grid per turn.
+# Number of angles of the grid per turn.
 _ANGLES = 720
-# Radii of the grid per factor of e.
+# Number of radii of the grid per factor of e.
 _RADII_PER_E_FOLD = 35
 # Smallest radius of the grid, in units of the distance of the nearest critical point.
 _SMALLEST_RADIUS = 1e-2
 # Largest radius of the grid, in units of the distance of the outermost critical point.
 _LARGEST_RADIUS = 50.0
-# Openings without a saddle are searched at this multiple of the range of the critical energies.
+# Energy at which openings without a saddle are searched, in units of the range of the critical energies.
 _OPEN_ENERGY_FACTOR = 100.0
+# Number of potentials whose check is cached.
 _CACHE_SIZE = 256
 
 
@@ -34,8 +35,8 @@ def is_open_without_saddle(potential: Potential, points: np.ndarray) -> bool:
 def check_closed_well(potential: Potential) -> None:
     """Raise ValueError unless a potential without exits has a well at the origin that no orbit leaves."""
     points = potential.critical_points
-    is_regular = (points == 0.0).all(axis=1) & (potential.well.critical_indices > 0.0)
-    if not (is_regular.any() and potential.well.is_minimum) or is_open_without_saddle(potential, points):
+    is_regular_origin = (points == 0.0).all(axis=1) & (potential.well.critical_indices > 0.0)
+    if not (is_regular_origin.any() and potential.well.is_minimum) or is_open_without_saddle(potential, points):
         raise ValueError(
             f"potential={potential.name}: must have exits, or a closed well at the origin, so that it is defined which orbits "
             "escape; see review_potential"
@@ -45,21 +46,21 @@ def check_closed_well(potential: Potential) -> None:
 def is_open_below(potential: Potential, energy: float, points: np.ndarray) -> bool:
     """Return whether the region around the origin with V slightly below `energy` extends far beyond all critical points (n, 2).
 
-    The grid is polar, in coordinates in which V ≈ ½ r² near the origin of a well, so that it resolves narrow wells.
+    The grid is polar in coordinates in which V ≈ ½ r² near the origin of a well, so that the grid resolves narrow wells.
     """
-    frequencies, axes = (
+    squared_frequencies, axes = (
         np.linalg.eigh(potential.hessian_matrix(0.0, 0.0)) if potential.well.is_minimum else (np.ones(2), np.eye(2))
     )
-    scaled = np.sqrt(frequencies) * (points @ axes)
-    distance = np.hypot(*scaled.T)
+    distance = np.hypot(*(np.sqrt(squared_frequencies) * (points @ axes)).T)
     distance = distance[distance > 0.0]
     default = np.sqrt(potential.units.energy) if potential.well.is_minimum else potential.units.length
-    low, high = (distance.min(), distance.max()) if distance.size else (default, default)
-    low, high = _SMALLEST_RADIUS * low, _LARGEST_RADIUS * high
+    nearest, outermost = (distance.min(), distance.max()) if distance.size else (default, default)
+    low, high = _SMALLEST_RADIUS * nearest, _LARGEST_RADIUS * outermost
     radius = np.geomspace(low, high, int(_RADII_PER_E_FOLD * np.log(high / low)))[:, None]
     # The angles span two turns, so that the edge of the grid does not split a region.
     angle = np.linspace(0.0, 4.0 * np.pi, 2 * _ANGLES + 1)
-    xi, eta = radius * np.cos(angle) / np.sqrt(frequencies[0]), radius * np.sin(angle) / np.sqrt(frequencies[1])
+    xi = radius * np.cos(angle) / np.sqrt(squared_frequencies[0])
+    eta = radius * np.sin(angle) / np.sqrt(squared_frequencies[1])
     value = potential.value(axes[0, 0] * xi + axes[0, 1] * eta, axes[1, 0] * xi + axes[1, 1] * eta)
     bottom = potential.well.bottom
     return bool(_connected_to_origin(value < bottom + _ENERGY_SHARE * (energy - bottom))[-1].any())
@@ -70,14 +71,16 @@ def _connected_to_origin(allowed: np.ndarray) -> np.ndarray:
     # `scipy.ndimage.label` gives the same result, but its import takes ten times as long.
     allowed = allowed.copy()
     allowed[0] = True
-    connected, count = np.zeros_like(allowed), 0
+    connected = np.zeros_like(allowed)
     connected[0] = True
-    while int(connected.sum()) > count:
-        count = int(connected.sum())
-        for view in (np.s_[:], np.s_[::-1]):
+    previous_count = 0
+    while (count := int(connected.sum())) > previous_count:
+        previous_count = count
+        # Spread outward and inward, and in both directions of the angle. The views share the memory of `connected`.
+        for direction in (np.s_[:], np.s_[::-1]):
             for axis in (0, 1):
-                cells, open_cells = (np.moveaxis(grid, axis, 0)[view] for grid in (connected, allowed))
-                _spread(cells, open_cells)
+                connected_view, allowed_view = (np.moveaxis(grid, axis, 0)[direction] for grid in (connected, allowed))
+                _spread(connected_view, allowed_view)
     return connected
 
 

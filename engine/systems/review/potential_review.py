@@ -24,12 +24,13 @@ from engine.systems.well import EQUAL_ENERGY_TOLERANCE
 
 # Number of cached reviews.
 _CACHE_SIZE = 256
+# Remark on moved axes.
 _SHIFT_REMARK = "x and y count from the well at ({:.6g}, {:.6g}) of the formula."
 
 
 @dataclass(frozen=True, repr=False)
 class PotentialReview(Result):
-    """The result of `review_potential`; lengths and energies are dimensionless.
+    """The result of `review_potential`. Lengths and energies are dimensionless.
 
     Attributes
     ----------
@@ -44,8 +45,8 @@ class PotentialReview(Result):
     channels
         Number of exits.
     highest_energy
-        The energy of the lowest maximum between two exits, above which they form one exit; infinite if there is none. Lyapunov
-        orbits may not exist up to this energy, see `find_lyapunov_orbits`.
+        The energy of the lowest maximum between two exits; infinite if there is none. Above it, the two form one exit. Lyapunov
+        orbits need not exist up to this energy, see `find_lyapunov_orbits`.
     mirror_in_x, mirror_in_y
         Whether V is even in x, and in y.
     rotations
@@ -55,8 +56,8 @@ class PotentialReview(Result):
     remarks
         Unusual properties, one sentence each.
     well
-        (x, y) of the nearest minimum if there is no well at the origin, see `Potential.at_minimum`; None if there is no minimum,
-        and for rotating frames, escape radii and axes that have already been moved.
+        (x, y) of the nearest minimum if there is no well at the origin, see `Potential.at_minimum`. None without a minimum, in a
+        rotating frame, with an escape radius, or if the axes have already been moved.
     """
 
     potential: Potential
@@ -75,7 +76,7 @@ class PotentialReview(Result):
 
     @cached_property
     def energies(self) -> EnergyRange:
-        """Energies to explore, derived from the potential; not available for a potential that is refused."""
+        """Energies to explore, derived from the potential. They are not available for a potential that is refused."""
         return energy_range(self.potential, self.highest_energy, [point.energy for point in self.critical_points])
 
     def provenance(self) -> dict[str, Any]:
@@ -107,9 +108,9 @@ class SystemReview(PotentialReview):
 
     @cached_property
     def energies(self) -> EnergyRange:
-        """Energies to explore: from the catalogue for its parameter values, otherwise derived from the potential."""
-        known = self.system.entry.energies
-        return super().energies if known is None or self.system.parameters else known
+        """Energies to explore: from the catalogue at its values of parameters, otherwise derived from the potential."""
+        catalogue_energies = self.system.entry.energies
+        return super().energies if catalogue_energies is None or self.system.parameters else catalogue_energies
 
 
 @checks_types(potential=Potential)
@@ -117,8 +118,8 @@ class SystemReview(PotentialReview):
 def review_potential(potential: Potential) -> PotentialReview:
     """Check whether a potential can be used, without compiling or integrating anything.
 
-    This usually takes a tenth of a second, and at most about 2 s; the results of repeated calls are cached. All iterations have
-    limits on their steps, so that the result does not depend on the speed of the machine.
+    This usually takes a tenth of a second, and at most about 2 s. Results are cached. All iterations have limits on their steps,
+    so the result does not depend on the speed of the machine.
 
     Parameters
     ----------
@@ -167,9 +168,9 @@ def _remarks(potential: Potential, points: tuple[CriticalPoint, ...]) -> tuple[s
     other_saddles = sum(point.kind is PointKind.SADDLE and not point.channel for point in points)
     if other_saddles:
         remarks.append(f"Saddles that do not lead out of the well at the origin and are therefore not exits: {other_saddles}.")
-    wells = [point for point in points if point.kind is PointKind.MINIMUM and (point.x or point.y)]
-    if wells:
-        places = ", ".join(f"({point.x:.6g}, {point.y:.6g})" for point in wells)
+    other_wells = [point for point in points if point.kind is PointKind.MINIMUM and (point.x or point.y)]
+    if other_wells:
+        places = ", ".join(f"({point.x:.6g}, {point.y:.6g})" for point in other_wells)
         remarks.append(f"There are other wells, at {places}: an orbit that enters one counts as escaped but may return.")
     if potential.well.channel_mergers:
         lowest = potential.well.channel_mergers[0]
@@ -185,12 +186,12 @@ def _remarks(potential: Potential, points: tuple[CriticalPoint, ...]) -> tuple[s
 def review_system(system: System) -> SystemReview:
     """Review the potential of a system; ValueError if the formula or a parameter is invalid."""
     review = review_potential(system.potential)
-    shared = {each.name: getattr(review, each.name) for each in fields(review)}
-    return SystemReview(**{**shared, "formula": system.formula_shown}, system=system)
+    values = {each.name: getattr(review, each.name) for each in fields(review)}
+    return SystemReview(**{**values, "formula": system.formula_shown}, system=system)
 
 
 def critical_energies(potential: Potential) -> tuple[float, ...]:
-    """Return the energies whose equipotentials are the limits of connected regions.
+    """Return the energies at whose equipotentials regions become connected.
 
     With exits, this is the energy of the lowest exit; with an escape radius, the energies of all saddles.
     """

@@ -20,15 +20,16 @@ MOST_CHANNELS = 16
 
 
 def find_points_or_refusal(potential: Potential) -> tuple[tuple[CriticalPoint, ...], str | None]:
-    """Return the critical points, empty if unknown, and the reason why the potential cannot be used, or None."""
+    """Return the critical points (none if unknown), and the reason why the potential cannot be used; None if it can."""
     refusal = potential.form.limits_refusal() or singularity_refusal(potential)
     if refusal is not None:
         return (), refusal
     if potential.escape_radius is not None:
         return _known_points(potential), None
     try:
-        # Both functions follow lines of steepest descent or ascent, which may fail.
-        points, _ = classify_points(potential), potential.well.channel_mergers
+        # Both statements follow lines of steepest descent or ascent, which may fail.
+        points = classify_points(potential)
+        _ = potential.well.channel_mergers
     except DescentError as error:
         return (), f"Which saddles are exits of the well is not known. {error}"
     except UndecidedError as error:
@@ -64,10 +65,10 @@ def _well_refusal(potential: Potential, points: tuple[CriticalPoint, ...]) -> st
     if not minima:
         return f"{problem} Add quadratic terms that make the origin a minimum, or give an escape radius."
     place = f"({minima[0].x:.6g}, {minima[0].y:.6g})"
-    which = f"The nearest of {len(minima)} minima is" if len(minima) > 1 else "The only minimum is"
+    subject = f"The nearest of {len(minima)} minima is" if len(minima) > 1 else "The only minimum is"
     can_move = other_well(potential, points) is not None
     hint = f": with “; well {place}” after the formula, x and y count from there" if can_move else ""
-    return f"{problem} {which} at {place}{hint}."
+    return f"{problem} {subject} at {place}{hint}."
 
 
 def _degenerate_refusal(_potential: Potential, points: tuple[CriticalPoint, ...]) -> str | None:

@@ -1,4 +1,4 @@
-"""Check that V is defined wherever orbits can go: singular points must lie beyond the ends of orbits."""
+"""Check that V is defined wherever orbits can go. Singular points must be beyond the ends of orbits."""
 
 from __future__ import annotations
 
@@ -38,12 +38,13 @@ def singularity_refusal(potential: Potential) -> str | None:
             return f"V is not defined at ({x:.6g}, {y:.6g}): there must be a centre with a radius of collision."
     radius, angle = np.meshgrid(potential.escape_radius * _SCANNED_RADII, _SCANNED_ANGLES)
     x, y = radius * np.cos(angle), radius * np.sin(angle)
-    missing = ~np.isfinite([potential.value(x, y), *potential.gradient(x, y)]).all(axis=0) & ~_is_beyond(potential, x, y)
+    is_defined = np.isfinite([potential.value(x, y), *potential.gradient(x, y)]).all(axis=0)
+    is_missing = ~is_defined & ~_is_beyond(potential, x, y)
     if potential.form.is_singular_on_curve(x, y):
         return "V is not defined along a curve within the escape radius, where a divisor changes its sign."
-    if not missing.any():
+    if not is_missing.any():
         return None
-    return f"V is not defined at ({x[missing][0]:.6g}, {y[missing][0]:.6g}), which is within the escape radius."
+    return f"V is not defined at ({x[is_missing][0]:.6g}, {y[is_missing][0]:.6g}), which is within the escape radius."
 
 
 def _origin_refusal(potential: Potential) -> str | None:
@@ -58,6 +59,7 @@ def _origin_refusal(potential: Potential) -> str | None:
 
 
 def _is_beyond(potential: Potential, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Return whether points lie beyond an end that is not an exit over a saddle."""
-    beyond: np.ndarray = np.any([np.zeros(x.shape, bool), *(end.contains(x, y) for end in potential.ends)], axis=0)
-    return beyond
+    """Return whether points are beyond an end that is not an exit over a saddle."""
+    # Without ends, no point is beyond an end.
+    is_beyond: np.ndarray = np.any([np.zeros(x.shape, bool), *(end.contains(x, y) for end in potential.ends)], axis=0)
+    return is_beyond

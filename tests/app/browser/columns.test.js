@@ -27,7 +27,7 @@ const coding = {
   layers: ["passage"],
 }
 const window = {xLow: -1, xHigh: 1, ordinateLow: -2, ordinateHigh: 2}
-const scene = {slice, energy: 0.3, window, most: 224}
+const scene = {slice, energy: 0.3, window, mostPixels: 224}
 const view = {...scene, columns: 3, rows: 1, horizon: 30}
 const like = {fate: [new Image(new ArrayBuffer(1), [1, 1])], escape_time: [new Image(new ArrayBuffer(4), [1, 1])]}
 const pixels = {fate: Int8Array.of(-3, 1, 4), time: Float32Array.of(NaN, 2, 3), crossings: Uint16Array.of(9, 0, 12)}

@@ -7,7 +7,7 @@ import {X_PX as slice} from "./x_px.js"
 
 const window = {xLow: -1, xHigh: 1, ordinateLow: -1, ordinateHigh: 1}
 const system = /** @type {any} */ ({mirror: [0, 2, 1]})
-const scene = (/** @type {number} */ energy) => ({slice, energy, window, most: 224})
+const scene = (/** @type {number} */ energy) => ({slice, energy, window, mostPixels: 224})
 const view = {...scene(0.3), columns: 3, rows: 3, horizon: 30}
 
 test("half of a symmetric picture is computed, the other half has the mirror images of the channels", () => {
@@ -83,7 +83,7 @@ test("at rest the picture gets finer and longer, and a new scene replaces that a
 test("a preview has no more pixels than the map", () => {
   mock.timers.enable({apis: ["setTimeout"]})
   const {frames, asked} = startFrames()
-  frames.request({...scene(0.3), most: 112})
+  frames.request({...scene(0.3), mostPixels: 112})
   for (let k = 0; k < 3; k++) {
     asked[k]?.finish()
     mock.timers.tick(100)

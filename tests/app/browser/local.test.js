@@ -43,7 +43,7 @@ test("a change of the server is known, and can be left out of sight", () => {
   local.show({data: "preview"})
   model.setv({data: "frame"})
   assert.equal(changes, 1)
-  local.keep()
+  local.keepPreview()
   assert.deepEqual([model.data, local.server], ["preview", {data: "frame"}])
   local.restore()
   assert.equal(model.data, "frame")

@@ -50,13 +50,22 @@ def recurse() -> None:
     recurse()
 
 
-@pytest.mark.parametrize("function", [compute_forever, fill_memory, recurse, signal.pause])
+@pytest.mark.parametrize("function", [compute_forever, fill_memory, recurse])
 def test_a_call_beyond_a_limit_is_refused_and_the_next_one_is_answered(limited: LimitedProcess, function: object) -> None:
     before = limited.stopped
     with pytest.raises(LimitError, match=r"^reviewing this formula needs more than 1 s or 512 MB; "):
         limited(function)  # type: ignore[arg-type]
     assert limited.stopped == before + 1
     assert limited(partial(divmod, 7, 2)) == (3, 1)
+
+
+def test_a_call_that_gets_no_processor_is_refused_and_the_next_one_is_answered() -> None:
+    process = LimitedProcess(seconds=1, patience=20.0)
+    assert process(partial(divmod, 7, 2)) == (3, 1)
+    with pytest.raises(LimitError, match=r"^reviewing this formula takes too long while the machine is busy; "):
+        process(signal.pause)
+    assert process(partial(divmod, 7, 2)) == (3, 1)
+    process.close()
 
 
 def test_a_call_that_nobody_waits_for_ends_before_its_limit() -> None:
@@ -86,7 +95,7 @@ def test_a_call_that_ends_its_process_is_followed_by_another_process_before_the_
 
 
 def test_a_process_that_cannot_begin_is_reported_as_such() -> None:
-    process = LimitedProcess(task="compiling this", start_seconds=0.0)
+    process = LimitedProcess(task="compiling this", patience=0.0)
     with pytest.raises(LimitError, match=r"^compiling this could not begin: "):
         process(os.getpid)
     process.close()

@@ -20,20 +20,20 @@ export const SAMPLES = 101
  * @returns {{xs: number[], ys: number[]}[]}
  */
 export function levelLines({window, values}, level) {
-  /** Neighbours on the line of each crossed edge. Edges to the right of a sample have even numbers, upward edges odd ones. */
-  const joined = /** @type {Map<number, number[]>} */ (new Map())
+  /** Neighbours of each crossed edge on its line. The edge to the right of sample k has number 2k, the upward edge 2k + 1. */
+  const neighbours = /** @type {Map<number, number[]>} */ (new Map())
   const join = (/** @type {number} */ one, /** @type {number} */ other) => {
     for (const [from, to] of [
       [one, other],
       [other, one],
     ])
-      joined.set(from, [...(joined.get(from) ?? []), to])
+      neighbours.set(from, [...(neighbours.get(from) ?? []), to])
   }
   for (let row = 0; row < SAMPLES - 1; row++) {
     for (let column = 0; column < SAMPLES - 1; column++) joinCell(values, level, row * SAMPLES + column, join)
   }
-  const place = (/** @type {number} */ edge) => edgePoint(window, values, level, edge)
-  const lines = takeLines(joined).map(edges => edges.map(place))
+  const pointOn = (/** @type {number} */ edge) => edgePoint(window, values, level, edge)
+  const lines = takeLines(neighbours).map(edges => edges.map(pointOn))
   return lines.map(line => ({xs: line.map(([x]) => x), ys: line.map(([, y]) => y)}))
 }
 
@@ -54,11 +54,13 @@ function joinCell(values, level, corner, join) {
   const inside = [corner, right, opposite, above].map(isInside)
   const sides = [2 * corner, 2 * (corner + 1) + 1, 2 * (corner + SAMPLES), 2 * corner + 1]
   const crossed = sides.filter((_, k) => inside[k] !== inside[(k + 1) % 4])
-  // Two lines cross a cell at a saddle.
+  // A cell at a saddle has four crossed edges, and two lines.
   for (let k = 0; k < crossed.length; k += 2) join(crossed[k], crossed[k + 1])
 }
 
 /**
+ * Return the point of an edge at which the function has the level.
+ *
  * @param {import("./starts.js").Window} window
  * @param {Float64Array} values
  * @param {number} level
@@ -66,11 +68,12 @@ function joinCell(values, level, corner, join) {
  * @returns {[number, number]}
  */
 function edgePoint(window, values, level, edge) {
-  const [from, upward] = [edge >> 1, edge & 1]
-  const to = from + (upward ? SAMPLES : 1)
+  const from = edge >> 1
+  const isUpward = (edge & 1) === 1
+  const to = from + (isUpward ? SAMPLES : 1)
   const share = (level - values[from]) / (values[to] - values[from])
-  const column = (from % SAMPLES) + (upward ? 0 : share)
-  const row = Math.floor(from / SAMPLES) + (upward ? share : 0)
+  const column = (from % SAMPLES) + (isUpward ? 0 : share)
+  const row = Math.floor(from / SAMPLES) + (isUpward ? share : 0)
   const scale = 1 / (SAMPLES - 1)
   return [
     window.xLow + (window.xHigh - window.xLow) * column * scale,
@@ -79,28 +82,28 @@ function edgePoint(window, values, level, edge) {
 }
 
 /**
- * Follow the lines, first lines with ends, then closed lines.
+ * Follow the lines: first lines with ends, then closed lines. This empties the map of neighbours.
  *
- * @param {Map<number, number[]>} joined  empty afterwards
+ * @param {Map<number, number[]>} neighbours
  * @returns {number[][]}
  */
-function takeLines(joined) {
+function takeLines(neighbours) {
   const lines = []
-  const ends = [...joined.keys()].filter(edge => joined.get(edge)?.length === 1)
-  for (const first of [...ends, ...joined.keys()]) {
-    if (!joined.has(first)) continue
+  const ends = [...neighbours.keys()].filter(edge => neighbours.get(edge)?.length === 1)
+  for (const first of [...ends, ...neighbours.keys()]) {
+    if (!neighbours.has(first)) continue
     const line = [first]
-    const closed = joined.get(first)?.length === 2
+    const isClosed = neighbours.get(first)?.length === 2
     /** @type {number | undefined} */
     let edge = first
     while (edge !== undefined) {
       /** @type {number | undefined} */
-      const next = joined.get(edge)?.find(other => joined.has(other) && other !== line[line.length - 2])
-      joined.delete(edge)
+      const next = neighbours.get(edge)?.find(other => neighbours.has(other) && other !== line[line.length - 2])
+      neighbours.delete(edge)
       if (next !== undefined) line.push(next)
       edge = next
     }
-    if (closed) line.push(first)
+    if (isClosed) line.push(first)
     lines.push(line)
   }
   return lines

@@ -5,8 +5,10 @@ import {Exits} from "./exits.js"
 import {levelLines, SAMPLES} from "./contours.js"
 import {describeSlice, energyAxis, placeWindow} from "./starts.js"
 
-/** Numbers of points along an exit over a saddle, and along a circle. */
-const [EXIT_POINTS, CIRCLE_POINTS] = [41, 121]
+/** Number of points along an exit over a saddle. */
+const EXIT_POINTS = 41
+/** Number of points along a circle. */
+const CIRCLE_POINTS = 121
 
 /** Traces limiting curves. All curves of a window use the same values of V. */
 export class LimitingCurves {
@@ -15,6 +17,8 @@ export class LimitingCurves {
   #key = ""
 
   /**
+   * Return the limiting curve of a view.
+   *
    * @param {import("./integrator.js").Integrator} integrator
    * @param {Pick<import("./pixels.js").View, "slice" | "window" | "energy">} view
    */
@@ -30,8 +34,8 @@ export class LimitingCurves {
 }
 
 /**
- * Return the lowest energy at which a start exists, at points of a lattice over a window, row by row. On a slice with an axis h, it
- * is relative to the h of the point, so the limiting curve is at 0.
+ * Return the lowest energy at which a start exists, at points of a lattice over a window, row by row. On a slice with an axis h,
+ * this energy is relative to the h of the point, so the limiting curve is at 0.
  *
  * @param {import("./integrator.js").Integrator} integrator
  * @param {import("./system.js").Slice} slice
@@ -62,8 +66,8 @@ export function exitLines(integrator, energy) {
       const positions = Array.from({length: count}, (_, i) => (2 * i) / (count - 1) - 1)
       const [xs, ys] = exits.points(exit, positions).map(values => values.map(value => value * units.length))
       const middle = count >> 1
-      const share = exit.isCircle ? NaN : numberDistance
-      const label = /** @type {[number, number]} */ ([share * xs[middle], share * ys[middle]])
+      const distance = exit.isCircle ? NaN : numberDistance
+      const label = /** @type {[number, number]} */ ([distance * xs[middle], distance * ys[middle]])
       return {channel: exit.number, xs, ys, label}
     })
   })

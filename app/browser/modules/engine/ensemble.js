@@ -1,6 +1,6 @@
 // @ts-check
 /**
- * Many orbits at once, and the exits at which they will end. Each orbit keeps the series of its present step, so its place at a
+ * Many orbits at once, and the exits at which they will end. Each orbit keeps the series of its present step. Its place at a
  * time within the step costs two polynomials; see `engine/integrator/kernels/ensemble.py`.
  */
 
@@ -25,7 +25,7 @@ export class Ensemble {
     this.#integrator = integrator
     this.#exits = new Exits(integrator, [energy])
     this.#starts = integrator.array("float64", [count, 4], states)
-    /** The arrays in the order of the kernel's parameters. */
+    /** The arrays that kernels change, in the order of the kernels' parameters. */
     this.#arrays = {
       ends: integrator.array("float64", [rows, count]),
       begin: integrator.array("float64", [count]),
@@ -141,18 +141,18 @@ export class Outcomes {
   #exits
   #states
   #horizon
-  #known = 0
+  #knownCount = 0
 
   /** Whether all outcomes are known. */
   get complete() {
-    return this.#known === this.channel.length
+    return this.#knownCount === this.channel.length
   }
 
   /** Find the outcomes of the next portion. */
   continue() {
-    const first = this.#known
-    this.#known = Math.min(first + PORTION, this.channel.length)
-    const states = this.#states.subarray(4 * first, 4 * this.#known)
+    const first = this.#knownCount
+    this.#knownCount = Math.min(first + PORTION, this.channel.length)
+    const states = this.#states.subarray(4 * first, 4 * this.#knownCount)
     const {tolerance} = this.#integrator.system.layout
     const {fate} = findAllEnds(this.#integrator, states, this.#exits, {horizon: this.#horizon, tolerance})
     this.channel.set(

@@ -34,15 +34,19 @@ export class Exits {
   #columns
 
   /**
+   * Set the values of a circle, which are the same at all energies.
+   *
    * @param {import("./system.js").Circle} circle
    * @param {number} k
    */
   #placeCircle({row, gate}, k) {
-    for (let energy = 0; energy < this.curves.shape[0]; energy++) this.curves.at(energy).at(k).values.set(row)
+    for (let index = 0; index < this.curves.shape[0]; index++) this.curves.at(index).at(k).values.set(row)
     this.gates.at(k).values.set(gate)
   }
 
   /**
+   * Set the values of an exit over a saddle.
+   *
    * @param {import("./system.js").ExitTable} table
    * @param {number} k
    * @param {ArrayLike<number>} energies
@@ -51,9 +55,9 @@ export class Exits {
     const integrator = this.#integrator
     const table = integrator.exitTables[k] ?? []
     integrator.temporarily(() => {
-      const places = integrator.array("float64", [energies.length], energies)
+      const energyArray = integrator.array("float64", [energies.length], energies)
       const code = this.#columns.shapes[shape]
-      integrator.call("interpolate_exit", ...table, saddle, code, places, k, this.curves, this.gates)
+      integrator.call("interpolate_exit", ...table, saddle, code, energyArray, k, this.curves, this.gates)
     })
   }
 
@@ -83,8 +87,8 @@ export class Exits {
     const integrator = this.#integrator
     return integrator.temporarily(() => {
       const points = integrator.array("float64", [2, positions.length])
-      const places = integrator.array("float64", [positions.length], positions)
-      integrator.call("exit_points", this.curves.at(0).at(number - 1), places, points)
+      const positionArray = integrator.array("float64", [positions.length], positions)
+      integrator.call("exit_points", this.curves.at(0).at(number - 1), positionArray, points)
       return [Array.from(points.at(0).values), Array.from(points.at(1).values)]
     })
   }

@@ -7,18 +7,18 @@
  * @typedef {{kernels: WebAssembly.Module, system: WebAssembly.Module}} Modules
  */
 
-/** Unit of memory of WebAssembly, in bytes. */
+/** Unit in which the memory of WebAssembly grows, in bytes. */
 const PAGE = 65536
 /** Space for local variables of kernels, in bytes. */
 const STACK = PAGE
-/** Space that is kept free for arrays that a kernel makes, in bytes. */
+/** Free space for the arrays that a kernel makes, in bytes. */
 const SLACK = 4 * PAGE
 /** Alignment of the addresses of arrays, in bytes. */
 const ALIGNMENT = 16
 
 /** @typedef {{float64: Float64Array, int64: Int32Array, int8: Int8Array}} Views */
 
-/** Size of a number in bytes, and the type of its view. The lower half of a 64-bit integer is at an even index of the view. */
+/** Size of a number in bytes, and type of the view. A view has two entries for a 64-bit integer: the lower half comes first. */
 const KINDS = {
   float64: {bytes: 8, view: Float64Array},
   int64: {bytes: 8, view: Int32Array},
@@ -53,11 +53,11 @@ export class Numbers {
 
   /** The view of the numbers. Do not keep it, because the memory moves when it grows. */
   get values() {
-    if (this.#view?.buffer !== this.#memory.buffer) this.#view = this.#look()
+    if (this.#view?.buffer !== this.#memory.buffer) this.#view = this.#makeView()
     return this.#view
   }
 
-  #look() {
+  #makeView() {
     const {bytes, view} = KINDS[this.#kind]
     const length = (product(this.shape) * bytes) / view.BYTES_PER_ELEMENT
     return /** @type {Views[K]} */ (new view(this.#memory.buffer, this.address, length))
@@ -110,8 +110,9 @@ export class Integrator {
     this.#memory = memory
     this.#heap = new Numbers(memory, "int64", heap, [1])
     this.#exports = exportsOf(modules.kernels, env)
-    const own = exportsOf(modules.system, env)
-    functions.forEach((name, k) => name in own && table.set(k + 1, own[name]))
+    const systemFunctions = exportsOf(modules.system, env)
+    // Address 0 is no function.
+    functions.forEach((name, k) => name in systemFunctions && table.set(k + 1, systemFunctions[name]))
     /** The addresses of the functions of the system, by name. */
     this.address = Object.fromEntries(functions.map((name, k) => [name, k + 1]))
     this.#free = STACK
@@ -196,7 +197,7 @@ export class Integrator {
   }
 
   /**
-   * Call a function and release the memory of the arrays that it makes.
+   * Call a function, then release the memory of the arrays that the function makes.
    *
    * @template T
    * @param {() => T} use
@@ -223,6 +224,7 @@ export class Integrator {
       if (typeof each === "number") numbers.push(each)
       else numbers.push(...each.passed)
     }
+    // A kernel does not release the arrays that it makes.
     const free = this.#free
     const result = this.#exports[name](...numbers)
     this.#free = free

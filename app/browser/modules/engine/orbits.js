@@ -15,7 +15,7 @@ const MOST_STEPS = 2 ** 31 - 1
  */
 
 /**
- * Make the arrays of orbits that the kernel changes, in the order of its parameters.
+ * Return the arrays of orbits that kernels change, in the order of the kernels' parameters.
  *
  * @param {Integrator} integrator
  * @param {Floats} states  x, y, px, py of shape (n, 4)
@@ -35,23 +35,24 @@ export function makeOrbits(integrator, states) {
 }
 
 /**
- * Propagate orbits until a horizon; return the number of steps.
+ * Propagate orbits to a horizon, in place, and return the number of steps.
  *
  * @param {Integrator} integrator
  * @param {Orbits} orbits
  * @param {import("./exits.js").Exits} exits
  * @param {import("./integrator.js").Numbers<"int64">} rows  row of each orbit's energy in the exits
- * @param {{horizon: number, tolerance: number, steps?: Floats}} options  `steps` (m, 5) records the steps of a single orbit
+ * @param {{horizon: number, tolerance: number, steps?: Floats}} options  `steps`, of shape (m, 5), takes the steps of one orbit
  */
 export function propagate(integrator, orbits, exits, rows, {horizon, tolerance, steps}) {
   const {step, jets} = integrator.address
   const {lanes_together} = integrator.system.layout
   const todo = integrator.integers(Array.from({length: orbits.t.shape[0]}, (_, orbit) => orbit))
-  const most = steps ? lanes_together * steps.shape[0] : MOST_STEPS
-  const ends = [exits.gates, exits.curves, rows, ...Object.values(orbits)]
-  const settings = [horizon, 1, tolerance, most, 0]
+  const budget = steps ? lanes_together * steps.shape[0] : MOST_STEPS
+  const exitsAndOrbits = [exits.gates, exits.curves, rows, ...Object.values(orbits)]
+  const [isFinal, least] = [1, 0]
+  const settings = [horizon, isFinal, tolerance, budget, least]
   const trace = steps ?? integrator.array("float64", [0, 5])
-  return integrator.call("propagate", step, jets, integrator.table, todo, ...settings, ...ends, trace)
+  return integrator.call("propagate", step, jets, integrator.table, todo, ...settings, ...exitsAndOrbits, trace)
 }
 
 /**
@@ -61,7 +62,7 @@ export function propagate(integrator, orbits, exits, rows, {horizon, tolerance, 
  * @param {import("./starts.js").Inside} inside
  * @param {import("./exits.js").Exits} exits
  * @param {{horizon: number, tolerance: number}} options
- * @param {import("./integrator.js").Numbers<"int8">} fate  of all starts, already set for starts that are left out
+ * @param {import("./integrator.js").Numbers<"int8">} fate  of all starts; the fates of starts inside are written
  * @returns {Ends}
  */
 export function findEnds(integrator, {kept, states, rows}, exits, options, fate) {

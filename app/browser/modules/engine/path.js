@@ -20,12 +20,12 @@ import {findStarts, keepInside} from "./starts.js"
 
 /** Number of points of the path in each step. */
 const POINTS = 6
-/** Number of steps that are taken at a time. */
+/** Number of steps in a call of the kernel. */
 const PORTION = 512
 
 /**
- * Return the path of the orbit of a point of a slice, until it escapes or for a duration in units of the well; null for a start
- * outside.
+ * Return the path of the orbit of a point of a slice until its escape, but not beyond a duration in units of the well; null for a
+ * start outside.
  *
  * @param {Integrator} integrator
  * @param {import("./system.js").Slice} slice
@@ -45,8 +45,10 @@ export function findPath(integrator, slice, energy, point, duration) {
 }
 
 /**
+ * Return the path of the orbit of a state inside all exits.
+ *
  * @param {Integrator} integrator
- * @param {Floats} state  (1, 4)
+ * @param {Floats} state  x, y, px, py of shape (1, 4); changed in place
  * @param {Exits} exits
  * @param {number} energy
  * @param {number} duration
@@ -58,14 +60,14 @@ export function follow(integrator, state, exits, energy, duration) {
   const [xs, ys] = [[state.values[0]], [state.values[1]]]
   const orbits = makeOrbits(integrator, state)
   const [row, steps] = [integrator.integers([0]), integrator.array("float64", [PORTION, 5])]
-  const end = () => (orbits.fate.values[0] === fates.bounded ? duration : orbits.t.values[0])
+  const endTime = () => (orbits.fate.values[0] === fates.bounded ? duration : orbits.t.values[0])
   while (orbits.pending.values[0]) {
     const count = propagate(integrator, orbits, exits, row, {horizon: duration, tolerance, steps})
     const path = integrator.array("float64", [2, count * POINTS])
-    integrator.call("sample_steps", address.jets, table, steps, count, end(), path)
+    integrator.call("sample_steps", address.jets, table, steps, count, endTime(), path)
     xs.push(...path.at(0).values)
     ys.push(...path.at(1).values)
   }
   const crossings = orbits.crossings.values[0] + orbits.lastCrossings.values[0]
-  return {x: xs, y: ys, channel: Math.max(orbits.fate.values[0], 0), time: end(), crossings, energy}
+  return {x: xs, y: ys, channel: Math.max(orbits.fate.values[0], 0), time: endTime(), crossings, energy}
 }

@@ -1,5 +1,5 @@
 // @ts-check
-/** Fates of the starts of a view, computed in parts of some rows. */
+/** Outcomes of the starts of a view, computed in parts. */
 
 import {Exits} from "./exits.js"
 import {findEnds} from "./orbits.js"
@@ -12,7 +12,7 @@ import {energyAxis, findStarts, keepInside, placeWindow} from "./starts.js"
  * @property {import("./system.js").Slice} slice
  * @property {number} energy
  * @property {import("./starts.js").Window} window
- * @property {number} most  pixels along a side of the server's map, which a preview does not exceed
+ * @property {number} mostPixels  pixels along a side of the server's map, which a preview does not exceed
  * @property {number} columns
  * @property {number} rows
  * @property {number} horizon  longest time, in units of the well
@@ -47,12 +47,14 @@ const LARGEST_TOLERANCE = 1e-9
 function toleranceFor({layout, exits}, {slice, window, columns, rows}) {
   const width = (window.xHigh - window.xLow) / columns / slice.units[0]
   const height = (window.ordinateHigh - window.ordinateLow) / rows / slice.units[1]
-  const smallest = Math.min(1, ...exits.flatMap(exit => ("row" in exit && exit.side < 0 ? [exit.radius] : [])))
-  const tolerance = Math.min(ERROR_IN_PIXELS * Math.min(width, height), LARGEST_TOLERANCE) * smallest
+  const smallestRadius = Math.min(1, ...exits.flatMap(exit => ("row" in exit && exit.side < 0 ? [exit.radius] : [])))
+  const tolerance = Math.min(ERROR_IN_PIXELS * Math.min(width, height), LARGEST_TOLERANCE) * smallestRadius
   return Math.max(tolerance, layout.tolerance)
 }
 
 /**
+ * Return the pixels of a part of a view.
+ *
  * @param {import("./integrator.js").Integrator} integrator
  * @param {View} view
  * @param {Part} part
@@ -67,13 +69,23 @@ function compute(integrator, view, part) {
   const count = part.rows.length * part.columns
   const [axis, energy] = [energyAxis(slice), view.energy / system.units.energy]
   const [points, energyRows] = [integrator.array("float64", [2, count]), integrator.array("int64", [count])]
-  const place = [placeWindow(integrator, window, slice.units), columns, rows, integrator.integers(part.rows), part.columns]
-  integrator.call("place_pixels", ...place, axis, points, energyRows)
-  const along = Array.from(points.at(Math.max(axis, 0)).values)
-  const firsts = Array.from(part.rows, (_, row) => along[row * part.columns])
-  const exits = new Exits(integrator, [along.slice(0, part.columns), firsts][axis] ?? [energy])
+  const grid = [placeWindow(integrator, window, slice.units), columns, rows, integrator.integers(part.rows), part.columns]
+  integrator.call("place_pixels", ...grid, axis, points, energyRows)
+  const exits = new Exits(integrator, axis < 0 ? [energy] : energiesAlong(axis, points.at(axis).values, part))
   const fate = integrator.array("int8", [count])
   const inside = keepInside(integrator, findStarts(integrator, slice, energy, points), exits, energyRows, fate)
   const ends = findEnds(integrator, inside, exits, {horizon, tolerance: toleranceFor(system, view)}, fate)
   return {...ends, time: Float32Array.from(ends.time, time => time * system.units.time)}
+}
+
+/**
+ * Return the energy of each column, or of each row, of a part of a slice with an axis h.
+ *
+ * @param {number} axis
+ * @param {Float64Array} energies  of the points, row by row
+ * @param {Part} part
+ */
+function energiesAlong(axis, energies, {rows, columns}) {
+  if (axis === 0) return energies.slice(0, columns)
+  return Float64Array.from(rows, (_, row) => energies[row * columns])
 }

@@ -9,8 +9,8 @@ import {reversedInTime} from "./system.js"
 
 /**
  * The starts to draw: "well", uniformly on the energy surface; "view" and "box", uniformly on the slice in a window;
- * "disc", uniformly on the slice around a point; "exits", on the exits, moving inward; "tubes", at the edge of the tubes that
- * lead out.
+ * "disc", uniformly on the slice around a point; "exits", on the exits, moving inward; "tubes", at the edge of the tubes of
+ * orbits that lead out.
  *
  * @typedef {object} Request
  * @property {"well" | "view" | "box" | "disc" | "exits" | "tubes"} where
@@ -21,7 +21,7 @@ import {reversedInTime} from "./system.js"
  * @property {number} radius  of the disc, as a share of half the window
  */
 
-/** Largest number of draws for each start, because a window without an interior has no starts. */
+/** Largest number of draws for each start. In a window without an interior, no draw gives a start. */
 const MOST_DRAWS = 200
 
 /**
@@ -50,9 +50,9 @@ function drawAtExits(integrator, {count, seed}, energy, ofTubes) {
   const {address, table} = integrator
   const states = integrator.array("float64", [count, 4])
   const curves = new Exits(integrator, [energy]).curves.at(0)
-  const drawing = [curves, energy, Number(ofTubes), integrator.integers([seed]), states]
-  const found = integrator.call("draw_at_exits", address.potential_value, table, ...drawing)
-  return Float64Array.from(states.first(found).values)
+  const options = [curves, energy, Number(ofTubes), integrator.integers([seed]), states]
+  const drawnCount = integrator.call("draw_at_exits", address.potential_value, table, ...options)
+  return Float64Array.from(states.first(drawnCount).values)
 }
 
 /**
@@ -69,6 +69,8 @@ function turnBack({system, modules}, energy, states) {
 }
 
 /**
+ * Draw points of the slice until enough of them are starts inside.
+ *
  * @param {Integrator} integrator
  * @param {Request} request
  * @param {import("../workers/frames.js").Scene} scene
@@ -82,23 +84,23 @@ function drawOnSlice(integrator, request, scene, energy) {
   if (!window) return states.subarray(0, 0)
   const exits = new Exits(integrator, [energy])
   const [area, seed] = [placeWindow(integrator, window, slice.units), integrator.integers([request.seed])]
-  let found = 0
-  for (let draw = 0; draw < MOST_DRAWS && found < states.length; draw++) {
+  let filled = 0
+  for (let draw = 0; draw < MOST_DRAWS && filled < states.length; draw++) {
     integrator.temporarily(() => {
       const points = integrator.array("float64", [slice.motion.length - 1, count])
       integrator.call("scatter_points", seed, area, Number(where === "disc"), points)
       const [rows, fate] = [integrator.array("int64", [count]), integrator.array("int8", [count])]
       const inside = keepInside(integrator, findStarts(integrator, slice, energy, points), exits, rows, fate)
-      const some = inside.states.values.subarray(0, states.length - found)
-      states.set(some, found)
-      found += some.length
+      const newStates = inside.states.values.subarray(0, states.length - filled)
+      states.set(newStates, filled)
+      filled += newStates.length
     })
   }
-  return states.subarray(0, found)
+  return states.subarray(0, filled)
 }
 
 /**
- * Return the rectangle of a request; a disc is the ellipse in its rectangle.
+ * Return the rectangle of a request. A disc is the ellipse in this rectangle.
  *
  * @param {Integrator} integrator
  * @param {Request} request
@@ -110,7 +112,7 @@ function windowOf(integrator, {where, box, point: [x, ordinate], radius}, {energ
   if (where === "view") return window
   const width = 0.5 * radius * (window.xHigh - window.xLow)
   const height = 0.5 * radius * (window.ordinateHigh - window.ordinateLow)
-  const around = [x - width, x + width, ordinate - height, ordinate + height]
-  const [xLow, xHigh, ordinateLow, ordinateHigh] = where === "box" ? box : around
+  const discBox = [x - width, x + width, ordinate - height, ordinate + height]
+  const [xLow, xHigh, ordinateLow, ordinateHigh] = where === "box" ? box : discBox
   return {xLow, xHigh, ordinateLow, ordinateHigh}
 }

@@ -50,7 +50,7 @@ export function placeWindow(integrator, {xLow, xHigh, ordinateLow, ordinateHigh}
 }
 
 /**
- * Return the numbers of a slice in the form that kernels take.
+ * Return the potential and a slice in the form that kernels take.
  *
  * @param {Integrator} integrator
  * @param {Pick<Slice, "axes" | "motion" | "decided">} slice
@@ -88,17 +88,18 @@ export function findStarts(integrator, slice, energy, points) {
  * @param {Starts} starts
  * @param {import("./exits.js").Exits} exits
  * @param {Integers} rows  row of each energy in the exits
- * @param {import("./integrator.js").Numbers<"int8">} fate  set for the starts that are left out
+ * @param {import("./integrator.js").Numbers<"int8">} fate  changed in place for the starts that are left out
  * @returns {Inside}
  */
 export function keepInside(integrator, {states, energies}, exits, rows, fate) {
   const count = energies.shape[0]
   const [outside, kept] = [integrator.array("int8", [count]), integrator.array("int64", [count])]
-  const found = {kept, states: integrator.array("float64", [count, 4]), rows: integrator.array("int64", [count])}
+  // In the order of the kernel's parameters.
+  const inside = {kept, states: integrator.array("float64", [count, 4]), rows: integrator.array("int64", [count])}
   const [kernel, ...potential] = integrator.interior
   integrator.call(kernel, ...potential, states.at(0), states.at(1), energies, exits.curves, rows, outside)
-  const left = integrator.call("select_starts", states, outside, rows, fate, ...Object.values(found))
-  return {kept: kept.first(left), states: found.states.first(left), rows: found.rows.first(left)}
+  const insideCount = integrator.call("select_starts", states, outside, rows, fate, ...Object.values(inside))
+  return {kept: kept.first(insideCount), states: inside.states.first(insideCount), rows: inside.rows.first(insideCount)}
 }
 
 /**

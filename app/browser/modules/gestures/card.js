@@ -1,6 +1,6 @@
 // @ts-check
 /**
- * The orbit under the cursor, drawn on a card over the picture of the well, or on a narrow screen over a part of the only
+ * The orbit under the cursor, drawn on a card. The card covers the picture of the well, or on a narrow screen a part of the only
  * map. A finger shows orbits when it rests on a map and then moves.
  */
 
@@ -21,12 +21,20 @@ const PRESS_PIXELS = 8
 const CLICK_PIXELS = 12
 /** Side of the card over the only map, as a share of the side of the map. */
 const SHARE_OF_MAP = 0.55
-/** Space around the text, and height of its line, in pixels. */
-const [PADDING, TEXT_HEIGHT] = [6, 22]
+/** Space around the text, in pixels. */
+const PADDING = 6
+/** Height of the line of text, in pixels. */
+const TEXT_HEIGHT = 22
 const STYLE = `position:fixed;pointer-events:none;z-index:5;display:none;background:var(--ui-page,#fff);
   border:1px solid var(--ui-edge,#ccc);border-radius:4px;box-sizing:border-box`
 
-/** Describe the outcome of an orbit. @type {(path: Pick<import("../engine/path.js").Path, "channel" | "time" | "crossings">, unit: number, labels: string[]) => string} */
+/**
+ * Describe the outcome of an orbit.
+ *
+ * @param {Pick<import("../engine/path.js").Path, "channel" | "time" | "crossings">} path
+ * @param {number} unit  of time
+ * @param {string[]} labels  of the outcomes
+ */
 export function describe({channel, time, crossings}, unit, labels) {
   const count = crossings === 1 ? "1 crossing" : `${crossings} crossings`
   const label = labels[channel - 1] ?? "inside until"
@@ -67,7 +75,7 @@ export class Card {
     document.addEventListener("pointerleave", () => this.#hide())
     // The browser would scroll the page, or open a menu, while a finger shows orbits.
     for (const name of ["touchmove", "contextmenu"]) {
-      document.addEventListener(name, event => this.#pressed && event.preventDefault(), {capture: true, passive: false})
+      document.addEventListener(name, event => this.#isPressed && event.preventDefault(), {capture: true, passive: false})
     }
     document.addEventListener("scroll", () => this.#hide(), {capture: true, passive: true})
   }
@@ -81,9 +89,9 @@ export class Card {
   #integrator = null
   /** @type {{timer: ReturnType<typeof setTimeout>, x: number, y: number} | null} */
   #finger = null
-  #pressed = false
+  #isPressed = false
   /** Where the mouse was last pressed, until it moves away. @type {{x: number, y: number} | null} */
-  #clicked = null
+  #clickPoint = null
 
   /**
    * @param {import("../engine/system.js").System} system
@@ -98,14 +106,14 @@ export class Card {
     this.#lift()
     const picture = this.#viewAt(event)
     if (event.pointerType !== "touch") {
-      // A click chooses the orbit, which is then drawn in place of the card.
-      this.#clicked = {x: event.clientX, y: event.clientY}
+      // A click chooses the orbit, and the page draws it where the card was.
+      this.#clickPoint = {x: event.clientX, y: event.clientY}
       this.#hide()
       return
     }
     if (!picture) return
     const timer = setTimeout(() => {
-      this.#pressed = true
+      this.#isPressed = true
       this.#show(picture, event)
     }, PRESS_MS)
     this.#finger = {timer, x: event.clientX, y: event.clientY}
@@ -113,9 +121,9 @@ export class Card {
 
   #lift() {
     if (this.#finger) clearTimeout(this.#finger.timer)
-    if (this.#pressed) this.#hide()
+    if (this.#isPressed) this.#hide()
     this.#finger = null
-    this.#pressed = false
+    this.#isPressed = false
   }
 
   /** @param {PointerEvent} event */
@@ -123,15 +131,16 @@ export class Card {
     if (event.pointerType === "touch") {
       const finger = this.#finger
       // Bokeh would move the picture.
-      if (this.#pressed) event.stopPropagation()
+      if (this.#isPressed) event.stopPropagation()
       else if (finger && Math.hypot(event.clientX - finger.x, event.clientY - finger.y) > PRESS_PIXELS) this.#lift()
-      if (!this.#pressed) return
+      if (!this.#isPressed) return
     }
-    if (this.#clicked && Math.hypot(event.clientX - this.#clicked.x, event.clientY - this.#clicked.y) < CLICK_PIXELS) return
-    this.#clicked = null
-    // There is no card while the mouse drags the energy or the window.
-    const dragged = event.buttons && event.pointerType !== "touch"
-    this.#show(dragged ? undefined : this.#viewAt(event), event)
+    if (this.#clickPoint && Math.hypot(event.clientX - this.#clickPoint.x, event.clientY - this.#clickPoint.y) < CLICK_PIXELS)
+      return
+    this.#clickPoint = null
+    // No card appears while the mouse drags the energy or the window.
+    const isDragging = event.buttons && event.pointerType !== "touch"
+    this.#show(isDragging ? undefined : this.#viewAt(event), event)
   }
 
   /**
@@ -150,14 +159,14 @@ export class Card {
    */
   #show(picture, event) {
     const [scene, integrator] = [this.#scene(), this.#integrator]
-    const place = picture && this.#start(picture, event)
-    if (!picture || !place || !scene || !integrator) {
+    const start = picture && this.#pixelCentre(picture, event)
+    if (!picture || !start || !scene || !integrator) {
       this.#hide()
       return
     }
     const {units} = scene.slice
     const energy = scene.energy / integrator.system.units.energy
-    const path = findPath(integrator, scene.slice, energy, [place[0] / units[0], place[1] / units[1]], LONGEST)
+    const path = findPath(integrator, scene.slice, energy, [start[0] / units[0], start[1] / units[1]], LONGEST)
     if (path) this.#draw(picture, event.clientX, path)
     else this.#hide()
   }
@@ -167,13 +176,13 @@ export class Card {
   }
 
   /**
-   * Return the centre of the pixel under the pointer; outside the pixels, of the pixel that would be there.
+   * Return the centre of the pixel under the pointer. The grid of pixels continues beyond the image.
    *
    * @param {import("../painting/pictures.js").Frame} picture
    * @param {PointerEvent} event
    * @returns {[number, number] | null}
    */
-  #start({box, view}, event) {
+  #pixelCentre({box, view}, event) {
     const {x, y, dw, dh, fate} = this.#maps()
     const point = [
       view.frame.x_scale.invert(event.clientX - box.left + view.frame.bbox.left),
@@ -190,15 +199,15 @@ export class Card {
   }
 
   /**
-   * @param {import("../painting/pictures.js").Frame} over  the picture under the pointer
+   * @param {import("../painting/pictures.js").Frame} picture  under the pointer
    * @param {number} pointer  distance of the pointer from the left of the screen
    * @param {import("../engine/path.js").Path} path
    */
-  #draw(over, pointer, path) {
+  #draw(picture, pointer, path) {
     const [integrator, context] = [this.#integrator, this.#canvas.getContext("2d")]
     if (!integrator || !context) return
     const {system} = integrator
-    const box = placeFor(over, pointer)
+    const box = placeFor(picture, pointer)
     const h = path.energy * system.units.energy
     const window = windowAt(integrator, "x_y", h)
     if (!window) return this.#hide()
@@ -241,13 +250,13 @@ const contains = (box, {clientX, clientY}) =>
 /**
  * Return the place of the card: over the well, or over the only map on the side away from the pointer.
  *
- * @param {import("../painting/pictures.js").Frame} over  the picture under the pointer
+ * @param {import("../painting/pictures.js").Frame} picture  under the pointer
  * @param {number} pointer  distance of the pointer from the left of the screen
  */
-function placeFor(over, pointer) {
+function placeFor(picture, pointer) {
   const well = wellFrame()
   if (well) return well.box
-  const {left, top, width} = over.box
+  const {left, top, width} = picture.box
   const side = SHARE_OF_MAP * width
   return new DOMRect(pointer < left + width / 2 ? left + width - side : left, top, side, side)
 }

@@ -1,9 +1,9 @@
 // @ts-check
-/** Animates the energy: raises it in each frame of the display, up to the end of its range. */
+/** Animates the energy, which rises in each frame of the display up to the end of the range. */
 
 /** Duration of the animation of the whole range. */
 const SWEEP_MS = 20_000
-/** Least number of steps of the range. Each is a power of ten, which keeps the numbers on the page short. */
+/** Smallest number of steps of the range. The step is a power of ten, which keeps the numbers on the page short. */
 const STEPS = 1000
 
 export class Player {
@@ -21,12 +21,14 @@ export class Player {
   #frame = 0
   #energy = 0
 
+  /** Whether an animation is running. */
   get playing() {
     return this.#frame !== 0
   }
 
   /**
-   * Start at an energy, or at the beginning of the range if the energy is at its end. During an animation this has no effect.
+   * Start at an energy, or at the low end of the range if the energy is its high end or outside.
+   * During an animation, this has no effect.
    *
    * @param {number} energy
    * @param {number} low
@@ -36,18 +38,20 @@ export class Player {
     if (this.playing) return
     this.#energy = energy >= low && energy < high ? energy : low
     const decimals = Math.max(Math.ceil(Math.log10(STEPS / (high - low))), 0)
-    let [exact, last] = [this.#energy, performance.now()]
+    let exactEnergy = this.#energy
+    let lastTime = performance.now()
     const tick = (/** @type {number} */ now) => {
-      exact = Math.min(exact + ((high - low) * Math.max(now - last, 0)) / SWEEP_MS, high)
-      last = now
-      this.#energy = Math.min(Number(exact.toFixed(Math.min(decimals, 20))), high)
+      exactEnergy = Math.min(exactEnergy + ((high - low) * Math.max(now - lastTime, 0)) / SWEEP_MS, high)
+      lastTime = now
+      this.#energy = Math.min(Number(exactEnergy.toFixed(Math.min(decimals, 20))), high)
       this.#show(this.#energy)
-      if (exact >= high) this.stop()
+      if (exactEnergy >= high) this.stop()
       else this.#frame = requestAnimationFrame(tick)
     }
     this.#frame = requestAnimationFrame(tick)
   }
 
+  /** Stop at the present energy. */
   stop() {
     if (!this.playing) return
     cancelAnimationFrame(this.#frame)

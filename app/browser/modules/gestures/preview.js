@@ -1,7 +1,7 @@
 // @ts-check
 /**
- * The pictures of the page while energy or window moves. The pixels of the browser stay until the server's map shows the same
- * view with at least as many pixels.
+ * Previews computed in the browser while the energy or the window changes. A preview stays until the server's map of the same
+ * view has at least as many pixels.
  */
 
 import {exitLines, LimitingCurves} from "../engine/curves.js"
@@ -26,25 +26,29 @@ import {LEAST_SIDE} from "../workers/frames.js"
  * @property {string[]} labels  of the outcomes
  * @property {import("../painting/columns.js").Coding} coding
  * @property {number} resolution  pixels along a side of the server's map
- *
+ */
+
+/**
  * Finds a model of Bokeh by name; null if it is not on the page.
  *
  * @typedef {(name: string) => any} FindModel
  */
 
 /**
- * Distance by which the edges of the window must differ to move while the energy changes, as a share of the side: painting axes
- * takes longer than painting pixels. The default window has a wider margin around the interior.
+ * While the energy changes, an edge of the window moves only if it is off by more than this share of the side: painting axes
+ * takes longer than painting pixels. The margin of the default window around the interior is wider.
  */
 const NEAR_EDGE = 0.02
 
 /** @type {(one: import("../engine/starts.js").Window, other: import("../engine/starts.js").Window) => boolean} */
 const isNear = (one, other) => {
-  const near = (/** @type {number} */ a, /** @type {number} */ b, /** @type {number} */ side) =>
+  const isNearEdge = (/** @type {number} */ a, /** @type {number} */ b, /** @type {number} */ side) =>
     Math.abs(a - b) <= NEAR_EDGE * side
   const [width, height] = [other.xHigh - other.xLow, other.ordinateHigh - other.ordinateLow]
-  const nearX = near(one.xLow, other.xLow, width) && near(one.xHigh, other.xHigh, width)
-  return nearX && near(one.ordinateLow, other.ordinateLow, height) && near(one.ordinateHigh, other.ordinateHigh, height)
+  const nearX = isNearEdge(one.xLow, other.xLow, width) && isNearEdge(one.xHigh, other.xHigh, width)
+  return (
+    nearX && isNearEdge(one.ordinateLow, other.ordinateLow, height) && isNearEdge(one.ordinateHigh, other.ordinateHigh, height)
+  )
 }
 
 export class Preview {
@@ -60,9 +64,9 @@ export class Preview {
     const ranges = find("basins")
     this.#frames = frames
     this.#maps = new Local(find("maps"), ["data"], () => this.#follow())
-    const moved = () => this.#followRange()
-    this.#x = new Local(ranges.x_range, ["start", "end"], moved)
-    this.#y = new Local(ranges.y_range, ["start", "end"], moved)
+    const onMove = () => this.#followRange()
+    this.#x = new Local(ranges.x_range, ["start", "end"], onMove)
+    this.#y = new Local(ranges.y_range, ["start", "end"], onMove)
     this.#ranges = () => [ranges.x_range, ranges.y_range]
     this.#outlines = new Outlines(name => findSource("basins", name))
     this.#well = new Outlines(name => findSource("well", name))
@@ -91,10 +95,12 @@ export class Preview {
   #energy = null
   /** Default window at this energy; null if the ranges keep their window. @type {import("../engine/starts.js").Window | null} */
   #window = null
-  #held = false
-  #waiting = false
+  /** Whether the energy is being dragged or played. */
+  #isHeld = false
+  /** Whether a call of `#follow` waits for the end of the task. */
+  #followsSoon = false
   /** The preview on the page. @type {import("../engine/pixels.js").View | null} */
-  #shown = null
+  #shownView = null
 
   /**
    * Set the system of the view, or of the next view.
@@ -106,16 +112,16 @@ export class Preview {
     this.#system = system
     this.#integrator = new Integrator(system, modules)
     this.#frames.setSystem(system, modules)
-    if (this.#held && this.#energy !== null) this.showEnergy(this.#energy)
+    if (this.#isHeld && this.#energy !== null) this.showEnergy(this.#energy)
     else this.#follow()
   }
 
   /** @param {ServerView} view */
   setView(view) {
-    const other = this.#view && (view.system !== this.#view.system || view.plane !== this.#view.plane)
+    const viewChanged = this.#view && (view.system !== this.#view.system || view.plane !== this.#view.plane)
     this.#view = view
-    if (!this.#held) this.#energy = this.#window = null
-    if (other) this.#restore()
+    if (!this.#isHeld) this.#energy = this.#window = null
+    if (viewChanged) this.#restore()
   }
 
   /**
@@ -124,20 +130,20 @@ export class Preview {
    * @param {number} energy
    */
   showEnergy(energy) {
-    this.#held = true
+    this.#isHeld = true
     this.#energy = energy
     const [view, integrator] = [this.#view, this.#integrator]
-    const isHome = view?.home && view.system === integrator?.system.key
-    const returns = view && sameEnergy(energy, view.energy)
-    const home = isHome && integrator && !returns ? windowAt(integrator, view.plane, energy) : null
-    if (!home || !isNear(home, this.#present)) this.#window = home
-    if (returns) for (const range of [this.#x, this.#y]) range.restore()
+    const followsDefault = view?.home && view.system === integrator?.system.key
+    const isServerEnergy = view && sameEnergy(energy, view.energy)
+    const defaultWindow = followsDefault && integrator && !isServerEnergy ? windowAt(integrator, view.plane, energy) : null
+    if (!defaultWindow || !isNear(defaultWindow, this.#present)) this.#window = defaultWindow
+    if (isServerEnergy) for (const range of [this.#x, this.#y]) range.restore()
     this.#follow()
   }
 
   /** End the preview of an energy, which the server receives now. */
   release() {
-    this.#held = false
+    this.#isHeld = false
   }
 
   /** The scene to show; null if the browser cannot compute it. @returns {import("../workers/frames.js").Scene | null} */
@@ -146,8 +152,10 @@ export class Preview {
     if (!view?.slice || !system || view.system !== system.key) return null
     if (!(window.xLow < window.xHigh && window.ordinateLow < window.ordinateHigh)) return null
     const energy = this.#energy ?? view.energy
-    const highest = [window.xHigh, window.ordinateHigh][energyAxis(view.slice)] ?? energy
-    return coversEnergy(system, highest / system.units.energy) ? {slice: view.slice, energy, window, most: view.resolution} : null
+    const axis = energyAxis(view.slice)
+    const highest = axis < 0 ? energy : axis === 0 ? window.xHigh : window.ordinateHigh
+    if (!coversEnergy(system, highest / system.units.energy)) return null
+    return {slice: view.slice, energy, window, mostPixels: view.resolution}
   }
 
   /** The window on the page, or about to be shown. @returns {import("../engine/starts.js").Window} */
@@ -162,12 +170,12 @@ export class Preview {
     return isCompared ? (this.#find("compared_map")?.data ?? null) : null
   }
 
-  /** Follow the change of a range, once its other end and pixels from the server, which may come at once, have followed. */
+  /** Follow a change of a range after the other changes of the same task: of its other end, and of the server's pixels. */
   #followRange() {
-    if (this.#waiting) return
-    this.#waiting = true
+    if (this.#followsSoon) return
+    this.#followsSoon = true
     queueMicrotask(() => {
-      this.#waiting = false
+      this.#followsSoon = false
       this.#follow()
     })
   }
@@ -176,31 +184,31 @@ export class Preview {
   #follow() {
     const scene = this.scene
     if (!scene) {
-      this.#maps.accept()
+      this.#maps.acceptServer()
       return
     }
-    const same = this.#shown && JSON.stringify(scene) === JSON.stringify(sceneOf(this.#shown))
-    const rows = same && this.#shown ? this.#shown.rows : LEAST_SIDE
+    const isSameScene = this.#shownView && JSON.stringify(scene) === JSON.stringify(sceneOf(this.#shownView))
+    const rows = isSameScene && this.#shownView ? this.#shownView.rows : LEAST_SIDE
     if (showsScene(this.#maps.server.data, scene, rows)) {
       this.#restore()
       return
     }
-    this.#maps.keep()
-    if (!same) this.#frames.request(scene)
+    this.#maps.keepPreview()
+    if (!isSameScene) this.#frames.request(scene)
   }
 
   /**
-   * Show the pixels of a preview: in Bokeh's pictures, or on canvases over them while the energy moves.
+   * Show a preview: in Bokeh's pictures, or while the energy moves, on canvases over these pictures.
    *
    * @param {import("../engine/pixels.js").View} view
    * @param {import("../engine/pixels.js").Pixels} pixels
-   * @param {boolean} moving  whether the view is moving, so that another preview may follow in the next frame
+   * @param {boolean} moving  whether another preview may follow in the next frame
    */
   show(view, pixels, moving) {
     const [integrator, server] = [this.#integrator, this.#view]
     if (!integrator || !server) return
     const {system} = integrator
-    this.#shown = view
+    this.#shownView = view
     const columns = pixelColumns(server.coding, view, pixels, this.#maps.server.data, this.#compared)
     const limit = this.#curves.trace(integrator, view)
     const coloured = exitLines(integrator, view.energy).map(exit => ({...exit, colour: server.colours[exit.channel - 1]}))
@@ -215,7 +223,7 @@ export class Preview {
     if (!this.#status.server.css_classes?.includes("stopped")) {
       this.#status.show({text: `Preview up to t = ${view.horizon * system.units.time}`})
     }
-    if (moving && this.#held) {
+    if (moving && this.#isHeld) {
       this.#overlay.show({
         energy: view.energy,
         window: view.window,
@@ -232,7 +240,7 @@ export class Preview {
   }
 
   /**
-   * Return the window of the well and its zero-velocity curve; null on a slice with an axis h, where the well does not change.
+   * Return the window and the zero-velocity curve of the well; null on a slice with an axis h, where the well does not change.
    *
    * @param {Integrator} integrator
    * @param {import("../engine/pixels.js").View} view
@@ -246,9 +254,9 @@ export class Preview {
   /** Show what the server shows. */
   #restore() {
     this.#frames.stop()
-    this.#shown = null
+    this.#shownView = null
     this.#overlay.hide()
-    for (const shown of [this.#maps, this.#outlines, this.#well, this.#status, this.#x, this.#y]) shown.restore()
+    for (const local of [this.#maps, this.#outlines, this.#well, this.#status, this.#x, this.#y]) local.restore()
   }
 }
 
@@ -261,4 +269,4 @@ const findStatus = () => [...Bokeh.index.all_views()].find(view => view.model.cs
  * @param {import("../engine/pixels.js").View} view
  * @returns {import("../workers/frames.js").Scene}
  */
-const sceneOf = ({slice, energy, window, most}) => ({slice, energy, window, most})
+const sceneOf = ({slice, energy, window, mostPixels}) => ({slice, energy, window, mostPixels})

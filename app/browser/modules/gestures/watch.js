@@ -24,16 +24,18 @@ const SIDE = 2.5
 const TRAIL = 0.88
 /** Number of frames from one update of the counters to the next. */
 const FRAMES_PER_NUMBER = 6
-/** Opacity of the cover between the map and the passages of the section. */
-const COVERED = 0.85
+/** Opacity of the layer that covers the map under the passages of the section. */
+const COVER_OPACITY = 0.85
 /** Time in each frame for finding the outcomes of orbits, in ms. */
 const OUTCOMES_MS = 6
-/** Largest time by which a frame advances the orbits, because frames of a hidden page take longer. */
+/** Largest playing time of a frame. Frames of a hidden page take longer. */
 const LONGEST_FRAME_MS = 100
+/** Style of the canvases over the pictures. */
 const STYLE = "position:fixed;pointer-events:none;z-index:1;display:none"
 
 /**
- * Paces: each returns the next time, in units of the well, for a time and the seconds since the last frame.
+ * The paces. Each function takes the time of the last frame and the seconds since then, and returns the new time. Times of orbits
+ * are in units of the well.
  *
  * @type {Record<string, (time: number, seconds: number) => number>}
  */
@@ -83,10 +85,10 @@ class Watch {
     for (const canvas of [this.#well, this.#section]) canvas.style.cssText = STYLE
     this.#trails.checked = false
     el.replaceChildren(
-      make("div", {className: "row"}, this.#where, this.#count, this.#again),
+      make("div", {className: "row"}, this.#where, this.#count, this.#otherStarts),
       make("label", {className: "row radius"}, "Radius ", this.#radius, this.#radiusText),
       make("div", {className: "row"}, this.#play, this.#step),
-      make("div", {className: "row"}, this.#rail, this.#text),
+      make("div", {className: "row"}, this.#rail, this.#timeText),
       make(
         "div",
         {className: "row"},
@@ -107,11 +109,11 @@ class Watch {
   #where
   #count
   #pace
-  #again = make("button", {type: "button", className: "bk-btn"}, "Other starts")
+  #otherStarts = make("button", {type: "button", className: "bk-btn"}, "Other starts")
   #play = make("button", {type: "button", className: "bk-btn play"})
   #step = make("button", {type: "button", className: "bk-btn"}, "Step")
   #rail = make("input", {type: "range", min: 0, max: STEPS, step: 1, value: 0})
-  #text = make("output")
+  #timeText = make("output")
   #radius = make("input", {type: "range", step: 0.5})
   #radiusText = make("output")
   #trails = make("input", {type: "checkbox"})
@@ -128,11 +130,11 @@ class Watch {
   #ensemble = null
   /** @type {Outcomes | null} */
   #outcomes = null
-  #nextSearch = 0
-  /** Everything on which the ensemble depends, as text. */
-  #contents = ""
-  #frame = 0
-  #painted = 0
+  #outcomesFrame = 0
+  /** All choices and properties that determine the ensemble, as text. */
+  #ensembleKey = ""
+  #playFrame = 0
+  #paintedFrames = 0
   #ignorePage = onPresent(() => this.#follow())
   #ignoreMoves = onMoved(() => this.#draw())
 
@@ -141,8 +143,8 @@ class Watch {
     this.#where.onchange = () => this.#choose({where: this.#where.value})
     this.#count.onchange = () => this.#choose({count: Number(this.#count.value)})
     this.#radius.oninput = () => this.#choose({radius: Number(this.#radius.value)})
-    this.#again.onclick = () => this.#choose({seed: model.seed + 1})
-    this.#play.onclick = () => this.#setPlaying(this.#frame === 0)
+    this.#otherStarts.onclick = () => this.#choose({seed: model.seed + 1})
+    this.#play.onclick = () => this.#setPlaying(this.#playFrame === 0)
     this.#step.onclick = () => this.#show(PACES[this.#pace.value](this.#time, STEP_SECONDS))
     this.#rail.oninput = () => this.#show((this.#rail.valueAsNumber / STEPS) * LONGEST)
     model.on("places", () => {
@@ -175,13 +177,14 @@ class Watch {
     this.#radius.value = String(radius)
     this.#radiusText.textContent = `10^${radius}`
     this.#radius.closest(".radius").hidden = where !== "disc"
-    const [shown, scene] = [present(), present()?.scene() ?? null]
+    const shown = present()
+    const scene = shown?.scene() ?? null
     /** @type {Record<string, unknown>} */
-    const places = {view: scene, disc: [scene, radius, point], box: [scene, box]}
-    const place = places[where] ?? scene?.energy
-    const contents = JSON.stringify([where, count, seed, place, scene?.slice, shown?.system.key])
-    if (contents === this.#contents) return this.#draw()
-    this.#contents = contents
+    const dependences = {view: scene, disc: [scene, radius, point], box: [scene, box]}
+    const place = dependences[where] ?? scene?.energy
+    const ensembleKey = JSON.stringify([where, count, seed, place, scene?.slice, shown?.system.key])
+    if (ensembleKey === this.#ensembleKey) return this.#draw()
+    this.#ensembleKey = ensembleKey
     this.#ensemble = this.#outcomes = null
     if (shown && scene && energyAxis(scene.slice) < 0) this.#make(shown, scene)
     this.#findOutcomes()
@@ -190,14 +193,15 @@ class Watch {
 
   /** Find the exits through which the orbits leave, in the next frames. */
   #findOutcomes() {
-    cancelAnimationFrame(this.#nextSearch)
+    cancelAnimationFrame(this.#outcomesFrame)
     const tick = () => {
-      const [outcomes, begun] = [this.#outcomes, performance.now()]
-      while (outcomes && !outcomes.complete && performance.now() - begun < OUTCOMES_MS) outcomes.continue()
-      if (this.#frame === 0) this.#draw()
-      this.#nextSearch = outcomes && !outcomes.complete ? requestAnimationFrame(tick) : 0
+      const outcomes = this.#outcomes
+      const startTime = performance.now()
+      while (outcomes && !outcomes.complete && performance.now() - startTime < OUTCOMES_MS) outcomes.continue()
+      if (this.#playFrame === 0) this.#draw()
+      this.#outcomesFrame = outcomes && !outcomes.complete ? requestAnimationFrame(tick) : 0
     }
-    this.#nextSearch = requestAnimationFrame(tick)
+    this.#outcomesFrame = requestAnimationFrame(tick)
   }
 
   /**
@@ -215,23 +219,23 @@ class Watch {
     this.#outcomes = new Outcomes(system, modules, energy, states, LONGEST)
   }
 
-  /** @param {boolean} on */
-  #setPlaying(on) {
-    cancelAnimationFrame(this.#frame)
-    this.#frame = 0
-    // At a pause, update the counters, which are not written in every frame.
-    if (!on || !this.#ensemble) return this.#draw()
+  /** @param {boolean} isPlaying */
+  #setPlaying(isPlaying) {
+    cancelAnimationFrame(this.#playFrame)
+    this.#playFrame = 0
+    // While playing, not every frame writes the counters: write them at a pause.
+    if (!isPlaying || !this.#ensemble) return this.#draw()
     if (this.#hasEnded) this.#begin()
-    let last = performance.now()
+    let lastTime = performance.now()
     const tick = (/** @type {number} */ now) => {
-      const seconds = Math.min(Math.max(now - last, 0), LONGEST_FRAME_MS) / 1000
-      last = now
+      const seconds = Math.min(Math.max(now - lastTime, 0), LONGEST_FRAME_MS) / 1000
+      lastTime = now
       this.#show(PACES[this.#pace.value](this.#time, seconds))
       if (this.#hasEnded && this.#loop.checked) this.#begin()
       if (this.#hasEnded) return this.#setPlaying(false)
-      this.#frame = requestAnimationFrame(tick)
+      this.#playFrame = requestAnimationFrame(tick)
     }
-    this.#frame = requestAnimationFrame(tick)
+    this.#playFrame = requestAnimationFrame(tick)
     this.#label()
   }
 
@@ -246,9 +250,9 @@ class Watch {
   }
 
   #label() {
-    const playing = this.#frame !== 0
-    this.#play.textContent = playing ? "❚❚ Pause" : "▶ Watch them leave"
-    this.#play.setAttribute("aria-pressed", String(playing))
+    const isPlaying = this.#playFrame !== 0
+    this.#play.textContent = isPlaying ? "❚❚ Pause" : "▶ Watch them leave"
+    this.#play.setAttribute("aria-pressed", String(isPlaying))
   }
 
   /** @param {number} time */
@@ -270,11 +274,11 @@ class Watch {
     const time = this.#time * shown.system.units.time
     this.#rail.valueAsNumber = (STEPS * this.#time) / LONGEST
     this.#rail.style.setProperty("--share", String(this.#time / LONGEST))
-    this.#text.textContent = `t = ${time.toFixed(time < 100 ? 1 : 0)}`
+    this.#timeText.textContent = `t = ${time.toFixed(time < 100 ? 1 : 0)}`
     this.#paintWell(ensemble, shown)
     this.#paintSection(ensemble, shown)
     // Numbers that change in every frame could not be read.
-    if (this.#frame !== 0 && this.#painted++ % FRAMES_PER_NUMBER) return
+    if (this.#playFrame !== 0 && this.#paintedFrames++ % FRAMES_PER_NUMBER) return
     this.#writeCounters(ensemble, shown)
     this.#writeGrowth(ensemble, time)
     const ink = getComputedStyle(this.#chart).color
@@ -324,13 +328,13 @@ class Watch {
     const [frame, view] = [frames()[0], scene()]
     // The section is y = 0: the second coordinate of the origin is y.
     const isSection = view?.slice.axes.join() === "x,px" && view.slice.motion[0][1] === 0
-    // The map is not covered before the first passage.
+    // Before the first passage, the map stays uncovered.
     if (!frame || !view || !isSection || !ensemble.sectionX.some(Number.isFinite))
       return void (this.#section.style.display = "none")
     const style = getComputedStyle(this.#note)
-    this.#section.style.background = `color-mix(in srgb, ${style.getPropertyValue("--ui-page")} ${100 * COVERED}%, transparent)`
-    const [xs, ps] = [ensemble.sectionX, ensemble.sectionPx]
-    this.#paint(this.#section, frame.box, view.window, colours(), ensemble, xs, ps, ...view.slice.units)
+    this.#section.style.background = `color-mix(in srgb, ${style.getPropertyValue("--ui-page")} ${100 * COVER_OPACITY}%, transparent)`
+    const {sectionX, sectionPx} = ensemble
+    this.#paint(this.#section, frame.box, view.window, colours(), ensemble, sectionX, sectionPx, ...view.slice.units)
   }
 
   /**
@@ -375,10 +379,10 @@ class Watch {
    */
   #writeCounters({channel, count}, shown) {
     const [names, colours] = [["inside", ...shown.labels()], shown.colours()]
-    const sums = new Array(names.length).fill(0)
-    for (const code of channel) sums[code]++
-    const cells = sums.map((sum, code) => {
-      const cell = make("td", {}, `${names[code]}: ${whole(sum)} (${share(count ? sum / count : 0)})`)
+    const counts = new Array(names.length).fill(0)
+    for (const code of channel) counts[code]++
+    const cells = counts.map((countOfEnd, code) => {
+      const cell = make("td", {}, `${names[code]}: ${whole(countOfEnd)} (${share(count ? countOfEnd / count : 0)})`)
       if (code) cell.style.setProperty("--colour", colours[code - 1])
       return cell
     })
@@ -404,8 +408,8 @@ class Watch {
   }
 
   #end() {
-    cancelAnimationFrame(this.#frame)
-    cancelAnimationFrame(this.#nextSearch)
+    cancelAnimationFrame(this.#playFrame)
+    cancelAnimationFrame(this.#outcomesFrame)
     this.#ignorePage()
     this.#ignoreMoves()
     for (const canvas of [this.#well, this.#section]) canvas.remove()

@@ -23,11 +23,11 @@ import {energyAxis} from "../engine/starts.js"
  * @param {Coding} coding
  * @param {import("../engine/pixels.js").View} view
  * @param {import("../engine/pixels.js").Pixels} pixels
- * @param {Columns} like  columns from the server, with the types of the images
+ * @param {Columns} serverColumns  columns from the server, whose types of images the result has
  * @param {Columns | null} compared  columns of the other view, if two views are compared pixel by pixel
  * @returns {Columns}
  */
-export function pixelColumns(coding, view, pixels, like, compared) {
+export function pixelColumns(coding, view, pixels, serverColumns, compared) {
   const {outcomes, first, ends, leastCrossings} = coding
   const {window, columns, rows} = view
   const codes = new Map(outcomes)
@@ -39,16 +39,16 @@ export function pixelColumns(coding, view, pixels, like, compared) {
     fate[i] = outcome ?? first + ends[pixels.fate[i] - 1]
     crossingClass[i] = outcome ?? first + leastCrossings.findLastIndex(least => pixels.crossings[i] >= least)
   }
-  const [Bytes, Floats] = [like.fate[0].constructor, like.escape_time[0].constructor]
+  const [Bytes, Floats] = [serverColumns.fate[0].constructor, serverColumns.escape_time[0].constructor]
   const shape = [rows, columns]
-  const none = new Bytes(new Uint8Array(1).buffer, [1, 1])
+  const emptyImage = new Bytes(new Uint8Array(1).buffer, [1, 1])
   return {
     fate: [new Bytes(fate.buffer, shape)],
     crossing_class: [new Bytes(crossingClass.buffer, shape)],
     crossings: [new Floats(Float32Array.from(pixels.crossings).buffer, shape)],
     escape_time: [new Floats(pixels.time.buffer, shape)],
-    ...Object.fromEntries(coding.layers.map(name => [name, [none]])),
-    difference: [compared ? new Bytes(differencesFrom(coding, view, fate, compared).buffer, shape) : none],
+    ...Object.fromEntries(coding.layers.map(name => [name, [emptyImage]])),
+    difference: [compared ? new Bytes(differencesFrom(coding, view, fate, compared).buffer, shape) : emptyImage],
     ends: [coding.words],
     x: [window.xLow],
     y: [window.ordinateLow],
@@ -69,27 +69,29 @@ export function pixelColumns(coding, view, pixels, like, compared) {
  */
 function differencesFrom({undecided, differences}, {window, columns, rows}, fate, compared) {
   const [image, x, y, dw, dh] = ["fate", "x", "y", "dw", "dh"].map(name => compared[name][0])
-  const [rowsThere, columnsThere] = image.shape
-  const places = (/** @type {number} */ low, /** @type {number} */ high, /** @type {number} */ count) =>
+  const [rowCount, columnCount] = image.shape
+  const centres = (/** @type {number} */ low, /** @type {number} */ high, /** @type {number} */ count) =>
     Array.from({length: count}, (_, k) => low + ((high - low) * (k + 0.5)) / count)
-  const across = places(window.xLow, window.xHigh, columns).map(place => Math.floor(((place - x) / dw) * columnsThere))
-  const up = places(window.ordinateLow, window.ordinateHigh, rows).map(place => Math.floor(((place - y) / dh) * rowsThere))
+  const comparedColumns = centres(window.xLow, window.xHigh, columns).map(centre => Math.floor(((centre - x) / dw) * columnCount))
+  const comparedRows = centres(window.ordinateLow, window.ordinateHigh, rows).map(centre =>
+    Math.floor(((centre - y) / dh) * rowCount),
+  )
   return fate.map((code, pixel) => {
-    const [row, column] = [up[Math.floor(pixel / columns)], across[pixel % columns]]
-    const isInside = row >= 0 && row < rowsThere && column >= 0 && column < columnsThere
-    return differences[code][isInside ? image[row * columnsThere + column] : undecided]
+    const [row, column] = [comparedRows[Math.floor(pixel / columns)], comparedColumns[pixel % columns]]
+    const isInside = row >= 0 && row < rowCount && column >= 0 && column < columnCount
+    return differences[code][isInside ? image[row * columnCount + column] : undecided]
   })
 }
 
-/** Largest distance of equal edges of windows, as a share of a side. */
+/** Largest distance of edges that count as equal, as a share of the side of the window. */
 const SAME_EDGE = 1e-6
-/** Largest size of a coarse frame from the server, which extends beyond its window, as a share of the size of the window. */
+/** Largest side of a frame from the server, as a share of the side of its window. Coarse frames extend beyond their window. */
 const WIDEST = 1.1
-/** Largest difference of equal energies, as a share of the energy. */
+/** Largest difference of energies that count as equal, as a share of the energy. */
 const SAME_ENERGY = 1e-12
 
 /**
- * Whether two energies are equal but for rounding.
+ * Whether two energies are equal except for rounding.
  *
  * @param {number} one
  * @param {number} other
@@ -97,16 +99,21 @@ const SAME_ENERGY = 1e-12
 export const sameEnergy = (one, other) => Math.abs(one - other) <= SAME_ENERGY * Math.abs(other)
 
 /**
- * Whether columns from the server show a scene, complete or with at least as many rows as a preview.
+ * Whether columns from the server show a scene and are complete or have at least as many rows as a preview.
  *
  * @param {Columns} columns
  * @param {import("../workers/frames.js").Scene} scene
  * @param {number} rows  of the preview
  */
-export function showsScene({x, y, dw, dh, energy, fate, complete}, {window, energy: wanted, slice}, rows) {
-  const near = (/** @type {number} */ low, /** @type {number} */ size, /** @type {number} */ from, /** @type {number} */ to) =>
-    Math.abs(low - from) <= SAME_EDGE * (to - from) && size >= (1 - SAME_EDGE) * (to - from) && size <= WIDEST * (to - from)
-  const ofEnergy = energyAxis(slice) >= 0 || sameEnergy(energy[0], wanted)
-  const sameWindow = near(x[0], dw[0], window.xLow, window.xHigh) && near(y[0], dh[0], window.ordinateLow, window.ordinateHigh)
-  return ofEnergy && sameWindow && (complete[0] || fate[0].shape[0] >= rows)
+export function showsScene({x, y, dw, dh, energy, fate, complete}, {window, energy: sceneEnergy, slice}, rows) {
+  const coversSide = (
+    /** @type {number} */ low,
+    /** @type {number} */ size,
+    /** @type {number} */ from,
+    /** @type {number} */ to,
+  ) => Math.abs(low - from) <= SAME_EDGE * (to - from) && size >= (1 - SAME_EDGE) * (to - from) && size <= WIDEST * (to - from)
+  const hasEnergy = energyAxis(slice) >= 0 || sameEnergy(energy[0], sceneEnergy)
+  const hasWindow =
+    coversSide(x[0], dw[0], window.xLow, window.xHigh) && coversSide(y[0], dh[0], window.ordinateLow, window.ordinateHigh)
+  return hasEnergy && hasWindow && (complete[0] || fate[0].shape[0] >= rows)
 }

@@ -1,32 +1,35 @@
 // @ts-check
-/** Highlights the pixels of the legend entry under the pointer, as all other colours fade. */
+/** Highlights the pixels of the legend entry under the pointer by fading all other colours. */
 
 /** Opacity of the faded colours, as two hexadecimal digits. */
 const FADED = "2e"
 
-/** Fade all colours of a palette but one. @type {(palette: string[], colour: string) => string[]} */
+/** Fade all colours of a palette except one. @type {(palette: string[], colour: string) => string[]} */
 export const fade = (palette, colour) => palette.map(other => (other === colour ? other : other.slice(0, 7) + FADED))
 
 /** Highlight pixels from now on, as long as the page exists. */
 export function lightPixels() {
   /** @type {{mapper: any, palette: string[], faded: string[]} | null} */
-  let lit = null
+  let highlight = null
   document.addEventListener("pointerover", event => {
-    // The server may have set other colours in the meantime.
-    if (lit && lit.mapper.palette === lit.faded) lit.mapper.setv({palette: lit.palette}, {sync: false})
-    lit = null
-    const [item, foot] = [".patch", ".foot"].map(places => closest(event, places))
+    // If the server has set other colours in the meantime, they stay.
+    if (highlight && highlight.mapper.palette === highlight.faded)
+      highlight.mapper.setv({palette: highlight.palette}, {sync: false})
+    highlight = null
+    const [item, foot] = [".patch", ".foot"].map(selector => closest(event, selector))
     const mapper = foot && mapperOf(foot.dataset.picture)
     const colour = item?.style.getPropertyValue("--colour")
     if (!mapper || !colour || !mapper.palette.includes(colour)) return
-    lit = {mapper, palette: mapper.palette, faded: fade(mapper.palette, colour)}
-    mapper.setv({palette: lit.faded}, {sync: false})
+    highlight = {mapper, palette: mapper.palette, faded: fade(mapper.palette, colour)}
+    mapper.setv({palette: highlight.faded}, {sync: false})
   })
 }
 
-/** @type {(event: Event, places: string) => HTMLElement | undefined} */
-const closest = (event, places) =>
-  /** @type {HTMLElement | undefined} */ (event.composedPath().find(node => node instanceof HTMLElement && node.matches(places)))
+/** @type {(event: Event, selector: string) => HTMLElement | undefined} */
+const closest = (event, selector) =>
+  /** @type {HTMLElement | undefined} */ (
+    event.composedPath().find(node => node instanceof HTMLElement && node.matches(selector))
+  )
 
 /**
  * The colour mapper of a picture.

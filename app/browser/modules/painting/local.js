@@ -1,4 +1,6 @@
 // @ts-check
+/** Models of Bokeh that show other values in this browser than on the server. */
+
 /**
  * A model of Bokeh.
  *
@@ -8,7 +10,7 @@
  * @property {(signal: any, slot: () => void) => void} connect
  */
 
-/** Like `Local`, for a model that may not be on the page yet; until then, nothing is shown. */
+/** Like `Local`, for a model that may not be on the page yet. Until then, calls have no effect. */
 export class LocalWhenPresent {
   /**
    * @param {() => any} find
@@ -55,7 +57,7 @@ export class Local {
     this.#displayed = this.server
     for (const name of names) {
       model.connect(model.properties[name].change, () => {
-        if (this.#setting) return
+        if (this.#isSetting) return
         this.server = {...this.server, [name]: model[name]}
         onServer()
       })
@@ -63,38 +65,39 @@ export class Local {
   }
 
   #model
+  /** The values on the page, except after a change by the server. */
   #displayed
-  #setting = false
-  #shown = false
+  #isSetting = false
+  #showsPreview = false
 
   /** @param {Record<string, any>} values */
   show(values) {
     this.#set(values)
-    this.#shown = true
+    this.#showsPreview = true
   }
 
   /** Show the values of the server again. */
   restore() {
-    if (this.#shown && this.#displayed !== this.server) this.#set(this.server)
-    this.accept()
+    if (this.#showsPreview && this.#displayed !== this.server) this.#set(this.server)
+    this.acceptServer()
   }
 
-  /** After a change by the server, show the values before the change again. */
-  keep() {
+  /** After a change by the server, show again the values that the change has replaced. */
+  keepPreview() {
     this.show(this.#displayed)
   }
 
   /** After a change by the server, keep its values, which are already on the page. */
-  accept() {
+  acceptServer() {
     this.#displayed = this.server
-    this.#shown = false
+    this.#showsPreview = false
   }
 
   /** @param {Record<string, any>} values */
   #set(values) {
     this.#displayed = values
-    this.#setting = true
+    this.#isSetting = true
     this.#model.setv(values, {sync: false})
-    this.#setting = false
+    this.#isSetting = false
   }
 }

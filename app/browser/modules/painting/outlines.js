@@ -1,5 +1,5 @@
 // @ts-check
-/** The curves over a picture of Bokeh while energy or window moves: limiting curve, exits, and numbers of exits. */
+/** The curves over a picture of Bokeh while the energy or the window changes: limiting curve, exits, and numbers of exits. */
 
 import {LocalWhenPresent} from "./local.js"
 
@@ -37,10 +37,10 @@ export class Outlines {
   /** @param {Exit[]} exits */
   #showExits(exits) {
     this.#exits.show({data: {...sourceOf(exits), colour: exits.map(({colour}) => colour)}})
-    // The number of texts must not change: Bokeh fails if texts with own colours become fewer.
+    // Keep the number of texts: Bokeh fails if texts with colours of their own become fewer.
     const labels = this.#labels.server.data ?? {text: [], colour: []}
-    const fill = (/** @type {any[]} */ values, /** @type {any} */ other) =>
-      Array.from(labels.text, (_, k) => (k < values.length ? values[k] : other))
+    const fill = (/** @type {any[]} */ values, /** @type {any} */ padding) =>
+      Array.from(labels.text, (_, k) => (k < values.length ? values[k] : padding))
     const [x, y] = [0, 1].map(axis => exits.map(({label}) => label[axis]))
     const text = exits.map(({channel}) => String(channel))
     const colour = exits.map(exit => exit.colour)

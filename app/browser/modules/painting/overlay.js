@@ -1,7 +1,7 @@
 // @ts-check
 /**
  * The pictures while the energy moves, on canvases over the pictures of Bokeh: Bokeh takes longer to paint a frame with axes than
- * the pixels take to compute. Columns, palettes and styles of lines come from the models of Bokeh.
+ * the browser takes to compute the pixels. Palettes and styles of lines come from the models of Bokeh.
  */
 
 import {cover, frames, strokeLine, wellFrame} from "./pictures.js"
@@ -35,11 +35,11 @@ export class Overlay {
   /** @type {Map<string, HTMLCanvasElement>} */
   #canvases = new Map()
   #pixels = document.createElement("canvas")
-  #shown = false
+  #isShown = false
 
   /** @param {Painting} painting */
   show(painting) {
-    this.#shown = true
+    this.#isShown = true
     const {energy, window, columns, lines, well} = painting
     for (const {view, box} of frames()) {
       const context = this.#canvasFor(view.model.name, box, energy)
@@ -57,11 +57,11 @@ export class Overlay {
 
   /** Hide the canvases after Bokeh has painted the next frame. */
   hide() {
-    if (!this.#shown) return
-    this.#shown = false
+    if (!this.#isShown) return
+    this.#isShown = false
     requestAnimationFrame(() =>
       requestAnimationFrame(() => {
-        if (this.#shown) return
+        if (this.#isShown) return
         for (const canvas of this.#canvases.values()) canvas.style.display = "none"
       }),
     )
@@ -84,6 +84,8 @@ export class Overlay {
   }
 
   /**
+   * Paint an image pixel by pixel, then enlarge it to the size of the box.
+   *
    * @param {CanvasRenderingContext2D} context
    * @param {DOMRect} box
    * @param {any} image
@@ -93,15 +95,15 @@ export class Overlay {
     const [rows, columns] = image.shape
     const canvas = this.#pixels
     if (canvas.width !== columns || canvas.height !== rows) Object.assign(canvas, {width: columns, height: rows})
-    const small = canvas.getContext("2d")
-    if (!small) return
-    const pixels = small.createImageData(columns, rows)
+    const pixelContext = canvas.getContext("2d")
+    if (!pixelContext) return
+    const pixels = pixelContext.createImageData(columns, rows)
     mapColours(image, mapper, new Uint32Array(pixels.data.buffer), columns)
-    small.putImageData(pixels, 0, 0)
+    pixelContext.putImageData(pixels, 0, 0)
     context.drawImage(canvas, 0, 0, box.width, box.height)
   }
 
-  /** @param {string} name */
+  /** Return the canvas over a picture, which the first call makes. @param {string} name */
   #canvasOf(name) {
     const canvas = this.#canvases.get(name) ?? document.createElement("canvas")
     if (!this.#canvases.has(name)) {
@@ -139,8 +141,8 @@ const tables = new WeakMap()
 
 /** @param {any[]} palette  of "#rrggbb" or "#rrggbbaa", or of numbers 0xrrggbbaa */
 function tableOf(palette) {
-  const known = tables.get(palette)
-  if (known) return known
+  const cachedTable = tables.get(palette)
+  if (cachedTable) return cachedTable
   const table = Uint32Array.from(palette, colour => {
     const value = typeof colour === "number" ? colour : parseInt(colour.slice(1).padEnd(8, "f"), 16)
     return ((value & 0xff) << 24) | ((value & 0xff00) << 8) | ((value >>> 8) & 0xff00) | (value >>> 24)
@@ -160,11 +162,12 @@ function tableOf(palette) {
 export function mapColours(image, {type, palette, low, high}, colours, columns) {
   const table = tableOf(palette)
   const scale = type === "LogColorMapper" ? Math.log : (/** @type {number} */ value) => value
-  const [first, share] = [scale(low), table.length / (scale(high) - scale(low))]
+  const lowest = scale(low)
+  const coloursPerUnit = table.length / (scale(high) - lowest)
   const rows = image.length / columns
   for (let i = 0; i < image.length; i++) {
-    const place = Math.floor((scale(image[i]) - first) * share)
+    const index = Math.floor((scale(image[i]) - lowest) * coloursPerUnit)
     const row = rows - 1 - Math.floor(i / columns)
-    colours[row * columns + (i % columns)] = Number.isNaN(image[i]) ? 0 : table[Math.min(Math.max(place, 0), table.length - 1)]
+    colours[row * columns + (i % columns)] = Number.isNaN(image[i]) ? 0 : table[Math.min(Math.max(index, 0), table.length - 1)]
   }
 }

@@ -26,7 +26,7 @@ export function wellFrame() {
 function withBox(view) {
   const canvas = view.canvas_view.el.getBoundingClientRect()
   const {left, top, width, height} = view.frame.bbox
-  // A picture that a narrow screen hides has no canvas.
+  // The canvas of a picture that a narrow screen hides has no size: its box is empty.
   return {view, box: new DOMRect(canvas.left + left, canvas.top + top, canvas.width && width, canvas.height && height)}
 }
 
@@ -34,22 +34,23 @@ function withBox(view) {
  * Call a function whenever a picture has moved, or the theme has changed.
  *
  * No event reports all causes: windows, layers and panels change the layout, and Bokeh follows some frames later, so
- * this looks in each frame.
+ * the boxes are compared in each frame.
  *
  * @param {() => void} call
  * @returns {() => void} a function that ends the calls
  */
 export function onMoved(call) {
-  let [waiting, last] = [0, ""]
+  let frame = 0
+  let lastState = ""
   const look = () => {
     const boxes = [wellFrame()?.box, frames()[0]?.box]
-    const now = JSON.stringify([boxes, devicePixelRatio, document.documentElement.dataset.theme])
-    if (now !== last) call()
-    last = now
-    waiting = requestAnimationFrame(look)
+    const state = JSON.stringify([boxes, devicePixelRatio, document.documentElement.dataset.theme])
+    if (state !== lastState) call()
+    lastState = state
+    frame = requestAnimationFrame(look)
   }
-  waiting = requestAnimationFrame(look)
-  return () => cancelAnimationFrame(waiting)
+  frame = requestAnimationFrame(look)
+  return () => cancelAnimationFrame(frame)
 }
 
 /**
@@ -75,7 +76,7 @@ export function cover(canvas, box) {
 }
 
 /**
- * Draw a line whose coordinates refer to a window that fills a square or a rectangle.
+ * Draw a line with coordinates in a window, which fills the box.
  *
  * @param {CanvasRenderingContext2D} context
  * @param {import("../engine/starts.js").Window} window

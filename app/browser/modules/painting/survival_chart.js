@@ -4,17 +4,20 @@
 import {number} from "../numbers.js"
 
 /** Smallest share on the axis. */
-const LEAST = 1e-3
-/** Borders, in pixels. */
-const [LEFT, BOTTOM, TOP] = [40, 22, 6]
+const LEAST_SHARE = 1e-3
+/** Margins, in pixels. */
+const [LEFT, RIGHT, BOTTOM, TOP] = [40, 4, 22, 6]
 /** Number of intervals of a line. */
-const POINTS = 240
+const INTERVALS = 240
 
 /**
+ * Draw the chart.
+ *
  * @param {HTMLCanvasElement} canvas
  * @param {{escapeTime: Float64Array, count: number, time: number}} ensemble
- * @param {{longest: number, unit: number, rate: number, ink: string}} options  `longest` time in units of
- *   the well; such a `unit` of time in units of the page; decay `rate` of mixed motion in units of the page, 0 if it is not known
+ * @param {{longest: number, unit: number, rate: number, ink: string}} options  `longest`: time
+ *   at the end of the axis, in units of the well. `unit`: the unit of time of the well, in units of the page. `rate`: decay rate of
+ *   mixed motion, in units of the page; 0 if it is not known. `ink`: colour
  */
 export function drawSurvival(canvas, {escapeTime, count, time}, {longest, unit, rate, ink}) {
   const [width, height] = [canvas.clientWidth, canvas.clientHeight]
@@ -23,39 +26,39 @@ export function drawSurvival(canvas, {escapeTime, count, time}, {longest, unit, 
   const ratio = window.devicePixelRatio
   Object.assign(canvas, {width: width * ratio, height: height * ratio})
   context.setTransform(ratio, 0, 0, ratio, 0, 0)
-  const placeX = (/** @type {number} */ t) => LEFT + ((width - LEFT - 4) * t) / longest
+  const placeX = (/** @type {number} */ t) => LEFT + ((width - LEFT - RIGHT) * t) / longest
   const placeY = (/** @type {number} */ share) =>
-    TOP + ((height - TOP - BOTTOM) * Math.log(Math.max(share, LEAST))) / Math.log(LEAST)
+    TOP + ((height - TOP - BOTTOM) * Math.log(Math.max(share, LEAST_SHARE))) / Math.log(LEAST_SHARE)
   context.fillStyle = context.strokeStyle = ink
   context.font = "12px system-ui, sans-serif"
   context.globalAlpha = 0.7
-  for (const share of [1, 0.1, 0.01, LEAST]) {
+  for (const share of [1, 0.1, 0.01, LEAST_SHARE]) {
     context.textAlign = "right"
     context.fillText(String(share), LEFT - 6, placeY(share) + 4)
-    context.fillRect(LEFT, placeY(share), width - LEFT - 4, 0.5)
+    context.fillRect(LEFT, placeY(share), width - LEFT - RIGHT, 0.5)
   }
   context.textAlign = "left"
   const law = rate > 0 ? "; dashed: flux over volume" : ""
   context.fillText(`Inside until t = ${number(longest * unit, 3)}${law}`, LEFT, height - 4, width - LEFT)
   const times = escapeTime.filter(each => each <= time).sort()
-  const line = (/** @type {(t: number) => number} */ shareAt, /** @type {number} */ end) => {
+  const drawLine = (/** @type {(t: number) => number} */ shareAt, /** @type {number} */ end) => {
     context.beginPath()
-    for (let k = 0; k <= POINTS; k++) {
-      const t = (end * k) / POINTS
+    for (let k = 0; k <= INTERVALS; k++) {
+      const t = (end * k) / INTERVALS
       const share = shareAt(t)
-      if (share < LEAST) break
+      if (share < LEAST_SHARE) break
       context.lineTo(placeX(t), placeY(share))
     }
     context.stroke()
   }
   if (rate > 0) {
     context.setLineDash([4, 4])
-    line(t => Math.exp(-rate * t * unit), longest)
+    drawLine(t => Math.exp(-rate * t * unit), longest)
     context.setLineDash([])
   }
   context.globalAlpha = 1
   context.lineWidth = 2
-  line(t => 1 - countBelow(times, t) / count, time)
+  drawLine(t => 1 - countBelow(times, t) / count, time)
 }
 
 /**

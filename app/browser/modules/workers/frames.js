@@ -20,11 +20,13 @@ const RESTING = [
 ]
 /** Time for computing the pixels of a frame, in ms. The rest of the frame is for painting. */
 const FRAME_MS = 10
-/** Least and largest factor of the side from one frame to the next. */
-const [LEAST_CHANGE, LARGEST_CHANGE] = [0.8, 1.25]
+/** Smallest factor of the side from one frame to the next. */
+const LEAST_CHANGE = 0.8
+/** Largest factor of the side from one frame to the next. */
+const LARGEST_CHANGE = 1.25
 /** Time without change after which a view is at rest, in ms. */
 const REST_MS = 60
-/** Number of pixels of a part of a picture at rest. A new view waits until each worker has finished its part. */
+/** Number of pixels of a part of a picture at rest; small, because a new view waits until the workers finish their parts. */
 const PART_PIXELS = 500
 
 export class Frames {
@@ -49,9 +51,9 @@ export class Frames {
   /** @type {"nothing" | "moving" | "resting"} */
   #computing = "nothing"
   /** @type {ReturnType<typeof setTimeout> | undefined} */
-  #rest
+  #restTimer
   #side = LEAST_SIDE
-  #mostPixels = RESTING[RESTING.length - 1].side
+  #largestSide = RESTING[RESTING.length - 1].side
 
   /**
    * @param {import("../engine/system.js").System} system
@@ -70,32 +72,33 @@ export class Frames {
    */
   request(scene) {
     this.#scene = scene
-    clearTimeout(this.#rest)
+    clearTimeout(this.#restTimer)
     if (this.#computing !== "moving") this.#begin()
   }
 
   /** Stop computing. */
   stop() {
-    clearTimeout(this.#rest)
+    clearTimeout(this.#restTimer)
     this.#scene = null
     this.#computing = "nothing"
     this.#pool.cancel()
   }
 
+  /** Compute a picture of the newest view, with as many pixels as a frame allows. */
   #begin() {
     const scene = this.#scene
     this.#scene = null
     if (!scene) return
     this.#computing = "moving"
-    const side = Math.min(this.#side, scene.most)
-    const begun = performance.now()
+    const side = Math.min(this.#side, scene.mostPixels)
+    const startTime = performance.now()
     this.#compute({...scene, columns: side, rows: side, horizon: MOVING_HORIZON}, 2 * this.#workers, () => {
-      const change = Math.sqrt(FRAME_MS / Math.max(performance.now() - begun, 1))
-      const next = Math.round(side * Math.min(Math.max(change, LEAST_CHANGE), LARGEST_CHANGE))
-      this.#side = Math.min(Math.max(next, LEAST_SIDE), this.#mostPixels)
+      const change = Math.sqrt(FRAME_MS / Math.max(performance.now() - startTime, 1))
+      const nextSide = Math.round(side * Math.min(Math.max(change, LEAST_CHANGE), LARGEST_CHANGE))
+      this.#side = Math.min(Math.max(nextSide, LEAST_SIDE), this.#largestSide)
       this.#computing = "nothing"
       if (this.#scene) this.#begin()
-      else this.#rest = setTimeout(() => this.#refine(scene, 0), REST_MS)
+      else this.#restTimer = setTimeout(() => this.#refine(scene, 0), REST_MS)
     })
   }
 
@@ -111,7 +114,7 @@ export class Frames {
       return
     }
     const {horizon} = RESTING[level]
-    const side = Math.min(RESTING[level].side, scene.most)
+    const side = Math.min(RESTING[level].side, scene.mostPixels)
     if (side < this.#side) {
       this.#refine(scene, level + 1)
       return
@@ -122,20 +125,22 @@ export class Frames {
   }
 
   /**
+   * Compute and show a picture.
+   *
    * @param {View} view
-   * @param {number} parts  number of parts into which the rows are divided
-   * @param {() => void} done
+   * @param {number} count  number of parts into which the rows are divided
+   * @param {() => void} onDone
    */
-  #compute(view, parts, done) {
+  #compute(view, count, onDone) {
     if (!this.#system) return
     const picture = new Picture(this.#system, view)
-    const list = picture.deal(parts)
-    let missing = list.length
-    this.#pool.compute(view, list, (part, pixels) => {
+    const parts = picture.deal(count)
+    let missingParts = parts.length
+    this.#pool.compute(view, parts, (part, pixels) => {
       picture.add(part, pixels)
-      if (--missing > 0) return
+      if (--missingParts > 0) return
       this.#show(view, picture.finish(), this.#computing === "moving")
-      done()
+      onDone()
     })
   }
 }
@@ -173,23 +178,25 @@ export class Picture {
   deal(count) {
     const {columns, rows} = this.#view
     const half = (/** @type {number} */ side) => Math.ceil(side / 2)
-    const computed = this.#flips?.[1] ? half(rows) : rows
-    const width = this.#flips && !this.#flips[1] ? half(columns) : columns
-    const parts = Math.min(count, computed)
+    const computedRows = this.#flips?.[1] ? half(rows) : rows
+    const computedColumns = this.#flips && !this.#flips[1] ? half(columns) : columns
+    const parts = Math.min(count, computedRows)
     return Array.from({length: parts}, (_, first) => ({
-      rows: Uint32Array.from({length: Math.ceil((computed - first) / parts)}, (_, k) => first + k * parts),
-      columns: width,
+      rows: Uint32Array.from({length: Math.ceil((computedRows - first) / parts)}, (_, k) => first + k * parts),
+      columns: computedColumns,
     }))
   }
 
   /**
+   * Add the pixels of a part.
+   *
    * @param {import("../engine/pixels.js").Part} part
    * @param {Pixels} computed
    */
   add(part, computed) {
     const {fate, time, crossings} = this.pixels
-    part.rows.forEach((row, place) => {
-      const [from, to] = [place * part.columns, row * this.#view.columns]
+    part.rows.forEach((row, index) => {
+      const [from, to] = [index * part.columns, row * this.#view.columns]
       fate.set(computed.fate.subarray(from, from + part.columns), to)
       time.set(computed.time.subarray(from, from + part.columns), to)
       crossings.set(computed.crossings.subarray(from, from + part.columns), to)
@@ -197,7 +204,7 @@ export class Picture {
   }
 
   /**
-   * Return all pixels, after adding the mirror images.
+   * Return all pixels, with mirror images in place of the pixels that were not computed.
    *
    * @returns {Pixels}
    */

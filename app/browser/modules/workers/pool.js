@@ -1,7 +1,7 @@
 // @ts-check
 /**
- * Workers that compute a picture in parts. Each worker has one part at a time. The other parts wait here, and are dropped when
- * another picture is requested.
+ * Workers that compute a picture in parts. Each worker has one part at a time. The other parts wait here until
+ * another picture replaces them.
  *
  * @typedef {import("../engine/pixels.js").View} View
  * @typedef {import("../engine/pixels.js").Part} Part
@@ -13,6 +13,7 @@
  * @property {(part: Part, pixels: Pixels) => void} receive
  */
 
+/** Largest number of workers. */
 const MOST_WORKERS = 8
 
 /** Return the number of workers, which leaves one core to the page. */
@@ -48,7 +49,7 @@ export class Pool {
   }
 
   /**
-   * Compute the parts of a picture, in place of the present picture.
+   * Compute the parts of a picture instead of the waiting parts of the present picture.
    *
    * @param {View} view
    * @param {Part[]} parts
