@@ -9,8 +9,6 @@ from typing import Any
 
 import panel as pn
 
-from app.browser.components.ensemble_player import EnsemblePlayer
-from app.browser.engine_component import BrowserEngine
 from app.job_clients.shown_results import ShownResults
 from app.runtime.disconnects import on_disconnect
 from app.runtime.process_state import process_state
@@ -19,6 +17,7 @@ from app.runtime.visitors import account_of
 from app.session.analysis_presenter import AnalysisPresenter
 from app.session.comparison_presenter import ComparisonPresenter
 from app.session.context import SessionContext
+from app.session.engine_component import BrowserEngine
 from app.session.link_presenter import LinkPresenter
 from app.session.map_presenter import MapPresenter
 from app.session.orbit_presenter import OrbitPresenter
@@ -31,6 +30,7 @@ from app.views.analysis.statistics import StatisticsView
 from app.views.components.collapsible_section import Drawers, Stack
 from app.views.components.notice import Notice
 from app.views.components.texts import TextPane
+from app.views.orbits.ensemble_player import EnsemblePlayer
 from app.views.panels.analysis_choice import analysis_tabs
 from app.views.panels.browser_events import KEYS, PICTURE_KEYS, WINDOW_KEYS, BrowserEvents
 from app.views.panels.controls import ControlActions, Controls

@@ -8,11 +8,11 @@ from typing import Any
 
 import pytest
 
-from app.browser.components.ensemble_player import EnsemblePlayer
 from app.state.system_review import review_catalogue_entry
 from app.state.view import Analysis
 from app.state.view_state import ViewState
 from app.state.watched_starts import StartsFrom, WatchedStarts
+from app.views.orbits.ensemble_player import EnsemblePlayer
 from engine import CASES, Coordinate, ParameterAxis, Plane, Slice, System, compute_flux
 from engine.jobs.manager import Jobs
 from engine.sweeps.warmup import prepare_for_maps
