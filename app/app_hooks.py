@@ -1,7 +1,7 @@
 """Hooks that Bokeh calls when the server starts and stops, and for every session and request.
 
 Bokeh runs this file, more than once, before it builds its web application. The file itself checks the command line, extends the
-URL patterns, and chooses the class of the HTTP server and the clock of the event loop.
+URL patterns, and chooses the class of the HTTP server.
 """
 
 from __future__ import annotations
@@ -31,7 +31,6 @@ from app.server.admission import admit
 from app.server.lifecycle.log_format import set_up_logs
 from app.server.lifecycle.shutdown import finish_shutdown, stop_on_signals
 from app.server.lifecycle.start_checks import SEVERAL_PROCESSES, asks_for_several_processes, refuse_to_start
-from app.server.lifecycle.steady_clock import use_steady_clock
 from app.server.lifecycle.warmup import start_warmup
 from app.server.limited_http_server import LimitedHTTPServer
 from app.server.routes import install_handlers
@@ -44,7 +43,6 @@ if asks_for_several_processes(sys.orig_argv):
     refuse_to_start(SEVERAL_PROCESSES)
 install_handlers(urls.per_app_patterns, urls.toplevel_patterns)
 HTTPServer.configure(LimitedHTTPServer)
-use_steady_clock()
 
 
 def on_server_loaded(server_context: Any) -> None:

@@ -37,7 +37,7 @@ class Regularity(IntEnum):
     """Character of a bounded orbit.
 
     ``NOT_APPLICABLE``: the orbit escapes or does not exist. ``REGULAR``: averages agree as on a torus. ``CHAOTIC``: SALI fell to
-    `CHAOS_THRESHOLD`. ``NO_SIGN_OF_CHAOS``: neither happened until t_max; the orbit may be sticky. ``NOT_JUDGED``: not computed
+    1e-7 or below. ``NO_SIGN_OF_CHAOS``: neither happened until t_max; the orbit may be sticky. ``NOT_JUDGED``: not computed
     yet.
     """
 
