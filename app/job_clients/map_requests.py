@@ -79,7 +79,9 @@ class MapRequests:
         prepare: Callable[[MapSpec], object] = lambda spec: None,
     ) -> None:
         self._state, self._listener, self._is_crowded, self._prepare = state, listener, is_crowded, prepare
-        self._has_complete_map = False
+        self._has_frame = self._has_complete_map = False
+        # The last job of the current map that was requested.
+        self._begun: Job[Any] | None = None
         # The map of the last delivered frame, and its image columns.
         self._delivered_columns: tuple[MapSpec, Columns] | None = None
         self._request = LatestRequest(
@@ -99,21 +101,24 @@ class MapRequests:
             self._listener.map_stopped()
 
     def _cancel(self) -> None:
-        self._has_complete_map = False
+        self._has_frame = self._has_complete_map = False
+        self._begun = None
         self._request.cancel()
 
     def _begin(self, job: Job[Any]) -> None:
-        self._listener.map_requested(compiling=job.queue is Queue.COMPILATION)
+        previous, self._begun = self._begun, job
+        if previous is None or previous.queue is Queue.COMPILATION:
+            self._listener.map_requested(compiling=job.queue is Queue.COMPILATION)
 
     def _with_columns(self, frame: EscapeMap) -> Any:
         """Return a frame with its columns, or `SKIPPED`; ValueError if the interior is empty."""
         # The ranges of the maps need the default window. Find and cache it here, because finding it is slow.
         replace(frame.spec, window=None).find_window()
         self._prepare(frame.spec)
-        last_spec, last_columns = self._delivered_columns or (None, {})
         # A crowded server skips the frames between the first and the last.
-        if last_spec == frame.spec and not frame.complete and self._is_crowded():
+        if self._has_frame and not frame.complete and self._is_crowded():
             return SKIPPED
+        last_spec, last_columns = self._delivered_columns or (None, {})
         columns = map_columns(frame) | layer_columns(frame, self._state.layers)
         if last_spec is not None and _has_same_plane(last_spec, frame.spec):
             columns = draw_over(columns, last_columns, frame.spec.resolution)
@@ -123,7 +128,7 @@ class MapRequests:
     def _show(self, result: tuple[EscapeMap, Columns]) -> None:
         frame, columns = result
         self._listener.map_arrived(frame, columns)
-        self._has_complete_map = frame.complete
+        self._has_frame, self._has_complete_map = True, frame.complete
 
 
 def _has_same_plane(one: MapSpec, other: MapSpec) -> bool:

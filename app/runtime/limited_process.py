@@ -127,7 +127,9 @@ class LimitedProcess:
         """End the process, and start another one unless the server is stopping."""
         self._end()
         if not self._is_closed:
-            self._submit(os.getpid)
+            # If no process can start now, the next call starts one.
+            with suppress(OSError, MemoryError):
+                self._submit(os.getpid)
 
     def _call[Result](self, function: Callable[[], Result], cancel: threading.Event) -> Result:
         try:

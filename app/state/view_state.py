@@ -207,8 +207,11 @@ class ViewState(param.Parameterized):
 
     def compare(self, *, on: bool) -> None:
         """Compare later views with the present view in the same window, or end the comparison."""
-        window = self.find_window() if on and is_ready_for_maps(self.potential) else self.window
-        self.param.update(compared=self.view if on else None, window=window)
+        if not on:
+            self.compared = None
+            return
+        window = self.find_window() if is_ready_for_maps(self.potential) else self.window
+        self.param.update(compared=self.view, window=window)
 
     def enlarge(self, name: str) -> None:
         """Show a picture large; if it is large already, show all pictures side by side."""

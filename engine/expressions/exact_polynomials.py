@@ -32,7 +32,7 @@ def exact_constant(value: Fraction) -> fmpq_mpoly:
 
 def exact_terms(polynomial: fmpq_mpoly) -> dict[Powers, Fraction]:
     """Return the terms {(i, j): c} of a polynomial of FLINT; none for 0."""
-    return {(i, j): Fraction(int(c.p), int(c.q)) for (i, j), c in polynomial.to_dict().items()}
+    return {(int(i), int(j)): Fraction(int(c.p), int(c.q)) for (i, j), c in polynomial.to_dict().items()}
 
 
 def limited_product(a: fmpq_mpoly, b: fmpq_mpoly) -> fmpq_mpoly:

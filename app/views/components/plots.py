@@ -181,14 +181,18 @@ class LaterGlyphs:
     def __init__(self, add: Callable[[figure], object]) -> None:
         self._add = add
         self._plots: list[figure] = []
+        self._is_drawn = False
 
     def expect(self, plot: figure) -> None:
-        """Name a figure that will get the glyphs."""
-        self._plots.append(plot)
+        """Name a figure that will get the glyphs, or gets them at once if other figures have them."""
+        if self._is_drawn:
+            self._add(plot)
+        else:
+            self._plots.append(plot)
 
     def draw(self) -> None:
-        """Add the glyphs to the figures that lack them."""
-        plots, self._plots = self._plots, []
+        """Add the glyphs to the figures that lack them, and to later figures."""
+        plots, self._plots, self._is_drawn = self._plots, [], True
         document = plots[0].document if plots else None
         # With the models frozen, Bokeh searches the page once for all new models.
         with document.models.freeze() if document is not None else nullcontext():

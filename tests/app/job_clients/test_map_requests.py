@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -177,6 +178,19 @@ def test_a_frame_after_a_stop_is_dropped(manual: tuple[MapRequests, Recorder, Ma
     assert recorder.names() == ["map requested", "map stopped"]
 
 
+def test_a_crowded_server_shows_the_first_frame_of_each_request_alone_before_the_last() -> None:
+    prepare_for_maps(CASES["I"])
+    recorder, jobs, session = Recorder(), ManualJobs(), LatestCalls()
+    requests = MapRequests(ViewState(system=System("I")), jobs, recorder, session.locked, is_crowded=lambda: True)
+    unfinished = replace(compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.3, (8, 8), t_max=10.0)), complete=False)
+    for _ in range(2):
+        requests.request_map()
+        for frame in (unfinished, unfinished, replace(unfinished, complete=True)):
+            jobs.listeners[-1](frame)
+            session.run()
+    assert recorder.names() == ["map requested", "map arrived", "map arrived"] * 2
+
+
 def test_a_request_that_is_replaced_while_its_integrator_is_compiled_starts_no_map() -> None:
     state, jobs, session = ViewState(), ManualJobs(), LatestCalls()
     # No other test compiles its integrator.
@@ -200,10 +214,11 @@ def test_potentials_along_a_parameter_of_a_typed_formula_are_found_within_limits
     state.show_system(reviewed)
     state.plane = read_slice("x,a=0.5:1.5", "", state.system)
     assert jobs.jobs[-1].queue is Queue.LIMITED
-    requested = len(jobs.jobs)
+    requested, told = len(jobs.jobs), recorder.names()
     jobs.listeners[-1](None)
     session.run()
     assert [job.queue for job in jobs.jobs[requested:]] == [Queue.FIRST_FRAME]
+    assert recorder.names() == told
 
 
 def test_an_invalid_energy_gives_a_message(session: Session) -> None:

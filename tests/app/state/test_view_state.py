@@ -62,3 +62,11 @@ def test_the_slider_contains_the_escape_energy_and_all_energies_of_the_paper(cas
     assert len(energies.marked) == 9
     assert max(energies.marked) <= energies.high
     assert energies.low < energies.first < energies.high
+
+
+def test_the_end_of_a_comparison_changes_nothing_else() -> None:
+    view, changed = ViewState(system=System("I"), energy=0.2), []
+    view.compare(on=True)
+    view.param.watch(lambda *events: changed.extend(event.name for event in events), [*view.param])
+    view.compare(on=False)
+    assert changed == ["compared"]

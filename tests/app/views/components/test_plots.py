@@ -38,6 +38,14 @@ def test_glyphs_are_added_with_one_search_of_the_models() -> None:
     assert all(len(plot.renderers) == 1 for plot in plots)
 
 
+def test_a_figure_that_is_made_later_gets_the_glyphs_that_other_figures_have() -> None:
+    glyphs = LaterGlyphs(lambda plot: plot.add_glyph(Scatter()))
+    glyphs.draw()
+    plot = square_figure("basins", "basins")
+    glyphs.expect(plot)
+    assert len(plot.renderers) == 1
+
+
 def test_another_legend_is_written_into_the_same_model() -> None:
     plot = square_figure("basins", "Basins")
     [title] = plot.elements

@@ -90,7 +90,7 @@ def test_operator_precedence(text: str, terms: tuple[tuple[int, int, float], ...
         ("x^7 y^6", 4, "degree 13"),
         ("((9^12)^12)^12 x", 0, "300 digits"),
         ("1e999x", 0, "decimal exponent"),
-        ("1e12x", 0, "between 1e-09 and 1e"),
+        ("1e12xy²", 0, "the coefficient of xy² must be between 1e-09 and 1e"),
         ("x - x", 0, "neither x nor y"),
         ("(1 + x + y)^12", 0, "91 terms"),
         ("y" + "".join(f"/(x−{k})" for k in range(1, 41)), 0, "The first derivatives of V have"),
