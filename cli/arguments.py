@@ -14,7 +14,7 @@ import numpy as np
 import typer
 
 from cli.layer_options import LayerOptions, read_layers
-from cli.option_marks import Of
+from cli.option_marks import DocumentedBy
 from engine import MEASURES, POTENTIALS, Plane, Potential, Slice, System, review_potential
 from engine.foundations.validation import checked_count
 from engine.slices.axes import Energy
@@ -72,7 +72,7 @@ def check_measures(chosen: Collection[str] | None, known: Collection[str]) -> li
     return [name for name in known if name in (chosen or ())]
 
 
-Case = Annotated[str, typer.Argument(metavar="CASE"), Of(find_system)]
+Case = Annotated[str, typer.Argument(metavar="CASE"), DocumentedBy(find_system)]
 """Type of the argument CASE of commands."""
 
 

@@ -11,7 +11,7 @@ from typing import Annotated
 
 import typer
 
-from cli.option_marks import Of
+from cli.option_marks import DocumentedBy
 from engine.foundations.output_lock import hold_lock
 
 Content = str | bytes
@@ -83,7 +83,7 @@ def reserve_output(output: Path | None) -> Iterator[None]:
         yield
 
 
-Stem = Annotated[Path | None, typer.Option(metavar="STEM"), Of(reserve_output)]
+Stem = Annotated[Path | None, typer.Option(metavar="STEM"), DocumentedBy(reserve_output)]
 """Type of the option for the names of output files."""
 
 

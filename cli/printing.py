@@ -15,7 +15,7 @@ from rich import box
 from rich.console import Console
 from rich.table import Table as RichTable
 
-from cli.option_marks import Of
+from cli.option_marks import DocumentedBy
 
 # Width of the console, in characters. No table is wider, so nothing is cut. A terminal wraps the lines.
 _WIDTH = 10_000
@@ -55,7 +55,7 @@ def print_result(as_json: bool, answer: Mapping[str, Any], *parts: Table | str, 
             console.print(_lay_out(part), highlight=False, markup=False)
 
 
-AsJson = Annotated[bool, typer.Option("--json"), Of(print_result)]
+AsJson = Annotated[bool, typer.Option("--json"), DocumentedBy(print_result)]
 """Type of the option that chooses JSON."""
 
 

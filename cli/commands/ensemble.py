@@ -25,7 +25,7 @@ import typer
 
 from cli.arguments import OneEnergy
 from cli.execution import THREADS_ONLY, Place
-from cli.option_marks import But, Of
+from cli.option_marks import DocumentedBy, OptionChanges
 from cli.options import with_options
 from cli.output_files import Content, Stem, name_files, reserve_output, write_files
 from cli.printing import AsJson, Table, list_rows, print_result
@@ -59,15 +59,15 @@ def run(
     *,
     potential: Potential,
     energy: OneEnergy,
-    count: Annotated[int, Of(sample_starts)] = 3000,
-    seed: Annotated[int, Of(sample_starts)],
-    plane: Annotated[Slice | None, But(defaults={"plane": None})],
-    window: Annotated[GivenWindow | None, Of(sample_starts)],
+    count: Annotated[int, DocumentedBy(sample_starts)] = 3000,
+    seed: Annotated[int, DocumentedBy(sample_starts)],
+    plane: Annotated[Slice | None, OptionChanges(defaults={"plane": None})],
+    window: Annotated[GivenWindow | None, DocumentedBy(sample_starts)],
     entering: bool = False,
-    t_max: Annotated[float, Of(classify_orbits)] = 25.0,
+    t_max: Annotated[float, DocumentedBy(classify_orbits)] = 25.0,
     frames: Annotated[int, typer.Option(min=2, max=5000)] = 126,
     palette: Palette,
-    style: Annotated[FigureStyle, But(defaults={"dpi": 120.0})],
+    style: Annotated[FigureStyle, OptionChanges(defaults={"dpi": 120.0})],
     place: Annotated[Place, THREADS_ONLY],
     output: Stem = None,
     as_json: AsJson = False,

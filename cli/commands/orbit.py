@@ -20,7 +20,7 @@ import typer
 
 from cli.arguments import GivenEnergy
 from cli.execution import Place
-from cli.option_marks import Of
+from cli.option_marks import DocumentedBy
 from cli.options import with_options
 from cli.output_files import Content, Stem, name_files, reserve_output, write_files
 from cli.printing import AsJson, print_result
@@ -46,8 +46,8 @@ def run(
     energy: GivenEnergy,
     start: Annotated[tuple[float, float] | None, typer.Option(metavar="X ORDINATE")] = None,
     state: Annotated[State | None, typer.Option(metavar="X Y PX PY")] = None,
-    t_max: Annotated[float, Of(integrate_orbit)],
-    most_rows: Annotated[int, Of(orbits_csv)],
+    t_max: Annotated[float, DocumentedBy(integrate_orbit)],
+    most_rows: Annotated[int, DocumentedBy(orbits_csv)],
     palette: Palette,
     style: FigureStyle,
     output: Stem = None,

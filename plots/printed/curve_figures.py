@@ -77,7 +77,7 @@ def draw_measure(axes: Axes, curves: Sweep, measure: Measure, style: FigureStyle
     if curve.logarithmic:
         axes.set_yscale("log")
     axes.set_xlim(float(curves.values[0]), float(curves.values[-1]))
-    style_axes(axes, style, grid=True, names=(curves.symbol, curve.axis))
+    style_axes(axes, style, grid=True, labels=(curves.symbol, curve.axis))
     if len(axes.lines) > 1:
         add_panel_legend(axes, "best", style)
 
@@ -93,7 +93,7 @@ def draw_statistics_figure(statistics: EscapeStatistics, style: FigureStyle) -> 
     crossing_axes.bar(np.arange(len(probabilities)), probabilities, color=MEASURED)
     crossing_axes.set_xlim(-0.6, MOST_CROSSINGS + 0.6)
     crossing_axes.set_ylim(0.0, 1.0)
-    style_axes(crossing_axes, style, grid=True, names=("upward crossings n", "p"), title="Escapes after n crossings")
+    style_axes(crossing_axes, style, grid=True, labels=("upward crossings n", "p"), title="Escapes after n crossings")
     return figure
 
 
@@ -102,7 +102,7 @@ def draw_escape_times(axes: Axes, statistics: EscapeStatistics, style: FigureSty
     edges, counts = statistics.time_histogram(BINS)
     axes.stairs(counts, edges, fill=True, color=MEASURED)
     axes.set_xscale("log")
-    style_axes(axes, style, grid=True, names=("escape time", "starts"))
+    style_axes(axes, style, grid=True, labels=("escape time", "starts"))
 
 
 def draw_shares(
@@ -163,4 +163,4 @@ def draw_line(axes: Axes, x: np.ndarray, y: np.ndarray, x_label: str, y_label: s
         axes.set_xscale("log")
     if "y" in logarithmic:
         axes.set_yscale("log")
-    style_axes(axes, grid=True, names=(x_label, y_label))
+    style_axes(axes, grid=True, labels=(x_label, y_label))

@@ -139,7 +139,7 @@ def _draw_chart(axes: Axes, potential: Potential, orbits: SampledOrbits, style: 
     axes.set_xlim(0.0, last_time)
     axes.set_ylim(max(least_share, 0.5 * np.exp(-rate * last_time)), 1.2)
     axes.yaxis.set_major_locator(LogLocator())
-    style_axes(axes, style, grid=True, names=("t", "share inside"), title="Share still inside")
+    style_axes(axes, style, grid=True, labels=("t", "share inside"), title="Share still inside")
     axes.legend(loc="upper right", fontsize=style.small_size, frameon=False)
     line: Line2D = survival
     return line

@@ -23,7 +23,6 @@ from plots.pictures.provenance import provenance_line
 from plots.pictures.time_scale import TimeScale, fitted_scale
 from plots.printed.figure_axes import (
     add_legend_below,
-    below,
     figure_of,
     fit_height,
     legend_handles,
@@ -31,6 +30,7 @@ from plots.printed.figure_axes import (
     set_font,
     set_title,
     size_in_points,
+    transform_below,
     write_below,
 )
 from plots.printed.figure_style import POINTS_PER_INCH, SCREEN, FigureStyle
@@ -150,7 +150,7 @@ def _explain_picture(
     depth = _BELOW_AXIS * style.font_size
     legend = map_legend(picture, ShownMap.of(frame, palette, analyses, times))
     if legend.scale is not None:
-        bar_axes = axes.inset_axes((0.0, -_BAR_HEIGHT, 1.0, _BAR_HEIGHT), transform=below(axes, depth))
+        bar_axes = axes.inset_axes((0.0, -_BAR_HEIGHT, 1.0, _BAR_HEIGHT), transform=transform_below(axes, depth))
         add_colour_bar(figure_of(axes), legend.scale, style, cax=bar_axes, orientation="horizontal")
         bar_axes.get_xticklabels()[-1].set_horizontalalignment("right")
         depth += _BELOW_BAR * style.font_size

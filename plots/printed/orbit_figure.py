@@ -128,7 +128,7 @@ def draw_quantity(
         axes.set_ylim(*quantity.limits(drawn))
     if quantity.threshold is not None:
         axes.axhline(quantity.threshold, color=THRESHOLD, linestyle="--", linewidth=1.0)
-    style_axes(axes, style, names=("t", quantity.label), title=quantity.title)
+    style_axes(axes, style, labels=("t", quantity.label), title=quantity.title)
 
 
 def _draw_history(axes: Axes, history: History, colour: str, label: str) -> None:

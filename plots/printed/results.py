@@ -124,7 +124,7 @@ def _draw(result: Result, axes: Axes, palette: Palette) -> None:
     y = columns[chart.y]
     if chart.by_channel:
         axes.bar(list(map(str, x)), y, color=[palette.channels[channel - 1] for channel in x])
-        style_axes(axes, names=(chart.x_label, chart.y_label))
+        style_axes(axes, labels=(chart.x_label, chart.y_label))
     else:
         drawn_y = np.maximum(y, _LOG_FLOOR) if "y" in chart.logarithmic else y
         draw_line(axes, x, drawn_y, chart.x_label, chart.y_label, logarithmic=chart.logarithmic)
@@ -204,7 +204,7 @@ def _draw_sampled_orbits(result: SampledOrbits, axes: Axes, palette: Palette) ->
         x, y = (np.pad(paths[has_fate], ((0, 0), (0, 1)), constant_values=np.nan) for paths in (result.x, result.y))
         axes.plot(x.ravel(), y.ravel(), color=entries[-1].colour, linewidth=0.8)
     axes.set_aspect("equal")
-    style_axes(axes, names=("x", "y"), title="Paths")
+    style_axes(axes, labels=("x", "y"), title="Paths")
     _add_legend_below(axes, entries)
 
 
@@ -212,7 +212,7 @@ def _draw_sampled_orbits(result: SampledOrbits, axes: Axes, palette: Palette) ->
 def _draw_lyapunov(result: LyapunovOrbit, axes: Axes, palette: Palette) -> None:
     axes.plot(*result.half_path.T, color=palette.channels[result.channel - 1], linewidth=2.2)
     axes.set_aspect("equal", adjustable="datalim")
-    style_axes(axes, names=("x", "y"), title=f"Lyapunov orbit {result.channel} at h = {result.energy:.6g}")
+    style_axes(axes, labels=("x", "y"), title=f"Lyapunov orbit {result.channel} at h = {result.energy:.6g}")
 
 
 @_draw.register
@@ -226,7 +226,7 @@ def _draw_potential(result: Potential, axes: Axes, palette: Palette) -> None:
     axes.set_xlim(window.x_low, window.x_high)
     axes.set_ylim(window.ordinate_low, window.ordinate_high)
     axes.set_aspect("equal")
-    style_axes(axes, names=("x", "y"), title=f"{result.name}: escape energy {result.escape_energy:.6g}")
+    style_axes(axes, labels=("x", "y"), title=f"{result.name}: escape energy {result.escape_energy:.6g}")
 
 
 @_draw.register
