@@ -82,8 +82,8 @@ class ProcessState:
             cache_bytes=self.settings.cache_bytes,
             most_orbits=self.settings.most_orbits,
             threads=self.settings.threads,
-            limited=self.limited,
-            limited_calls=PROCESSES,
+            run_limited=self.limited,
+            most_limited_calls=PROCESSES,
         )
         self.capacity = Capacity(self.settings.cores_per_page, self.settings.processes, self._processor_times)
 
@@ -107,7 +107,7 @@ class ProcessState:
         if self.capacity.update():
             self._is_crowded = self.capacity.is_crowded(self.pages())
         self.jobs.pause_background(self.load.is_high())
-        self.jobs.spare_first_frames(self._is_crowded)
+        self.jobs.prefer_first_frames(self._is_crowded)
 
     def is_crowded(self) -> bool:
         """Whether a map should show only its first and last frame."""

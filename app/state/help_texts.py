@@ -61,10 +61,10 @@ HELP_TEXTS: Mapping[str, str] = MappingProxyType(
             "one."
         ),
         "watch": (
-            "Orbits move in the well, each in the colour of the exit that it will take. Grey orbits stay until t = 100. The map on "
-            "(x, px) shows each orbit at its last passage of y = 0. The solid curve of the chart is the share still inside. The "
-            "dashed curve is the law of mixed motion: flux through the exits over the volume inside. Orbits that stick to islands "
-            "stay longer."
+            "Orbits move in the well, each in the colour of the exit that it will take. Grey orbits stay until t = 100. The map "
+            "on (x, px) shows each orbit at its last passage of y = 0. The solid curve of the chart is the share still inside. "
+            "The dashed curve is the law of mixed motion: flux through the exits over the volume inside. Orbits that stick to "
+            "islands stay longer."
         ),
         **{name: measure.help for name, measure in MEASURES.items() if measure.help},
     }
