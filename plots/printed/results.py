@@ -141,7 +141,7 @@ def _draw_layer(layer: Layer, result: Result, axes: Axes, palette: Palette) -> N
         codes = layer.pixels.codes(result, None)
         pixels = rgba([*layer.pixels.colours(palette)])[codes]
         # `draw_pixels` takes row 0 on top.
-        draw_pixels(panel, pixels[::-1], window, shown=window)
+        draw_pixels(panel, pixels[::-1], window, shown_window=window)
         if entries := layer.pixels.entries(result, palette):
             _add_legend_below(panel, entries)
     draw_limits(panel, spec.potential, spec.plane, spec.energy, window, palette.channels)
