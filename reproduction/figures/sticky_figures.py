@@ -80,7 +80,7 @@ def draw_super_sticky(cache: MapCache) -> Figure:
 
 
 def find_displayed_orbit(search: SuperStickySearch) -> int | None:
-    """Return the index of the orbit to draw: the last to escape by `LONGEST_DRAWN`, else the first to escape; None without any."""
+    """Return the index of the drawn orbit: the last to escape by `LONGEST_DRAWN`, else the first to escape; None without one."""
     escapers = search.escapers
     if not escapers.size:
         return None

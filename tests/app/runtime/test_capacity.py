@@ -38,7 +38,7 @@ class Machine:
         return self.times
 
     def capacity(self, processes: int = 1) -> Capacity:
-        return Capacity(CORES_PER_PAGE, processes, self.measure, self.clock.monotonic, cores=2)
+        return Capacity(CORES_PER_PAGE, processes, self.measure, self.clock.monotonic, usable_cores=2)
 
     def run(self, capacity: Capacity, seconds: int, siblings: float = 0.0) -> None:
         for _ in range(seconds):

@@ -33,7 +33,7 @@ def test_work_is_postponed_while_pages_may_take_more_processor_time_than_there_i
     clock, loop = Clock(), iter((0.0, 0.9, 0.9))
     state = ProcessState(Settings())
     state.jobs = jobs = PreferenceJobs()
-    state.capacity = Capacity(0.02, 1, lambda: ProcessorTimes(clock.now, 0.0, 0.0, next(loop)), clock.monotonic, cores=2)
+    state.capacity = Capacity(0.02, 1, lambda: ProcessorTimes(clock.now, 0.0, 0.0, next(loop)), clock.monotonic, usable_cores=2)
     for seconds in (0.0, 1.0, 1.0):
         clock.now += seconds
         state.adapt_to_load()
