@@ -68,9 +68,9 @@ class MapSpec:
     use_evidence
         Whether an orbit may be called bounded before t_max, on evidence that it never escapes, see `Evidence`.
     backward
-        Whether to follow orbits into the past. This equals following (x, y, −px, −py) into the future, with −Ω for Ω in a rotating
-        frame. Fates are then the outcomes backward in time, such as the channels through which orbits entered. Escape times count
-        backward from the start. Crossings are the upward crossings of the reversed orbit.
+        Whether to follow orbits into the past. This equals following (x, y, −px, −py) into the future, with −Ω for Ω. Fates are
+        then the outcomes backward in time, such as the channels through which orbits entered. Escape times count backward from
+        the start. Crossings are the upward crossings of the reversed orbit.
 
     Raises
     ------
@@ -252,11 +252,11 @@ def _checked_resolution(resolution: Any) -> tuple[int, int]:
 
 
 def read_spec(dataset: xr.Dataset) -> MapSpec:
-    """Return the request of a map from the attributes of its dataset. In a sweep over energies, its energy is the coordinate h."""
+    """Return the request of a map from the attributes of its dataset. The energy of a map of a sweep is its coordinate h."""
     attributes = dataset.attrs
     if attributes.get("along"):
         raise ValueError(
-            f"dataset: is a map of a sweep along {attributes['axis']}, whose fates are numbered for the whole sweep; must be a map "
+            f"dataset: is a map of a sweep along {attributes['axis']}, with the fate numbers of the whole sweep; must be a map "
             "of compute_map, or of a sweep over energies"
         )
     try:

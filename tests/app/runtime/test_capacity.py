@@ -136,5 +136,5 @@ def test_an_idle_page_counts_less_and_an_abandoned_page_nothing() -> None:
     assert count_page(share, connected=True) == 1.0
     clock.now += ACTING_SECONDS
     assert count_page(share, connected=True) == IDLE_WEIGHT
-    share.take(0.01)
+    share.charge(0.01)
     assert count_page(share, connected=True) == 1.0
