@@ -47,9 +47,9 @@ class ProcessState:
     compiler
         Process that compiles kernels.
     load
-        Delay of the event loop.
+        Monitor of the delay of the event loop.
     capacity
-        Number of pages for which the processors suffice.
+        Decides for how many pages the processors suffice.
     metrics
         Prometheus metrics.
     kernels_ready
@@ -103,7 +103,7 @@ class ProcessState:
         return pages
 
     def adapt_to_load(self) -> None:
-        """Postpone work that can wait while the load is high; call after each tick of `load` on the event loop."""
+        """Postpone work that can wait while the load is high. Call this after each tick of `load` on the event loop."""
         if self.capacity.update():
             self._is_crowded = self.capacity.is_crowded(self.pages())
         self.jobs.pause_background(self.load.is_high())
