@@ -103,7 +103,7 @@ def check_patch(content: Any, document: Document) -> None:
 
 
 def _decode(document: Document, decoder: Deserializer, value: Any) -> Any:
-    """Return a value as a Python object; refuse unknown classes and wrong fields, for which Bokeh raises various errors."""
+    """Return a value as a Python object. Refuse unknown classes and wrong fields. Bokeh raises various errors for them."""
     try:
         return decoder.decode(value)
     except UnknownReferenceError as error:
@@ -115,7 +115,7 @@ def _decode(document: Document, decoder: Deserializer, value: Any) -> Any:
 
 
 def _check_range(changed: Range1d, **values: float) -> None:
-    """Refuse a range whose ends would change their order, also if only one end changes."""
+    """Refuse a range whose ends would change their order, even if only one end changes."""
     ends = {"start": changed.start, "end": changed.end} | values
     if (ends["end"] - ends["start"]) * (changed.end - changed.start) <= 0.0:
         raise RefusedMessageError(f"a range from {ends['start']} to {ends['end']}")

@@ -14,7 +14,7 @@ from bokeh.model import Model
 from app.server.browser_rules import OutdatedMessageError, RefusedMessageError, check_patch, find_choices
 
 LARGEST_FRAGMENT = 4 * 2**20
-"""Largest size of a part of a message, in bytes. Most have less than 2 kB; a model that the server has added is sent whole."""
+"""Largest size of a part of a message, in bytes. Most have less than 2 kB. A model that the server has added is sent whole."""
 
 MOST_BUFFERS = 64
 """Largest number of binary buffers of a message, such as the arrays of a model that is sent whole."""
@@ -31,8 +31,10 @@ REFUSED_COUNTS = 40
 BYTES_PER_MESSAGE = 16 * 1024
 """Number of bytes of a part of a message that count as one more message."""
 
-# Number of parts before the buffers: header, metadata and content. Each buffer has two parts: a header and a payload.
-_FIRST_PARTS, _PARTS_PER_BUFFER = 3, 2
+# Number of parts before the buffers: header, metadata and content.
+_FIRST_PARTS = 3
+# Number of parts of a buffer: header and payload.
+_PARTS_PER_BUFFER = 2
 
 
 class UnacceptableConnectionError(Exception):
@@ -75,6 +77,7 @@ class MessageGuard:
         UnacceptableConnectionError
             If the connection must be closed because of invalid parts, too many messages or refusals.
         """
+        # After the first parts, the headers and the payloads of buffers alternate. Only payloads are binary.
         is_payload = len(self._parts) > _FIRST_PARTS and (len(self._parts) - _FIRST_PARTS) % _PARTS_PER_BUFFER
         if isinstance(part, str) == bool(is_payload):
             raise UnacceptableConnectionError("a message with binary parts in the wrong places")
