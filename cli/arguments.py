@@ -218,7 +218,7 @@ def space_values(
     listed
         One energy, instead of --low, --high and --count; can be repeated.
     """
-    has_span = any(one is not None for one in (low, high, count))
+    has_span = any(value is not None for value in (low, high, count))
     if listed and not has_span:
         return tuple(listed)
     if listed or low is None or high is None or count is None:

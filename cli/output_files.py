@@ -24,7 +24,7 @@ def add_ending(stem: Path, ending: str) -> Path:
 
 
 def split_ending(path: Path, endings: Collection[str], default: Sequence[str]) -> tuple[Path, Sequence[str]]:
-    """Return stem and ending of a file name. For a name without an ending, return the name and the default endings.
+    """Return the stem and the ending of a file name. For a name without an ending, return the name and the default endings.
 
     An ending begins with a letter, so ``map-0.19`` has none.
 
@@ -52,10 +52,10 @@ def name_files(
     output: Path | None, endings: Collection[str], default: Sequence[str], stem: Path | None = None
 ) -> dict[str, Path]:
     """Return the output files by ending, named after --output, or else after the stem; none without both."""
-    chosen = default
+    chosen_endings = default
     if output is not None:
-        stem, chosen = split_ending(output, endings, default)
-    return {} if stem is None else {ending: add_ending(stem, ending) for ending in chosen}
+        stem, chosen_endings = split_ending(output, endings, default)
+    return {} if stem is None else {ending: add_ending(stem, ending) for ending in chosen_endings}
 
 
 @contextmanager

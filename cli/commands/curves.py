@@ -1,6 +1,6 @@
 """Compute measures of the basins at many energies, or values of a parameter, and write them to STEM.nc and STEM.csv.
 
-With --output FILE.png, FILE.svg or FILE.pdf, they are drawn instead.
+With --output FILE.png, FILE.svg or FILE.pdf, the measures are drawn instead.
 
 Examples:
 
@@ -78,11 +78,11 @@ def run(
     with reserve_output(output or stem):
         with place.run() as context:
             curves = compute_sweep(spec, execution=context.start_stage("curves"))
-        files = write_files({path: _content(curves, ending, style) for ending, path in paths.items()})
+        files = write_files({path: _make_content(curves, ending, style) for ending, path in paths.items()})
     _print(curves, files, as_json)
 
 
-def _content(curves: Sweep, ending: str, style: FigureStyle) -> Content:
+def _make_content(curves: Sweep, ending: str, style: FigureStyle) -> Content:
     """Return the content of the output file with an ending."""
     if ending == "nc":
         return dataset_bytes(curves.dataset)
