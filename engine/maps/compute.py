@@ -22,7 +22,7 @@ from engine.maps.spec import MapSpec
 from engine.maps.stages import OnChange, Stage, run_stages, run_to_frame
 
 LARGEST_RUN = 2**20
-"""Largest number of pixels whose orbits are in memory together; larger maps are computed in blocks and cannot be resumed."""
+"""Largest number of pixels whose orbits are in memory together. Larger maps are computed in blocks and cannot be resumed."""
 
 DEEP_PIXEL = 1e-7
 """Distance of pixels, in units of the well, below which the share of pixels lost to double precision is estimated."""
@@ -108,9 +108,9 @@ def _check_resumable(spec: MapSpec, resume: EscapeMap) -> None:
     """Raise ValueError unless a map can be continued for a request."""
     if resume.batch is None:
         raise ValueError("resume: this map has no integration state; must be a map returned by compute_map, not a frame")
-    different = [field.name for field in fields(spec) if getattr(resume.spec, field.name) != getattr(spec, field.name)]
-    if different not in ([], ["t_max"]) or resume.spec.t_max > spec.t_max:
-        raise ValueError(f"resume: a map with another {', '.join(different)}; must be equal but for a smaller t_max")
+    different_fields = [field.name for field in fields(spec) if getattr(resume.spec, field.name) != getattr(spec, field.name)]
+    if different_fields not in ([], ["t_max"]) or resume.spec.t_max > spec.t_max:
+        raise ValueError(f"resume: a map with another {', '.join(different_fields)}; must be equal but for a smaller t_max")
 
 
 def _with_rounded_share(result: EscapeMap, execution: Execution) -> EscapeMap:
@@ -125,7 +125,7 @@ def _with_rounded_share(result: EscapeMap, execution: Execution) -> EscapeMap:
 
 
 def row_blocks(spec: MapSpec, max_pixels: int) -> Iterator[np.ndarray]:
-    """Divide the rows of a map into blocks; each block contains the mirror images of its rows.
+    """Divide the rows of a map into blocks. Each block contains the mirror images of its rows.
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ def row_blocks(spec: MapSpec, max_pixels: int) -> Iterator[np.ndarray]:
 
     Yields
     ------
-    The increasing row numbers of each block; together the blocks contain every row once.
+    The increasing row numbers of each block. Together, the blocks contain every row once.
     """
     columns, rows = spec.resolution
     height = max(max_pixels // columns, 1)
@@ -167,7 +167,7 @@ class BlockStack:
         self._arrays = empty_arrays(PIXEL_ARRAYS, spec.resolution[::-1])
 
     def stages(self, execution: Execution, _on_change: OnChange) -> Iterator[Stage]:
-        """Yield the stages, see `Staged`; each computes a block."""
+        """Yield the stages, see `Staged`. Each stage computes a block."""
         for rows in row_blocks(self.spec, self._max_pixels):
             yield partial(self._compute, rows, replace(execution, on_progress=None))
 
@@ -191,7 +191,7 @@ class BlockStack:
         return collect_map(self.spec, self.spec.pixel_centres(), self._arrays, **stage)
 
     def result(self) -> EscapeMap:
-        """Return the map so far; it has no integration state."""
+        """Return the map so far. It has no integration state."""
         return self.frame()
 
 
