@@ -173,7 +173,7 @@ class LimitedProcess:
                 future: Future[Result] = self._executor.submit(call)
                 return future
         self._executor = ProcessPoolExecutor(
-            max_workers=1, timeout=IDLE_SECONDS, initializer=_begin, initargs=(self._memory, os.getpid())
+            max_workers=1, timeout=IDLE_SECONDS, initializer=_prepare_process, initargs=(self._memory, os.getpid())
         )
         first_future: Future[Result] = self._executor.submit(call)
         return first_future
@@ -187,9 +187,9 @@ class LimitedProcesses:
         # Free processes as (has not begun, number): processes that have begun precede the others.
         self._free: PriorityQueue[tuple[bool, int]] = PriorityQueue()
         for number in range(count):
-            self._put(number)
+            self._release(number)
 
-    def _put(self, number: int) -> None:
+    def _release(self, number: int) -> None:
         self._free.put((not self._processes[number].has_begun, number))
 
     def __call__[Result](self, function: Callable[[], Result], cancel: threading.Event | None = None) -> Result:
@@ -198,7 +198,7 @@ class LimitedProcesses:
         try:
             return self._processes[number](function, cancel)
         finally:
-            self._put(number)
+            self._release(number)
 
     @property
     def stopped(self) -> int:
@@ -229,15 +229,15 @@ def _call_limited[Result](seconds: int, function: Callable[[], Result]) -> tuple
     return function(), time.process_time() - begin
 
 
-def _begin(memory: int, server_id: int) -> None:
-    """Prepare the process for calls."""
-    threading.Thread(target=_end_with, args=(server_id,), daemon=True).start()
+def _prepare_process(memory: int, server_id: int) -> None:
+    """Limit the memory of the process, load what calls need, and watch the server."""
+    threading.Thread(target=_end_with_server, args=(server_id,), daemon=True).start()
     # The first review needs this module. Import it before a visitor waits for it.
     importlib.import_module("engine.systems.review.potential_review")
     _limit_memory(memory)
 
 
-def _end_with(server_id: int) -> None:
+def _end_with_server(server_id: int) -> None:
     """End the process when the server has ended, even if the server was killed."""
     while os.getppid() == server_id:
         time.sleep(_WATCH_SECONDS)

@@ -59,7 +59,7 @@ class MessageGuard:
         self._clock = clock
         self._parts: list[str | bytes] = []
         self._expected_parts = _FIRST_PARTS
-        self._is_pulled = False
+        self._has_pulled_document = False
         self.choices: list[tuple[Model, str]] = []
         self._reserve, self._last_count = float(MOST_AT_ONCE), clock()
 
@@ -113,8 +113,8 @@ class MessageGuard:
         if kind == "PATCH-DOC":
             check_patch(content, document)
             self.choices = find_choices(content, document)
-        elif kind == "PULL-DOC-REQ" and not self._is_pulled:
-            self._is_pulled = True
+        elif kind == "PULL-DOC-REQ" and not self._has_pulled_document:
+            self._has_pulled_document = True
         elif kind != "SERVER-INFO-REQ":
             raise RefusedMessageError(f"a message {reprlib.repr(kind)} that no page sends")
 

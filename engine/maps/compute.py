@@ -80,7 +80,7 @@ def compute_map(
     execution = replace(execution, **{name: value for name, value in fields_by_name.items() if value is not None})
     if resume is not None:
         _check_resumable(spec, resume)
-    work = _begin(spec, resume, coarse_first=on_frame is not None)
+    work = _begin_computation(spec, resume, coarse_first=on_frame is not None)
     run_stages(work, execution, None if on_frame is None else lambda frame: on_frame(_in_units_of(spec, frame)))
     result = _in_units_of(spec, _with_rounded_share(work.result(), execution))
     if on_frame is not None and result.complete:
@@ -88,7 +88,7 @@ def compute_map(
     return result
 
 
-def _begin(spec: MapSpec, resume: EscapeMap | None, *, coarse_first: bool) -> MapRun | LineStack | BlockStack:
+def _begin_computation(spec: MapSpec, resume: EscapeMap | None, *, coarse_first: bool) -> MapRun | LineStack | BlockStack:
     """Return the computation of a map, in units of the well or, along a parameter, in the units of the request."""
     keeps_states = spec.resolution[0] * spec.resolution[1] <= LARGEST_RUN
     if spec.plane.parameter is not None:
@@ -100,7 +100,7 @@ def _begin(spec: MapSpec, resume: EscapeMap | None, *, coarse_first: bool) -> Ma
 
 
 def _in_units_of(spec: MapSpec, escape_map: EscapeMap) -> EscapeMap:
-    """Return a map of `_begin` in the units of its request."""
+    """Convert a map of `_begin_computation` to the units of its request."""
     return escape_map if spec.plane.parameter is not None else escape_map.restored(spec)
 
 
@@ -114,7 +114,7 @@ def _check_resumable(spec: MapSpec, resume: EscapeMap) -> None:
 
 
 def _with_rounded_share(result: EscapeMap, execution: Execution) -> EscapeMap:
-    """Add the share of pixels that double precision does not support to a map of `_begin`, if it is a deep zoom."""
+    """Add, in a deep zoom, the share of pixels that double precision does not support to a map of `_begin_computation`."""
     spacings = (np.ptp(axis) / max(axis.size - 1, 1) for axis in (result.x, result.ordinate))
     # The spacing of a single row or column is 0.
     is_deep = result.spec.plane.parameter is None and 0.0 < min(spacings) < DEEP_PIXEL
@@ -214,8 +214,8 @@ def estimate_rounded_share(escape_map: EscapeMap, execution: Execution = DEFAULT
     The share of the sampled interior pixels whose fate or number of crossings changes, 0 to 1; NaN without interior pixels.
     """
     sample = _sample_pixels(escape_map)
-    unlike = find_unlike_neighbours(sample.fate, sample.crossings)
-    return run_to_frame(TrustTest(sample, unlike, SAME_STARTS), execution).doubtful_share
+    has_unlike_neighbour = find_unlike_neighbours(sample.fate, sample.crossings)
+    return run_to_frame(TrustTest(sample, has_unlike_neighbour, SAME_STARTS), execution).doubtful_share
 
 
 def _sample_pixels(escape_map: EscapeMap) -> EscapeMap:

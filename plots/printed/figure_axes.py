@@ -140,19 +140,19 @@ def legend_handles(entries: Iterable[Entry]) -> list[Artist]:
     return [_HANDLES[entry.mark](entry) for entry in entries]
 
 
-def _patch(entry: Entry) -> Artist:
+def _patch_handle(entry: Entry) -> Artist:
     return Patch(facecolor=entry.colour, edgecolor=PATCH_EDGE, linewidth=0.5, label=entry.label)
 
 
-def _line(entry: Entry) -> Artist:
+def _line_handle(entry: Entry) -> Artist:
     return Line2D([], [], color=entry.colour, linewidth=1.2, label=entry.label)
 
 
-def _chessboard(entry: Entry) -> Artist:
+def _chessboard_handle(entry: Entry) -> Artist:
     return Patch(facecolor=entry.second_colour, edgecolor=entry.colour, hatch="xxxxx", linewidth=0.5, label=entry.label)
 
 
-_HANDLES = {Mark.PATCH: _patch, Mark.LINE: _line, Mark.CHESSBOARD: _chessboard}
+_HANDLES = {Mark.PATCH: _patch_handle, Mark.LINE: _line_handle, Mark.CHESSBOARD: _chessboard_handle}
 
 
 def add_figure_legend(figure: Figure, handles: Sequence[Artist], style: FigureStyle = SCREEN, columns: int | None = None) -> None:

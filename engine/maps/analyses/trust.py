@@ -145,10 +145,10 @@ def compute_trust(
     (0.54, 0.03)
     """
     escape_map = as_complete_map("escape_map", escape_map)
-    unlike = find_unlike_neighbours(escape_map.fate, escape_map.crossings)
+    has_unlike_neighbour = find_unlike_neighbours(escape_map.fate, escape_map.crossings)
 
     def begin_test(pixels: EscapeMap, place: Place) -> TrustTest:
-        return TrustTest(pixels, unlike[place], SHIFTED_STARTS)
+        return TrustTest(pixels, has_unlike_neighbour[place], SHIFTED_STARTS)
 
     return analyse_map(escape_map, begin_test, TrustMap, on_frame, execution)
 
@@ -171,31 +171,31 @@ def find_unlike_neighbours(fate: np.ndarray, crossings: np.ndarray) -> np.ndarra
     outcome = np.where(fate >= 1, crossings.astype(np.int64) * (int(fate.max(initial=0)) + 1) + fate, 0)
     interior = fate >= Fate.BOUNDED
     rows, columns = fate.shape
-    unlike = np.zeros(fate.shape, bool)
+    has_unlike_neighbour = np.zeros(fate.shape, bool)
     padded_outcome, padded_interior = np.pad(outcome, 1), np.pad(interior, 1)
     for down, right in np.ndindex(3, 3):
         neighbour = np.s_[down : down + rows, right : right + columns]
-        unlike |= padded_interior[neighbour] & (padded_outcome[neighbour] != outcome)
-    return unlike & interior
+        has_unlike_neighbour |= padded_interior[neighbour] & (padded_outcome[neighbour] != outcome)
+    return has_unlike_neighbour & interior
 
 
 def _find_without_evidence(escape_map: EscapeMap) -> np.ndarray:
     """Return whether each pixel is bounded, above the escape energy, without evidence, of shape (rows, columns)."""
     spec = escape_map.spec
     energy = spec.energies(*np.meshgrid(escape_map.x, escape_map.ordinate))
-    without_evidence: np.ndarray = (escape_map.evidence == Evidence.INTEGRATED) & ~spec.potential.well.is_closed_at(energy)
-    return without_evidence
+    lacks_evidence: np.ndarray = (escape_map.evidence == Evidence.INTEGRATED) & ~spec.potential.well.is_closed_at(energy)
+    return lacks_evidence
 
 
 class TrustTest:
-    """Tests pixels of a map by reruns, in units of the well. `unlike` is the result of `find_unlike_neighbours`."""
+    """Tests pixels of a map by reruns, in units of the well. `has_unlike_neighbour` is the result of `find_unlike_neighbours`."""
 
-    def __init__(self, escape_map: EscapeMap, unlike: np.ndarray, perturbation: Perturbation) -> None:
+    def __init__(self, escape_map: EscapeMap, has_unlike_neighbour: np.ndarray, perturbation: Perturbation) -> None:
         self._given_spec, scaled_map = escape_map.spec, escape_map.in_well_units()
         self.spec = scaled_map.spec
         codes = np.where(scaled_map.fate >= Fate.BOUNDED, Trust.LIKE_NEIGHBOURS, Trust.NOT_APPLICABLE)
         without_evidence = _find_without_evidence(scaled_map)
-        codes[without_evidence | unlike] = Trust.NOT_TESTED
+        codes[without_evidence | has_unlike_neighbour] = Trust.NOT_TESTED
         self._codes = PixelCodes(scaled_map, codes, Trust.NOT_TESTED)
         # Whether each tested pixel is bounded without evidence, so that its reruns must stay together.
         self._without_evidence = without_evidence.ravel()[self._codes.pixels]

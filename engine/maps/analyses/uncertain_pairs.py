@@ -243,36 +243,36 @@ class _PairSampler:
         drawn_count = 0
         while rows.size < count and drawn_count * _MIN_YIELD < rows.size + 10:
             self.execution.raise_if_cancelled()
-            size = 2 * (count - rows.size) + 100
-            more_states, more_rows = self._draw_interior_pairs(index, size)
+            candidate_count = 2 * (count - rows.size) + 100
+            more_states, more_rows = self._draw_interior_pairs(index, candidate_count)
             states, rows = np.concatenate([states, more_states], axis=1), np.concatenate([rows, more_rows])
-            drawn_count += size
+            drawn_count += candidate_count
         return states[:, :count], rows[:count]
 
-    def _draw_interior_pairs(self, index: int, size: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return states and energy rows of the interior pairs among `size` random pairs in the window."""
-        points, rows = self._draw_points(index, size)
+    def _draw_interior_pairs(self, index: int, pair_count: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return states and energy rows of the interior pairs among `pair_count` random pairs in the window."""
+        points, rows = self._draw_points(index, pair_count)
         batch = OrbitBatch.from_starts(self.spec.start_states(*points), np.tile(rows, 2))
-        batch.mark_outside(self.spec.potential, np.arange(2 * size), self.curves)
+        batch.mark_outside(self.spec.potential, np.arange(2 * pair_count), self.curves)
         is_interior = (batch.fate == Fate.NOT_COMPUTED).reshape(2, -1).all(axis=0)
         return batch.state.reshape(2, -1, 4)[:, is_interior], rows[is_interior]
 
-    def _draw_points(self, index: int, size: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return x and ordinate of all first, then all second starts, (2, 2 size), and the energy rows of the pairs, (size,)."""
+    def _draw_points(self, index: int, pair_count: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return x and ordinate of all first, then all second starts, (2, 2n), and the energy rows of the n pairs, (n,)."""
         window, random, axis = self.spec.find_window(), self.random[index], self.spec.plane.energy_axis
         edges = window.ranges
-        rows = np.zeros(size, np.int64)
+        rows = np.zeros(pair_count, np.int64)
         if axis is None:
-            points = np.array([random.uniform(*range_, size) for range_ in edges])
-            angle = random.uniform(0.0, 2.0 * np.pi, size)
+            points = np.array([random.uniform(*range_, pair_count) for range_ in edges])
+            angle = random.uniform(0.0, 2.0 * np.pi, pair_count)
             shift = self.separations[index] * np.array([np.cos(angle), np.sin(angle)])
             return np.concatenate([points, points + shift], axis=1), rows
         # Along an axis h, points have the energies of pixels, and only the other axis is displaced.
-        points, shift = np.zeros((2, size)), np.zeros((2, size))
-        points[1 - axis] = random.uniform(*edges[1 - axis], size)
-        rows = random.integers(0, self.row_energy.size, size)
+        points, shift = np.zeros((2, pair_count)), np.zeros((2, pair_count))
+        points[1 - axis] = random.uniform(*edges[1 - axis], pair_count)
+        rows = random.integers(0, self.row_energy.size, pair_count)
         points[axis] = self.row_energy[rows]
-        shift[1 - axis] = self.separations[index] * np.cos(np.pi * random.integers(0, 2, size))
+        shift[1 - axis] = self.separations[index] * np.cos(np.pi * random.integers(0, 2, pair_count))
         return np.concatenate([points, points + shift], axis=1), rows
 
     def fit(self) -> UncertaintyExponent:
