@@ -14,7 +14,7 @@ import numpy as np
 import typer
 
 from cli.layer_options import LayerOptions, read_layers
-from cli.option_marks import Of
+from cli.option_marks import DocumentedBy
 from engine import MEASURES, POTENTIALS, Plane, Potential, Slice, System, review_potential
 from engine.foundations.validation import checked_count
 from engine.slices.axes import Energy
@@ -72,7 +72,7 @@ def check_measures(chosen: Collection[str] | None, known: Collection[str]) -> li
     return [name for name in known if name in (chosen or ())]
 
 
-Case = Annotated[str, typer.Argument(metavar="CASE"), Of(find_system)]
+Case = Annotated[str, typer.Argument(metavar="CASE"), DocumentedBy(find_system)]
 """Type of the argument CASE of commands."""
 
 
@@ -218,7 +218,7 @@ def space_values(
     listed
         One energy, instead of --low, --high and --count; can be repeated.
     """
-    has_span = any(one is not None for one in (low, high, count))
+    has_span = any(value is not None for value in (low, high, count))
     if listed and not has_span:
         return tuple(listed)
     if listed or low is None or high is None or count is None:

@@ -15,7 +15,7 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
-from cli.option_marks import But
+from cli.option_marks import OptionChanges
 from engine import Execution
 from engine.foundations.extras import require_package
 
@@ -101,7 +101,7 @@ class Place:
         return nullcontext() if self.threads is None else ThreadPoolExecutor(self.threads)
 
 
-THREADS_ONLY = But(without=("scheduler", "local_cluster"))
+THREADS_ONLY = OptionChanges(without=("scheduler", "local_cluster"))
 """Mark of a place for a command that computes only in this process."""
 
 

@@ -1,4 +1,4 @@
-"""Make the options of the layers of a map."""
+"""Make options of a command from the layers of a map."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from plots.layers.table import LAYER_OF, LAYERS
 
 @dataclass(frozen=True)
 class LayerOptions:
-    """The requested layers and their settings, from the options of `LAYERS`.
+    """The requested layers and their settings, given by the options of the layers in `LAYERS`.
 
     Attributes
     ----------

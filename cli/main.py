@@ -32,29 +32,29 @@ COMMANDS = ("map", "orbit", "lyapunov", "measures", "curves", "ensemble", "sweep
 """Names of the modules in `commands`. A module is imported when its command runs."""
 
 FORMER_OPTIONS = {"--certify": "--evidence", "--no-certify": "--no-evidence"}
-"""Present names of options, by their former names."""
+"""Present names of renamed options, by former name."""
 
 
 class _Command(TyperCommand):
-    """A command whose arguments may begin with a minus, as formulas do. All its options begin with two minuses."""
+    """A command whose arguments may begin with one minus, as formulas do. All its options begin with two."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Move the arguments to the end, behind ``--``, and parse the words."""
+        """Move the words that begin with one minus behind ``--``, which makes them arguments, and parse all words."""
         value_counts = {name: _count_values(option) for option in self.params for name in option.opts}
         words = deque(args)
         other_words: list[str] = []
-        arguments: list[str] = []
+        minus_words: list[str] = []
         while words and words[0] != "--":
             word = words.popleft()
             word = FORMER_OPTIONS.get(word, word)
             if re.match("-[^-]", word):
-                arguments.append(word)
+                minus_words.append(word)
                 continue
             other_words.append(word)
-            # The values of an option may begin with a minus, too.
+            # The values of an option may also begin with a minus.
             other_words.extend(words.popleft() for _ in range(min(value_counts.get(word, 0), len(words))))
         # `words` is empty or begins with "--".
-        return super().parse_args(ctx, [*other_words, "--", *arguments, *list(words)[1:]])
+        return super().parse_args(ctx, [*other_words, "--", *minus_words, *list(words)[1:]])
 
     def get_params(self, ctx: Any) -> list[Any]:
         """Return the parameters in the form that the help shows."""
@@ -74,7 +74,7 @@ def _without_types_of_flags(params: list[Any]) -> list[Any]:
 
 
 class _Commands(TyperGroup):
-    """Commands known by name and summary. The module of a command is imported when the command runs."""
+    """A group of commands whose modules are imported when a command runs. Until then, only the names and summaries are known."""
 
     def get_params(self, ctx: Any) -> list[Any]:
         """Return the parameters in the form that the help shows."""
@@ -87,7 +87,7 @@ class _Commands(TyperGroup):
 
 
 def _import_command(name: str) -> Any:
-    """Return the command of a module."""
+    """Import the module of a command, and return the command. The docstring of the module is the help."""
     module = import_module(f"{__package__}.commands.{name}")
     text, _, examples = inspect.cleandoc(module.__doc__ or "").partition("Examples:")
     command_program = typer.Typer(add_completion=False, rich_markup_mode="rich")
@@ -102,7 +102,7 @@ def _read_summary(name: str) -> str:
 
 
 program = typer.Typer(name=NAME, cls=_Commands, no_args_is_help=False, pretty_exceptions_enable=False, rich_markup_mode="rich")
-# The help of the program has the summaries. `_Commands` replaces the functions.
+# The help of the program shows the summaries. `_Commands` replaces these empty functions by the imported commands.
 for _name in COMMANDS:
     program.command(_name, help=_read_summary(_name))(lambda: None)
 
@@ -148,13 +148,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except Exception as error:
         return _fail(f"{type(error).__name__}: {_message(error)}", FAILED)
     if exit_code == INTERRUPTED:
-        # Typer turns a second Ctrl-C into this exit code.
+        # After a second Ctrl-C, Typer returns this exit code instead of raising KeyboardInterrupt.
         return _fail("interrupted", INTERRUPTED)
     return exit_code if isinstance(exit_code, int) else 0
 
 
 def _message(error: Exception) -> str:
-    """Return the message of an error on one line."""
+    """Return the message of an error, on one line."""
     text = error.format_message() if isinstance(error, typer.TyperException) else str(error)
     return _on_one_line(text)
 

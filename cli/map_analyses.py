@@ -1,4 +1,4 @@
-"""Compute a map and then the results of its layers."""
+"""Compute a map, then the results of its layers."""
 
 from __future__ import annotations
 
@@ -10,17 +10,19 @@ from engine.sweeps.map_jobs import map_job
 from plots.layers.map_analyses import MapAnalyses
 
 
-def compute_map_with_layers(spec: MapSpec, wanted: LayerOptions, run: RunContext) -> tuple[EscapeMap, MapAnalyses]:
+def compute_map_with_layers(spec: MapSpec, requested_layers: LayerOptions, context: RunContext) -> tuple[EscapeMap, MapAnalyses]:
     """Return the complete map and the results of its layers; CancelledError if interrupted."""
-    frame = compute_whole_map(spec, run, "map")
+    frame = compute_whole_map(spec, context, "map")
     results = {}
-    for layer in wanted.layers:
-        results[layer.name] = run_job(layer.job(spec, wanted.values), run.start_stage(layer.stage), {map_job(spec): frame})
+    for layer in requested_layers.layers:
+        results[layer.name] = run_job(
+            layer.job(spec, requested_layers.values), context.start_stage(layer.stage), {map_job(spec): frame}
+        )
     return frame, MapAnalyses(results)
 
 
-def compute_whole_map(spec: MapSpec, run: RunContext, stage: str) -> EscapeMap:
+def compute_whole_map(spec: MapSpec, context: RunContext, stage: str) -> EscapeMap:
     """Return the complete map; CancelledError if interrupted."""
-    frame = compute_map(spec, execution=run.start_stage(stage))
-    run.execution.raise_if_cancelled()
+    frame = compute_map(spec, execution=context.start_stage(stage))
+    context.execution.raise_if_cancelled()
     return frame

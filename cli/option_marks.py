@@ -8,8 +8,8 @@ from typing import Any
 
 
 @dataclass(frozen=True)
-class Of:
-    """Gives an option the help of a parameter of a request or function, and also its default if the option has none.
+class DocumentedBy:
+    """Gives an option the help of a parameter of a request or function. An option without a default gets the default as well.
 
     Attributes
     ----------
@@ -24,7 +24,7 @@ class Of:
 
 
 @dataclass(frozen=True)
-class But:
+class OptionChanges:
     """Removes options of a request from a command, or gives options other defaults."""
 
     without: tuple[str, ...] = ()

@@ -13,7 +13,7 @@ import typer
 from typer.models import OptionInfo, ParameterInfo
 
 from cli.arguments import OPTION_TYPES, READERS
-from cli.option_marks import But, Of
+from cli.option_marks import DocumentedBy, OptionChanges
 
 MISSING = inspect.Parameter.empty
 
@@ -22,7 +22,10 @@ NAMES = {"use_evidence": ("--evidence/--no-evidence",)}
 
 
 def with_options(function: Callable[..., None]) -> Callable[..., None]:
-    """Return a function for Typer whose parameters are the options. This function makes the requests, and calls the command."""
+    """Return a function whose parameters are the options of `function`.
+
+    The returned function builds the request dataclasses from the options, and calls `function`.
+    """
 
     def run(**values: Any) -> None:
         _build(function, values)
@@ -34,7 +37,7 @@ def with_options(function: Callable[..., None]) -> Callable[..., None]:
 
 
 def _list_options(make: Callable[..., Any]) -> dict[str, inspect.Parameter]:
-    """Return the options, by name, from whose values `_build` makes the arguments of a function or a request."""
+    """Return the options of a function or request, by name. `_build` makes its arguments from their values."""
     options: dict[str, inspect.Parameter] = {}
     for parameter in _parameters(make):
         kind, marks = _split(parameter.annotation)
@@ -42,7 +45,7 @@ def _list_options(make: Callable[..., Any]) -> dict[str, inspect.Parameter]:
         if reader is None:
             options[parameter.name] = _make_option(make, parameter)
             continue
-        changes = next((mark for mark in marks if isinstance(mark, But)), But())
+        changes = next((mark for mark in marks if isinstance(mark, OptionChanges)), OptionChanges())
         for name, option in _list_options(reader).items():
             if name not in changes.without:
                 options[name] = option.replace(default=changes.defaults.get(name, option.default))
@@ -71,15 +74,15 @@ def _find_reader(kind: Any) -> Callable[..., Any] | None:
 def _make_option(make: Callable[..., Any], parameter: inspect.Parameter) -> inspect.Parameter:
     """Return a keyword parameter for Typer, with names, help and default."""
     kind, marks = _split(parameter.annotation)
-    origin = next((mark for mark in marks if isinstance(mark, Of)), Of(make))
+    origin = next((mark for mark in marks if isinstance(mark, DocumentedBy)), DocumentedBy(make))
     source_name = origin.name or parameter.name
     default = parameter.default
     if default is MISSING and origin.owner is not make:
         default = inspect.signature(origin.owner).parameters[source_name].default
-    # Typer's object has properties that only the command line needs, such as a name for the value.
+    # The mark may set what a docstring cannot, such as the metavar. Copy it, because annotations are shared.
     info = copy(next((mark for mark in marks if isinstance(mark, ParameterInfo)), typer.Option()))
     info.help = info.help or _describe(origin.owner, source_name)
-    # Typer treats the first name as the default value.
+    # In `Annotated`, `Option("--name")` stores the name in `default`, and ... means that no name was given.
     if isinstance(info, OptionInfo) and info.default is ...:
         info.param_decls = _name(parameter.name, default)
     if isinstance(default, tuple):

@@ -11,7 +11,7 @@ from typing import Annotated
 
 import typer
 
-from cli.option_marks import Of
+from cli.option_marks import DocumentedBy
 from engine.foundations.output_lock import hold_lock
 
 Content = str | bytes
@@ -24,7 +24,7 @@ def add_ending(stem: Path, ending: str) -> Path:
 
 
 def split_ending(path: Path, endings: Collection[str], default: Sequence[str]) -> tuple[Path, Sequence[str]]:
-    """Return stem and ending of a file name. For a name without an ending, return the name and the default endings.
+    """Return the stem and the ending of a file name. For a name without an ending, return the name and the default endings.
 
     An ending begins with a letter, so ``map-0.19`` has none.
 
@@ -52,10 +52,10 @@ def name_files(
     output: Path | None, endings: Collection[str], default: Sequence[str], stem: Path | None = None
 ) -> dict[str, Path]:
     """Return the output files by ending, named after --output, or else after the stem; none without both."""
-    chosen = default
+    chosen_endings = default
     if output is not None:
-        stem, chosen = split_ending(output, endings, default)
-    return {} if stem is None else {ending: add_ending(stem, ending) for ending in chosen}
+        stem, chosen_endings = split_ending(output, endings, default)
+    return {} if stem is None else {ending: add_ending(stem, ending) for ending in chosen_endings}
 
 
 @contextmanager
@@ -83,7 +83,7 @@ def reserve_output(output: Path | None) -> Iterator[None]:
         yield
 
 
-Stem = Annotated[Path | None, typer.Option(metavar="STEM"), Of(reserve_output)]
+Stem = Annotated[Path | None, typer.Option(metavar="STEM"), DocumentedBy(reserve_output)]
 """Type of the option for the names of output files."""
 
 

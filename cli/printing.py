@@ -15,7 +15,7 @@ from rich import box
 from rich.console import Console
 from rich.table import Table as RichTable
 
-from cli.option_marks import Of
+from cli.option_marks import DocumentedBy
 
 # Width of the console, in characters. No table is wider, so nothing is cut. A terminal wraps the lines.
 _WIDTH = 10_000
@@ -30,12 +30,12 @@ class Table:
 
 
 def print_result(as_json: bool, answer: Mapping[str, Any], *parts: Table | str, files: Sequence[str] | None = None) -> None:
-    """Print the answer as a JSON object, with null for NaN and infinity, or print the tables and sentences.
+    """Print the answer as a JSON object, or print the tables and sentences.
 
     Parameters
     ----------
     as_json
-        Print JSON instead of tables and sentences; missing numbers are null.
+        Print JSON instead of tables and sentences; NaN and infinity are null.
     answer
         Content of the JSON object.
     parts
@@ -55,7 +55,7 @@ def print_result(as_json: bool, answer: Mapping[str, Any], *parts: Table | str, 
             console.print(_lay_out(part), highlight=False, markup=False)
 
 
-AsJson = Annotated[bool, typer.Option("--json"), Of(print_result)]
+AsJson = Annotated[bool, typer.Option("--json"), DocumentedBy(print_result)]
 """Type of the option that chooses JSON."""
 
 
@@ -76,11 +76,11 @@ def _lay_out(table: Table) -> RichTable:
 
 def _to_json(value: Any) -> Any:
     if isinstance(value, Mapping):
-        return {str(name): _to_json(one) for name, one in value.items()}
+        return {str(name): _to_json(each) for name, each in value.items()}
     if isinstance(value, np.ndarray | np.generic):
         return _to_json(value.tolist())
     if isinstance(value, list | tuple):
-        return [_to_json(one) for one in value]
+        return [_to_json(each) for each in value]
     if isinstance(value, Enum):
         return _to_json(value.value)
     return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -1,7 +1,7 @@
-"""The number of pages for which the processors suffice. It decides when work is postponed and new pages are refused.
+"""The number of pages for which the processors suffice. It decides when work is postponed and when new pages are refused.
 
 Each open page reserves the processor time that an active visitor uses: otherwise, a server would admit too many visitors while
-they are still reading. Two values are measured: the processor time that other programs leave, and the use of the event loop.
+they are still reading. Two values are measured: the processors that other programs leave, and the use of the event loop.
 """
 
 from __future__ import annotations
@@ -22,31 +22,31 @@ FULL = 0.85
 """Largest share of the processors, and of the event loop's time, for all pages together. Above it, new pages are refused."""
 
 CROWDED = 0.5
-"""Share above which work that can wait is postponed, so that open pages stay fast."""
+"""Share, as in `FULL`, above which work that can wait is postponed, so that open pages stay fast."""
 
-OF_ONE_VISITOR = 0.5
-"""Largest share of the capacity for the pages of one visitor, as far as other visitors are concerned."""
+VISITOR_SHARE = 0.5
+"""Largest share of the capacity that the pages of one visitor count for when another visitor opens a page."""
 
 MOST_CORES = 1.0
-"""Most processors that a process uses, because its threads share the interpreter lock."""
+"""Most processors that a process uses: its threads share the interpreter lock."""
 
 LEAST_CORES = 0.2
 """Fewest processors of a process: what the operating system gives to it when other programs keep all processors busy."""
 
-LEAST_SPARE = 0.1
-"""If fewer processors are spare, other programs may get less than they need, because this program uses the rest."""
+LEAST_IDLE_CORES = 0.1
+"""With fewer idle processors, the measured use of other programs may be too low, because they wait for this program."""
 
 WINDOW_SECONDS = 20
 """Time over which the use of the processors is averaged."""
 
 ACTING_SECONDS = 300.0
-"""Time for which a page counts in full after the visitor's last action."""
+"""Time after the visitor's last action during which a page counts in full."""
 
 IDLE_WEIGHT = 0.1
-"""Fraction of a page as which an idle page counts."""
+"""Weight of an idle page, compared with 1 for a page in use."""
 
 CONNECTION_SECONDS = 15.0
-"""Time for which a page without a connection counts after its last action, because it may be opening or reconnecting."""
+"""Time after its last action during which a page without a connection counts, because it may be opening or reconnecting."""
 
 
 class ProcessorTimes(NamedTuple):
@@ -65,10 +65,10 @@ class ProcessorTimes(NamedTuple):
 
 
 class _Use(NamedTuple):
-    """Average numbers of processors that other programs and the event loop used, over a time of `seconds`."""
+    """Average numbers of processors that other programs and the event loop used during a measurement of `seconds`."""
 
     seconds: float
-    others: float
+    other_cores: float
     loop: float
 
 
@@ -85,15 +85,15 @@ class Capacity:
         Returns the present processor times; called on the thread of the event loop.
     clock
         Monotonic clock, in seconds.
-    cores
-        Number of processors.
+    usable_cores
+        Number of processors that the server may use; None to count them.
 
     Attributes
     ----------
     cores
         Number of processors available to this process, without the part that other programs use.
     loop
-        Share of the time for which the event loop is busy.
+        Share of the time during which the event loop is busy.
     """
 
     def __init__(
@@ -102,13 +102,14 @@ class Capacity:
         processes: int,
         measure: Callable[[], ProcessorTimes],
         clock: Callable[[], float] = time.monotonic,
-        cores: int | None = None,
+        usable_cores: int | None = None,
     ) -> None:
         self._cores_per_page, self._processes, self._measure, self._clock = cores_per_page, processes, measure, clock
-        self._all_cores = count_cores() if cores is None else cores
+        self._usable_cores = count_cores() if usable_cores is None else usable_cores
         self._times = measure()
+        # Measurements are a second or more apart.
         self._uses = deque[_Use](maxlen=WINDOW_SECONDS)
-        self.cores = self._share_of(0.0)
+        self.cores = self._available_cores(0.0)
         self.loop = 0.0
 
     def update(self) -> bool:
@@ -117,11 +118,11 @@ class Capacity:
             return False
         previous_times, self._times = self._times, self._measure()
         seconds, programs, own, loop = (new - old for new, old in zip(self._times, previous_times, strict=True))
-        others = (programs - self._processes * own) / seconds
-        if self._all_cores - programs / seconds < LEAST_SPARE:
-            others = max(others, self._mean_others())
-        self._uses.append(_Use(seconds, others, loop / seconds))
-        self.cores = self._share_of(max(self._mean_others(), 0.0))
+        other_cores = (programs - self._processes * own) / seconds
+        if self._usable_cores - programs / seconds < LEAST_IDLE_CORES:
+            other_cores = max(other_cores, self._mean_other_cores())
+        self._uses.append(_Use(seconds, other_cores, loop / seconds))
+        self.cores = self._available_cores(max(self._mean_other_cores(), 0.0))
         self.loop = self._mean(use.loop for use in self._uses)
         return True
 
@@ -131,55 +132,55 @@ class Capacity:
 
     def has_room(self, pages: Mapping[str, float], visitor: str = "") -> bool:
         """Whether another page of a visitor is admitted, given the number of pages by visitor."""
-        most_pages = OF_ONE_VISITOR * FULL * self.cores / self._cores_per_page
-        counted = {other: count if other == visitor else min(count, most_pages) for other, count in pages.items()}
-        return self.taken(counted | {visitor: counted.get(visitor, 0.0) + 1.0}) <= FULL
+        most_pages = VISITOR_SHARE * FULL * self.cores / self._cores_per_page
+        counted_pages = {name: count if name == visitor else min(count, most_pages) for name, count in pages.items()}
+        return self.taken(counted_pages | {visitor: counted_pages.get(visitor, 0.0) + 1.0}) <= FULL
 
     def taken(self, pages: Mapping[str, float]) -> float:
-        """Return the share of the processors that the pages may use, or the busy share of the event loop, whichever is larger."""
+        """Return the larger share: of the processors that the pages may use, or of the time that the event loop is busy."""
         return max(self._cores_per_page * sum(pages.values()) / self.cores, self.loop)
 
-    def _mean_others(self) -> float:
-        return self._mean(use.others for use in self._uses)
+    def _mean_other_cores(self) -> float:
+        return self._mean(use.other_cores for use in self._uses)
 
     def _mean(self, values: Iterable[float]) -> float:
         return fmean(values, [use.seconds for use in self._uses]) if self._uses else 0.0
 
-    def _share_of(self, others: float) -> float:
-        """Return the processors of this process when other programs use `others` processors."""
-        return min(max((self._all_cores - others) / self._processes, LEAST_CORES), MOST_CORES)
+    def _available_cores(self, other_cores: float) -> float:
+        """Return the number of processors available to this process while other programs use `other_cores`."""
+        return min(max((self._usable_cores - other_cores) / self._processes, LEAST_CORES), MOST_CORES)
 
 
 def count_page(share: FairShare, *, connected: bool) -> float:
-    """Return the fraction of a page that counts: less than 1 for an idle page, and 0 for a page that the visitor has left."""
-    idle = share.idle_seconds()
+    """Return the weight of a page: 1 while in use, less for an idle page, and 0 for a page that the visitor has left."""
+    idle_seconds = share.idle_seconds()
     if not connected:
-        return float(idle < CONNECTION_SECONDS)
-    return 1.0 if idle < ACTING_SECONDS else IDLE_WEIGHT
+        return float(idle_seconds < CONNECTION_SECONDS)
+    return 1.0 if idle_seconds < ACTING_SECONDS else IDLE_WEIGHT
 
 
-def processor_times(low: float, elsewhere: float) -> ProcessorTimes:
+def processor_times(low_priority_seconds: float, helper_seconds: float) -> ProcessorTimes:
     """Return the present processor times.
 
     Parameters
     ----------
-    low
+    low_priority_seconds
         Processor time that this process has used with low priority, in seconds.
-    elsewhere
+    helper_seconds
         Processor time that helper processes have used for this process, in seconds.
     """
-    usable_numbers = os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else None
+    usable_indices = os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else None
     processors = [
-        each for number, each in enumerate(psutil.cpu_times(percpu=True)) if usable_numbers is None or number in usable_numbers
+        times for index, times in enumerate(psutil.cpu_times(percpu=True)) if usable_indices is None or index in usable_indices
     ]
     return ProcessorTimes(
         now=time.monotonic(),
-        all_programs=sum(_urgent(each) for each in processors),
-        own=time.process_time() - low + elsewhere,
+        all_programs=sum(_normal_priority_time(times) for times in processors),
+        own=time.process_time() - low_priority_seconds + helper_seconds,
         loop=time.thread_time(),
     )
 
 
-def _urgent(times: Any) -> float:
+def _normal_priority_time(times: Any) -> float:
     """Return the processor time of programs of normal priority, and of other virtual machines on the same processor."""
     return sum(getattr(times, name, 0.0) for name in ("user", "system", "irq", "softirq", "steal"))

@@ -7,7 +7,7 @@ from typing import Any
 from weakref import WeakKeyDictionary, WeakSet
 
 CHECK_SECONDS = 0.25
-"""Interval between two calls of `DisconnectMonitor.check`."""
+"""Interval between two calls of `DisconnectMonitor.check`, in seconds."""
 
 _callbacks: WeakKeyDictionary[Any, Callable[[], None]] = WeakKeyDictionary()
 
@@ -18,7 +18,7 @@ def on_disconnect(document: Any, callback: Callable[[], None]) -> None:
 
 
 class DisconnectMonitor:
-    """Detects sessions that have lost their last connection."""
+    """Calls the callback of each document whose session has lost its last connection."""
 
     def __init__(self, sessions: Callable[[], Iterable[Any]]) -> None:
         self._sessions = sessions

@@ -1,4 +1,4 @@
-"""The share of the event loop's time that a page may use. The messages of a page that uses more must wait.
+"""The share of the event loop's time that a page may use. Messages of a page that uses more must wait.
 
 One thread serves all pages of a process, so a page that keeps the thread busy delays all other pages.
 """
@@ -12,10 +12,10 @@ from functools import partial
 from typing import Any
 
 SHARE = 0.5
-"""Largest share of the thread's time that a page uses in the long run. A drag with 30 messages per second uses 0.2."""
+"""Largest share of the thread's time for one page in the long run. A drag with 30 messages per second uses 0.2."""
 
 BURST_SECONDS = 3.0
-"""Largest time that a page may use at once after a pause, and largest time that a page can owe."""
+"""Largest time that a page may use at once after a pause, in seconds. It is also the largest time that a page can owe."""
 
 
 class FairShare:
@@ -34,16 +34,21 @@ class FairShare:
         self._clock, self._busy_clock = clock, busy_clock
         # Time that the page may use now; negative if the page owes time.
         self._balance = BURST_SECONDS
-        self._last_take = clock()
-        self._last_use = self._last_take
+        self._last_refill = clock()
+        self._last_use = self._last_refill
 
-    def take(self, seconds: float) -> None:
-        """Count processor time that the page used on the event loop."""
-        now = self._clock()
-        balance = min(self._balance + SHARE * (now - self._last_take), BURST_SECONDS) - seconds
-        self._balance, self._last_take = max(balance, -BURST_SECONDS), now
+    def charge(self, seconds: float) -> None:
+        """Charge processor time that the page used on the event loop."""
+        self._accrue()
+        self._balance = max(self._balance - seconds, -BURST_SECONDS)
         if seconds:
-            self._last_use = now
+            self._last_use = self._last_refill
+
+    def _accrue(self) -> None:
+        """Add the share of the time since the last call to the balance."""
+        now = self._clock()
+        self._balance = min(self._balance + SHARE * (now - self._last_refill), BURST_SECONDS)
+        self._last_refill = now
 
     def idle_seconds(self) -> float:
         """Return the time since the page last used the event loop, or since it was opened."""
@@ -51,12 +56,12 @@ class FairShare:
 
     def wait_seconds(self) -> float:
         """Return the time until the next message may be handled: 0 unless the page owes time."""
-        self.take(0.0)
+        self._accrue()
         return max(0.0, -self._balance / SHARE)
 
     @types.coroutine
     def count[Result](self, coroutine: Coroutine[Any, Any, Result]) -> Generator[Any, Any, Result]:
-        """Await a coroutine, and count the processor time of its steps, but not of code that runs while the coroutine waits."""
+        """Await a coroutine, and charge the processor time of its steps. Code that runs while it waits is not charged."""
         step: Callable[[], Any] = partial(coroutine.send, None)
         while True:
             begin = self._busy_clock()
@@ -66,7 +71,7 @@ class FairShare:
                 result: Result = end.value
                 return result
             finally:
-                self.take(self._busy_clock() - begin)
+                self.charge(self._busy_clock() - begin)
             try:
                 yield awaited
             except BaseException as error:

@@ -22,7 +22,7 @@ def resident_bytes() -> int:
 
 
 def not_ready_reason(state: ProcessState) -> str | None:
-    """Return a sentence that says why the server is not ready for more visitors; None if it is."""
+    """Return a sentence that says why the server is not ready for more visitors; None if the server is ready."""
     if state.stopping.is_set():
         return "The server is stopping."
     if state.kernels_failed.is_set():
@@ -40,7 +40,7 @@ def not_ready_reason(state: ProcessState) -> str | None:
 
 
 def refusal_reason(state: ProcessState, network: str) -> str | None:
-    """Return a sentence that says why no session can be created; None if a session can.
+    """Return a sentence that says why no session can be created; None if one can be created.
 
     Unlike readiness, this does not need the integrators: sessions are created during the compilation, and their pages wait.
 
@@ -66,7 +66,7 @@ def _full_reason(state: ProcessState, network: str = "") -> str | None:
 
 
 def _is_alone(state: ProcessState, network: str) -> bool:
-    """Whether a visitor disturbs nobody: on this machine, or if no other visitor has a page. One own page may be reloading."""
+    """Whether a visitor is on this machine, or no page is open except one of the visitor, which may be reloading."""
     return (network != "" and is_near(network)) or state.sockets.total() <= min(state.sockets[network], 1)
 
 

@@ -20,10 +20,10 @@ SECONDS = 5
 """Limit of the processor time of a review, in seconds."""
 
 COMPILATION_SECONDS = 60
-"""Limit of the processor time for compiling one kernel. The kernels of the largest formulas need 10 s."""
+"""Limit of the processor time for compiling one kernel, in seconds. The kernels of the largest formulas need 10 s."""
 
 PROCESSES = 2
-"""Number of processes. While one process is busy with a visitor's formula, the other serves other visitors."""
+"""Number of processes for reviews. While one process is busy with a visitor's formula, the other serves other visitors."""
 
 PATIENCE = 60.0
 """Longest time until a process begins, and longest time that a call waits for a processor, in seconds."""
@@ -39,7 +39,7 @@ _WATCH_SECONDS = 2.0
 # Interval at which a waiting call checks whether it is cancelled, in seconds.
 _POLL_SECONDS = 0.1
 # Time from the start of a call during which the call cannot be cancelled, in seconds.
-_ABANDONED_SECONDS = 1.0
+_UNCANCELLABLE_SECONDS = 1.0
 
 
 class LimitError(ValueError):
@@ -50,7 +50,7 @@ class LimitedProcess:
     """Makes calls in a process, one at a time. The process starts with the first call, and again after it has ended.
 
     The process ends after `IDLE_SECONDS` without a call, or with the server. When a call exceeds a limit or is cancelled, another
-    process begins at once, so that the next call need not wait for it.
+    process begins at once, so that the next call need not wait for its start.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ class LimitedProcess:
     memory
         Memory that the process may use in addition to its memory at the start, in bytes.
     task
-        The task of the process, which begins the sentence about a call that exceeds a limit.
+        The task of the process, in words. Messages about exceeded limits begin with it.
     patience
         Longest time until the process begins, and longest time that a call waits for a processor, in seconds.
 
@@ -96,7 +96,7 @@ class LimitedProcess:
         function
             The function to call.
         cancel
-            Event that is set when nobody waits for the result any more.
+            Set when nobody waits for the result any longer.
 
         Raises
         ------
@@ -158,24 +158,24 @@ class LimitedProcess:
         raise LimitError(f"{self._task} needs more than {self._seconds} s or {self._memory // 2**20} MB; choose a simpler one")
 
     def _wait[Result](self, future: Future[Result], cancel: threading.Event, most_seconds: float) -> Result:
-        """Return the result of a call; raise an error if it takes too long or is cancelled."""
+        """Return the result of a call. Raise an error if the call takes too long or is cancelled."""
         begin = time.monotonic()
         while not wait([future], _POLL_SECONDS).done:
             seconds = time.monotonic() - begin
-            if cancel.is_set() and seconds > _ABANDONED_SECONDS:
+            if cancel.is_set() and seconds > _UNCANCELLABLE_SECONDS:
                 raise CancelledError
             if seconds > most_seconds:
                 raise FutureTimeoutError
         return future.result()
 
     def _submit[Result](self, call: Callable[[], Result]) -> Future[Result]:
-        """Start a call, in a new process if the last process has ended."""
+        """Start a call, in a new process if the previous process has ended."""
         if self._executor is not None:
             with suppress(BrokenExecutor):
                 future: Future[Result] = self._executor.submit(call)
                 return future
         self._executor = ProcessPoolExecutor(
-            max_workers=1, timeout=IDLE_SECONDS, initializer=_begin, initargs=(self._memory, os.getpid())
+            max_workers=1, timeout=IDLE_SECONDS, initializer=_prepare_process, initargs=(self._memory, os.getpid())
         )
         first_future: Future[Result] = self._executor.submit(call)
         return first_future
@@ -186,21 +186,21 @@ class LimitedProcesses:
 
     def __init__(self, count: int = PROCESSES) -> None:
         self._processes = [LimitedProcess() for _ in range(count)]
-        # Numbers of the free processes, those that have begun first.
+        # Free processes as (has not begun, number): processes that have begun precede the others.
         self._free: PriorityQueue[tuple[bool, int]] = PriorityQueue()
         for number in range(count):
-            self._put(number)
+            self._release(number)
 
-    def _put(self, number: int) -> None:
+    def _release(self, number: int) -> None:
         self._free.put((not self._processes[number].has_begun, number))
 
     def __call__[Result](self, function: Callable[[], Result], cancel: threading.Event | None = None) -> Result:
-        """Return the result of a function, called in a free process; see `LimitedProcess`."""
+        """Return the result of a function, called in a free process as by `LimitedProcess`."""
         _, number = self._free.get()
         try:
             return self._processes[number](function, cancel)
         finally:
-            self._put(number)
+            self._release(number)
 
     @property
     def stopped(self) -> int:
@@ -219,27 +219,27 @@ class LimitedProcesses:
 
 
 def _call_limited[Result](seconds: int, function: Callable[[], Result]) -> tuple[Result, float]:
-    """Return the result of a function and the processor time. The operating system ends the process at the limit."""
+    """Return the result of a function and its processor time. The operating system ends the process after `seconds`."""
     begin = time.process_time()
-    # Without `resource`, on Windows, only the time for which the caller waits is limited.
+    # On Windows, `resource` is missing, and only the time that the caller waits is limited.
     with suppress(ImportError):
         import resource
 
         usage = resource.getrusage(resource.RUSAGE_SELF)
-        _, hard = resource.getrlimit(resource.RLIMIT_CPU)
-        resource.setrlimit(resource.RLIMIT_CPU, (ceil(usage.ru_utime + usage.ru_stime) + seconds, hard))
+        _, hard_limit = resource.getrlimit(resource.RLIMIT_CPU)
+        resource.setrlimit(resource.RLIMIT_CPU, (ceil(usage.ru_utime + usage.ru_stime) + seconds, hard_limit))
     return function(), time.process_time() - begin
 
 
-def _begin(memory: int, server_id: int) -> None:
-    """Prepare the process for calls."""
-    threading.Thread(target=_end_with, args=(server_id,), daemon=True).start()
-    # A visitor would wait for this import, which the first review needs.
+def _prepare_process(memory: int, server_id: int) -> None:
+    """Limit the memory of the process, load what calls need, and watch the server."""
+    threading.Thread(target=_end_with_server, args=(server_id,), daemon=True).start()
+    # The first review needs this module. Import it before a visitor waits for it.
     importlib.import_module("engine.systems.review.potential_review")
     _limit_memory(memory)
 
 
-def _end_with(server_id: int) -> None:
+def _end_with_server(server_id: int) -> None:
     """End the process when the server has ended, even if the server was killed."""
     while os.getppid() == server_id:
         time.sleep(_WATCH_SECONDS)
@@ -254,6 +254,8 @@ def _limit_memory(additional_bytes: int) -> None:
 
         # Write no core file when the operating system ends the process.
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-        _, hard = resource.getrlimit(resource.RLIMIT_AS)
-        soft = psutil.Process().memory_info().vms + additional_bytes
-        resource.setrlimit(resource.RLIMIT_AS, (soft if hard == resource.RLIM_INFINITY else min(soft, hard), hard))
+        _, hard_limit = resource.getrlimit(resource.RLIMIT_AS)
+        soft_limit = psutil.Process().memory_info().vms + additional_bytes
+        resource.setrlimit(
+            resource.RLIMIT_AS, (soft_limit if hard_limit == resource.RLIM_INFINITY else min(soft_limit, hard_limit), hard_limit)
+        )

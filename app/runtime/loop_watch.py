@@ -18,16 +18,16 @@ from types import FrameType
 from prometheus_client import Histogram
 
 TICK_SECONDS = 0.02
-"""Interval between two calls of `LoadMonitor.tick`."""
+"""Interval between two calls of `LoadMonitor.tick`, in seconds."""
 
 HIGH_SECONDS = 0.05
-"""Delay of a tick above which the load is high."""
+"""Delay of a tick above which the load is high, in seconds."""
 
 # Factor by which the delay decays per tick: 0.7 in 0.1 s. The load is normal again half a second after a peak.
 _DECAY = 0.7 ** (TICK_SECONDS / 0.1)
 
 LONGEST_SECONDS = 2.0
-"""Time after which a high load counts as normal for one tick, so that postponed work is not blocked for ever."""
+"""Time after which a high load counts as normal for one tick, in seconds. Thus postponed work is not blocked for ever."""
 
 
 class LoadMonitor:
@@ -46,7 +46,7 @@ class LoadMonitor:
         self.delay = 0.0
 
     def tick(self) -> float:
-        """Return the delay of this tick in seconds; call every `TICK_SECONDS` on the event loop."""
+        """Return the delay of this tick, in seconds. Call this every `TICK_SECONDS` on the event loop."""
         now = self._clock()
         delay = max(0.0, now - self._due) if self._due is not None else 0.0
         self.delay = max(delay, _DECAY * self.delay)
@@ -58,7 +58,7 @@ class LoadMonitor:
         return delay
 
     def overdue_seconds(self) -> float:
-        """Return the time since the next tick was due; negative if it is not due yet. Any thread may call this."""
+        """Return the time since the next tick was due, in seconds; negative before. Any thread may call this."""
         return self._clock() - self._due if self._due is not None else 0.0
 
     def is_high(self) -> bool:
@@ -67,7 +67,7 @@ class LoadMonitor:
 
 
 SLOW_SECONDS = 0.05
-"""Duration above which an iteration of the event loop is logged and counted."""
+"""Duration above which an iteration of the event loop is logged and counted, in seconds."""
 
 # Smallest delay of a tick that is reported. A slow iteration may begin up to one interval before the tick is due, and then delays
 # the tick by less than its own duration.
@@ -75,7 +75,7 @@ _REPORTED_DELAY = SLOW_SECONDS - TICK_SECONDS
 # Interval at which the stack is read, in seconds.
 _SAMPLE_SECONDS = 0.5 * TICK_SECONDS
 # Folder of the app.
-_APP = Path(__file__).parents[1]
+_APP_FOLDER = Path(__file__).parents[1]
 # Folders of the app whose functions only pass calls on.
 _PLUMBING = ("runtime", "server", "browser/bokeh_patches")
 # Modules outside the app that run the loop. If the stack contains nothing else, the loop waits for events or for a processor.
@@ -97,10 +97,10 @@ log = logging.getLogger(f"bokeh.{__name__}")
 
 
 class LoopWatch:
-    """Logs and counts iterations of the event loop that take longer than `SLOW_SECONDS`; created on the loop's thread.
+    """Logs and counts iterations of the event loop that take longer than `SLOW_SECONDS`. Construct it on the loop's thread.
 
     The duration of an iteration is known only to within `TICK_SECONDS`, so iterations that are shorter than `SLOW_SECONDS` by up
-    to `TICK_SECONDS` may be reported too.
+    to `TICK_SECONDS` may be reported.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ class LoopWatch:
         self._collection_seconds = 0.0
 
     def on_collection(self, phase: str, info: dict[str, int]) -> None:
-        """Measure garbage collections on the loop's thread, where any allocation may start one. Call from `gc.callbacks`."""
+        """Measure garbage collections on the loop's thread. Any allocation may start one. `gc.callbacks` contains this method."""
         if threading.get_ident() != self._thread:
             return
         if phase == "start":
@@ -132,7 +132,7 @@ class LoopWatch:
             self._collection_seconds += self._processor_time() - self._collection_begin
 
     def tick(self) -> None:
-        """Measure the delay, and report a long delay; call every `TICK_SECONDS` on the event loop."""
+        """Measure the delay, and report a long delay. Call this every `TICK_SECONDS` on the event loop."""
         delay = self._load.tick()
         own_seconds = self._processor_time() - self._last_processor_time
         self._last_processor_time = self._processor_time()
@@ -148,7 +148,7 @@ class LoopWatch:
             )  # fmt: skip
 
     def watch(self, stopping: threading.Event) -> None:
-        """Read the loop's stack whenever a tick is overdue, until the server stops; call on a separate thread."""
+        """Read the loop's stack whenever a tick is overdue, until the server stops. Call this on a separate thread."""
         while not stopping.wait(_SAMPLE_SECONDS):
             frame = sys._current_frames().get(self._thread) if self._load.overdue_seconds() > _SAMPLE_SECONDS else None
             if frame is not None:
@@ -156,7 +156,7 @@ class LoopWatch:
 
 
 def find_cause(innermost: FrameType) -> str:
-    """Return the outermost function of the app on a stack that does more than pass calls on, or else of a library."""
+    """Return the outermost function on a stack that belongs to the app and does more than pass calls on, or else to a library."""
     frames = [frame for frame, _ in traceback.walk_stack(innermost)][::-1]
     app_places = [place for place in map(_place_in_app, frames) if place is not None]
     library_places = [place for place in map(_place_in_library, frames) if place is not None]
@@ -170,7 +170,11 @@ def find_cause(innermost: FrameType) -> str:
 
 def _place_in_app(frame: FrameType) -> str | None:
     path = Path(frame.f_code.co_filename)
-    return f"{path.relative_to(_APP).with_suffix('')}: {frame.f_code.co_qualname}" if path.is_relative_to(_APP) else None
+    return (
+        f"{path.relative_to(_APP_FOLDER).with_suffix('')}: {frame.f_code.co_qualname}"
+        if path.is_relative_to(_APP_FOLDER)
+        else None
+    )
 
 
 def _place_in_library(frame: FrameType) -> str | None:

@@ -1,4 +1,4 @@
-"""Memory allocation of glibc: settings and calls by which a server with many threads returns free memory to the system."""
+"""Memory allocation of glibc: options and calls with which a server of many threads returns free memory to the system."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ _OPTIONS = (
 
 
 RETURN_SECONDS = 30.0
-"""Interval between two calls of `return_free_memory`."""
+"""Interval between two calls of `return_free_memory`, in seconds."""
 
 
 def reduce_fragmentation() -> None:
-    """Set the options whose environment variables are not set, if this is glibc; call before threads start."""
+    """With glibc, set the options whose environment variables are not set. Call this before threads start."""
     library = _glibc()
     for option in _OPTIONS:
         if library is not None and option.variable not in os.environ:
@@ -40,7 +40,7 @@ def reduce_fragmentation() -> None:
 
 
 def return_free_memory() -> None:
-    """Return the free memory between small arrays to the system, if this is glibc, which keeps it by default.
+    """With glibc, return the free memory between small arrays to the system. By default, glibc keeps it.
 
     This takes some milliseconds, in which threads that allocate memory wait.
     """

@@ -47,9 +47,9 @@ class ProcessState:
     compiler
         Process that compiles kernels.
     load
-        Delay of the event loop.
+        Monitor of the delay of the event loop.
     capacity
-        Number of pages for which the processors suffice.
+        Decides for how many pages the processors suffice.
     metrics
         Prometheus metrics.
     kernels_ready
@@ -82,8 +82,8 @@ class ProcessState:
             cache_bytes=self.settings.cache_bytes,
             most_orbits=self.settings.most_orbits,
             threads=self.settings.threads,
-            limited=self.limited,
-            limited_calls=PROCESSES,
+            run_limited=self.limited,
+            most_limited_calls=PROCESSES,
         )
         self.capacity = Capacity(self.settings.cores_per_page, self.settings.processes, self._processor_times)
 
@@ -103,11 +103,11 @@ class ProcessState:
         return pages
 
     def adapt_to_load(self) -> None:
-        """Postpone work that can wait while the load is high; call after each tick of `load` on the event loop."""
+        """Postpone work that can wait while the load is high. Call this after each tick of `load` on the event loop."""
         if self.capacity.update():
             self._is_crowded = self.capacity.is_crowded(self.pages())
         self.jobs.pause_background(self.load.is_high())
-        self.jobs.spare_first_frames(self._is_crowded)
+        self.jobs.prefer_first_frames(self._is_crowded)
 
     def is_crowded(self) -> bool:
         """Whether a map should show only its first and last frame."""

@@ -28,7 +28,7 @@ log = logging.getLogger(__name__)
 
 
 class SessionCallbacks:
-    """Wraps functions that change the document of one session; created while the page is built.
+    """Wraps functions that change the document of one session. Construct it while the page is built.
 
     A wrapped function returns at once. Its calls run later on the event loop, one at a time and in order, with the document
     locked and set as the current document. Calls after the end of the session are dropped. Without a session, as in a

@@ -1,4 +1,4 @@
-"""Admission of pages and WebSockets: they are refused when the server is full or stopping, or an address has its share."""
+"""Admission of pages and WebSockets. They are refused when the server is full or stopping, or when an address has its share."""
 
 from __future__ import annotations
 
@@ -41,12 +41,12 @@ def admit(request: Any) -> None:
         raise HTTPError(http.client.REQUEST_URI_TOO_LONG, reason=f"The address is longer than {LONGEST_LINK} characters.")
     network = network_of(request.remote_ip)
     _refuse(http.client.SERVICE_UNAVAILABLE, refusal_reason(process_state(), network))
-    pages = sum(visitor_of(session.document) == network for session in process_state().sessions())
-    _refuse(http.client.TOO_MANY_REQUESTS, _share_reason(pages))
+    page_count = sum(visitor_of(session.document) == network for session in process_state().sessions())
+    _refuse(http.client.TOO_MANY_REQUESTS, _share_reason(page_count))
 
 
 def refusal_page(sentence: str) -> str:
-    """Return an error page with a sentence, which requests the refused page again after `RETRY_SECONDS`."""
+    """Return an error page with a sentence. The error page requests the refused page again after `RETRY_SECONDS`."""
     head = (
         f"<meta charset=utf-8><meta name=viewport content='width=device-width'><meta http-equiv=refresh content={RETRY_SECONDS}>"
     )
@@ -73,8 +73,8 @@ def check_session(token: str, application_context: Any, address: str, applicatio
     bokeh.protocol.exceptions.ProtocolError
         If the session has ended and the token is old, or the server is full or stopping. The message says which.
     """
-    session = get_session_id(token)
-    if any(each.id == session for each in application_context.sessions):
+    session_id = get_session_id(token)
+    if any(session.id == session_id for session in application_context.sessions):
         return
     if not may_begin_session(application, token):
         raise ProtocolError(f"The session has ended, and its page is older than {application.session_token_expiration} s.")
@@ -91,10 +91,10 @@ def count_socket(address: str) -> None:
     bokeh.protocol.exceptions.ProtocolError
         If the address, or the server, has too many WebSockets. Then the count does not change.
     """
-    sockets, most = process_state().sockets, process_state().settings.most_sessions
+    sockets, most_sockets = process_state().sockets, process_state().settings.most_sessions
     reason = _share_reason(sockets[network_of(address)])
-    if reason is None and sockets.total() >= most:
-        reason = f"There are {most} connections already."
+    if reason is None and sockets.total() >= most_sockets:
+        reason = f"There are {most_sockets} connections already."
     if reason is not None:
         raise ProtocolError(reason)
     sockets[network_of(address)] += 1
@@ -109,10 +109,10 @@ def forget_socket(address: str) -> None:
 
 
 def _share_reason(count: int) -> str | None:
-    most = process_state().settings.pages_per_address
-    if count < most:
+    limit = process_state().settings.pages_per_address
+    if count < limit:
         return None
-    return f"Your address has {most} open pages, the most that {variable_name('pages_per_address')} permits. Close some of them."
+    return f"Your address has {limit} open pages, the most that {variable_name('pages_per_address')} permits. Close some of them."
 
 
 def _refuse(status: int, reason: str | None) -> None:

@@ -98,12 +98,12 @@ def check_patch(content: Any, document: Document) -> None:
                 _check_event(_decode(document, decoder, data))
             case _:
                 raise RefusedMessageError(f"an event {_quote(event)} that no page sends")
-    for changed, values in ranges.items():
-        _check_range(changed, **values)
+    for changed_range, values in ranges.items():
+        _check_range(changed_range, **values)
 
 
 def _decode(document: Document, decoder: Deserializer, value: Any) -> Any:
-    """Return a value as a Python object; refuse unknown classes and wrong fields, for which Bokeh raises various errors."""
+    """Return a value as a Python object. Refuse unknown classes and wrong fields. Bokeh raises various errors for them."""
     try:
         return decoder.decode(value)
     except UnknownReferenceError as error:
@@ -114,10 +114,10 @@ def _decode(document: Document, decoder: Deserializer, value: Any) -> Any:
         raise RefusedMessageError(f"{_quote(value)} cannot be decoded: {_quote(str(error))}") from None
 
 
-def _check_range(changed: Range1d, **values: float) -> None:
-    """Refuse a range whose ends would change their order, also if only one end changes."""
-    ends = {"start": changed.start, "end": changed.end} | values
-    if (ends["end"] - ends["start"]) * (changed.end - changed.start) <= 0.0:
+def _check_range(changed_range: Range1d, **values: float) -> None:
+    """Refuse a range whose ends would change their order, even if only one end changes."""
+    ends = {"start": changed_range.start, "end": changed_range.end} | values
+    if (ends["end"] - ends["start"]) * (changed_range.end - changed_range.start) <= 0.0:
         raise RefusedMessageError(f"a range from {ends['start']} to {ends['end']}")
 
 
@@ -148,11 +148,11 @@ _EVENT_COORDINATES = ("x", "y", "sx", "sy", "x0", "x1", "y0", "y1")
 
 def _check_values(events: Any, known: Container[str]) -> None:
     """Refuse too many, too deep or too large values, and values of types that no page sends."""
-    for number, (depth, each) in enumerate(_walk(events, 0, known)):
-        if number == MOST_VALUES or depth > _LARGEST_DEPTH:
+    for count, (depth, value) in enumerate(_walk(events, 0, known)):
+        if count == MOST_VALUES or depth > _LARGEST_DEPTH:
             raise RefusedMessageError("a patch with too many values")
-        if not _is_plain(each):
-            raise RefusedMessageError(f"a patch with the value {_quote(each)}")
+        if not _is_plain(value):
+            raise RefusedMessageError(f"a patch with the value {_quote(value)}")
 
 
 def _walk(value: Any, depth: int, known: Container[str]) -> Iterator[tuple[int, Any]]:
@@ -207,8 +207,10 @@ def _is_option(select: Any, value: Any) -> bool:
 
 
 def _is_active(group: Any, value: Any) -> bool:
-    chosen = value if isinstance(value, list) else [] if value is None else [value]
-    return len(set(chosen)) == len(chosen) and all(_is_between(each, 0, len(group.labels) - 1) for each in chosen)
+    active_indices = value if isinstance(value, list) else [] if value is None else [value]
+    return len(set(active_indices)) == len(active_indices) and all(
+        _is_between(each, 0, len(group.labels) - 1) for each in active_indices
+    )
 
 
 def _is_tab(tabs: Any, value: Any) -> bool:

@@ -13,17 +13,17 @@ from app.browser.module_files import accepts_gzip
 
 # Suffixes of the files to compress. Other types are compressed already.
 _SUFFIXES = frozenset({".js", ".mjs", ".css", ".svg", ".json", ".map"})
-# Number of compressed files that are kept; together they take some megabytes.
-_KEPT_FILES = 64
+# Number of compressed files in the cache. Together, they take some megabytes.
+_CACHED_FILES = 64
 
 
 class CompressedFiles(StaticFileHandler):
-    """Mixin for handlers of static files, which answers with a compressed file."""
+    """Mixin that makes a handler of static files answer with compressed files."""
 
     _is_compressed = False
 
     async def get(self, path: str, include_body: bool = True) -> None:
-        """Answer with a compressed file if the browser accepts it and the type is worth it, otherwise as the other handler."""
+        """Answer with a compressed file if the browser accepts it and the type is worth it, else like the other base class."""
         if Path(path).suffix in _SUFFIXES:
             self.set_header("Vary", "Accept-Encoding")
             headers = self.request.headers
@@ -41,21 +41,21 @@ class CompressedFiles(StaticFileHandler):
         if self.should_return_304():
             self.set_status(304)
             return
-        changed = Path(absolute_path).stat().st_mtime_ns
+        change_time = Path(absolute_path).stat().st_mtime_ns
         # Compressing takes up to 0.1 s, once for each version of a file.
-        content = await IOLoop.current().run_in_executor(None, _compressed, absolute_path, changed)
+        content = await IOLoop.current().run_in_executor(None, _compress, absolute_path, change_time)
         self.set_header("Content-Encoding", "gzip")
         self.set_header("Content-Length", len(content))
         if include_body:
             self.write(content)
 
     def compute_etag(self) -> str | None:
-        """Return the tag of the file; the compressed file has a tag of its own."""
+        """Return the tag of the file. The compressed file has a tag of its own."""
         tag = super().compute_etag()
         return f'{tag[:-1]}-gzip"' if tag and self._is_compressed else tag
 
 
-@functools.lru_cache(maxsize=_KEPT_FILES)
-def _compressed(path: str, _changed: int) -> bytes:
-    """Return a compressed file; `_changed`, the time of its last change, tells versions apart in the cache."""
+@functools.lru_cache(maxsize=_CACHED_FILES)
+def _compress(path: str, _change_time: int) -> bytes:
+    """Return the compressed content of a file. `_change_time` distinguishes versions of the file in the cache."""
     return gzip.compress(Path(path).read_bytes())

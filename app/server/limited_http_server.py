@@ -32,8 +32,8 @@ LIMITS: Mapping[str, int] = {
 """Options of the HTTP server, in seconds and bytes."""
 
 UNTRUSTED = ("X-Real-Ip", "X-Scheme")
-"""Headers that Tornado, with ``--use-xheaders``, prefers to ``X-Forwarded-For`` and ``X-Forwarded-Proto``. A proxy that
-sets these two headers may pass on the preferred headers of a client."""
+"""Headers that are removed from requests. With ``--use-xheaders``, Tornado prefers them to ``X-Forwarded-For`` and
+``X-Forwarded-Proto``, which a proxy sets. The proxy may pass on the preferred headers of a client."""
 
 CONNECTIONS_PER_PAGE = 6
 """Largest number of connections, WebSockets apart, that a browser opens to a host."""
@@ -67,7 +67,7 @@ class LimitedHTTPServer(HTTPServer):
 
     def start_request(self, server_conn: object, request_conn: HTTPConnection) -> HTTPMessageDelegate:
         """Read a request without the headers in `UNTRUSTED`."""
-        return _WithoutUntrusted(super().start_request(server_conn, request_conn))
+        return _UntrustedHeaderRemover(super().start_request(server_conn, request_conn))
 
     def on_close(self, server_conn: Any) -> None:
         """Stop counting a connection that is closed or has become a WebSocket."""
@@ -76,11 +76,11 @@ class LimitedHTTPServer(HTTPServer):
 
     def _is_full(self, network: str) -> bool:
         settings = process_state().settings
-        per_address = CONNECTIONS_PER_PAGE * settings.pages_per_address
-        return self._counts.total() >= settings.most_connections or (not self.xheaders and self._counts[network] >= per_address)
+        network_limit = CONNECTIONS_PER_PAGE * settings.pages_per_address
+        return self._counts.total() >= settings.most_connections or (not self.xheaders and self._counts[network] >= network_limit)
 
 
-class _WithoutUntrusted(HTTPMessageDelegate):
+class _UntrustedHeaderRemover(HTTPMessageDelegate):
     """Removes the headers in `UNTRUSTED` before another delegate receives a request."""
 
     def __init__(self, delegate: HTTPMessageDelegate) -> None:

@@ -14,7 +14,7 @@ from bokeh.model import Model
 from app.server.browser_rules import OutdatedMessageError, RefusedMessageError, check_patch, find_choices
 
 LARGEST_FRAGMENT = 4 * 2**20
-"""Largest size of a part of a message, in bytes. Most have less than 2 kB; a model that the server has added is sent whole."""
+"""Largest size of a part of a message, in bytes. Most have less than 2 kB. A model that the server has added is sent whole."""
 
 MOST_BUFFERS = 64
 """Largest number of binary buffers of a message, such as the arrays of a model that is sent whole."""
@@ -31,8 +31,10 @@ REFUSED_COUNTS = 40
 BYTES_PER_MESSAGE = 16 * 1024
 """Number of bytes of a part of a message that count as one more message."""
 
-# Number of parts before the buffers: header, metadata and content. Each buffer has two parts: a header and a payload.
-_FIRST_PARTS, _PARTS_PER_BUFFER = 3, 2
+# Number of parts before the buffers: header, metadata and content.
+_FIRST_PARTS = 3
+# Number of parts of a buffer: header and payload.
+_PARTS_PER_BUFFER = 2
 
 
 class UnacceptableConnectionError(Exception):
@@ -57,7 +59,7 @@ class MessageGuard:
         self._clock = clock
         self._parts: list[str | bytes] = []
         self._expected_parts = _FIRST_PARTS
-        self._is_pulled = False
+        self._has_pulled_document = False
         self.choices: list[tuple[Model, str]] = []
         self._reserve, self._last_count = float(MOST_AT_ONCE), clock()
 
@@ -75,6 +77,7 @@ class MessageGuard:
         UnacceptableConnectionError
             If the connection must be closed because of invalid parts, too many messages or refusals.
         """
+        # After the first parts, the headers and the payloads of buffers alternate. Only payloads are binary.
         is_payload = len(self._parts) > _FIRST_PARTS and (len(self._parts) - _FIRST_PARTS) % _PARTS_PER_BUFFER
         if isinstance(part, str) == bool(is_payload):
             raise UnacceptableConnectionError("a message with binary parts in the wrong places")
@@ -110,8 +113,8 @@ class MessageGuard:
         if kind == "PATCH-DOC":
             check_patch(content, document)
             self.choices = find_choices(content, document)
-        elif kind == "PULL-DOC-REQ" and not self._is_pulled:
-            self._is_pulled = True
+        elif kind == "PULL-DOC-REQ" and not self._has_pulled_document:
+            self._has_pulled_document = True
         elif kind != "SERVER-INFO-REQ":
             raise RefusedMessageError(f"a message {reprlib.repr(kind)} that no page sends")
 

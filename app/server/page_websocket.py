@@ -1,4 +1,4 @@
-"""The WebSocket of a page, which checks the token and the messages of the page, and closes when these break the rules."""
+"""The WebSocket of a page. It checks the token and the messages of the page, and closes when they break the rules."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ class PageWebSocket(SecurityHeaders, WSHandler):
             super().on_close()
 
     async def send_message(self, message: Message[Any]) -> None:
-        """Write all parts of a message at once, then wait until the socket has accepted all.
+        """Write all parts of a message at once, then wait until the socket has accepted them.
 
         Bokeh would wait after each part, and lock the socket meanwhile. While the socket is locked, Panel postpones changes,
         some of them until the next change: ``panel.io.document._dispatch_msgs`` ends the postponement although new changes have
@@ -99,7 +99,7 @@ class PageWebSocket(SecurityHeaders, WSHandler):
                 raise error
 
     async def write_message(self, message: str | bytes | dict[str, Any], binary: bool = False, locked: bool = True) -> None:
-        """Begin to write a part of a message; `send_message` waits for the end."""
+        """Begin to write a part of a message. `send_message` waits for the end."""
         self._writes.append(WebSocketHandler.write_message(self, message, binary))
 
     async def on_message(self, message: str | bytes) -> None:

@@ -1,9 +1,9 @@
-"""The routes that the page and the operator need, their handlers, and the accepted hosts; other routes and hosts are refused.
+"""The routes that the page and the operator need, their handlers, and the accepted hosts. Other routes and hosts are refused.
 
 Bokeh and Panel add more routes: ``autoload.js`` creates sessions, and ``components`` imports the module that the address names.
 
-The handlers are installed in two lists of ``bokeh.server.urls`` that Bokeh documents and builds its web application from
-(https://docs.bokeh.org/en/latest/docs/reference/server/urls.html); Panel adds its own handlers there. The lists are the only
+The handlers are installed in two documented lists of ``bokeh.server.urls``, from which Bokeh builds its web application
+(https://docs.bokeh.org/en/latest/docs/reference/server/urls.html). Panel also adds its handlers there. The lists are the only
 public way to reach the handlers of ``panel serve`` without a command line option: lifecycle hooks get no reference to the web
 application, which already exists when the hooks run. Bokeh and Panel add other handlers elsewhere: for ``/favicon.ico``,
 ``/app/static`` and Panel's login pages.
@@ -32,10 +32,10 @@ from app.server.session_tokens import issue_token, use_token
 # Tornado fails when it looks for a file with a null character in its name.
 _FILES = "/static/(?!.*%00).*"
 
-OF_PAGE = ("", "/ws", _FILES)
+PAGE_ROUTES = ("", "/ws", _FILES)
 """Routes below the path of a page: the page itself, its WebSocket and its files."""
 
-OF_SERVER = ("/?", _FILES, *(path for path, *_ in (*MODULES, *ROUTES)))
+SERVER_ROUTES = ("/?", _FILES, *(path for path, *_ in (*MODULES, *ROUTES)))
 """Routes below the server's prefix: the redirect to the page, scripts, styles, modules, and the endpoints for the operator."""
 
 LOOPBACK = ("localhost", "127.0.0.1", "[::1]")
@@ -48,7 +48,7 @@ def served_routes(application: BokehTornado) -> list[str]:
     """Return the patterns of all served paths, including the paths of a login."""
     pages = [path.rstrip("/") for path in application.app_paths]
     logins = [path for path, *_ in application.auth_provider.endpoints]
-    paths = [*(page + route for page in pages for route in OF_PAGE), *OF_SERVER, *logins]
+    paths = [*(page + route for page in pages for route in PAGE_ROUTES), *SERVER_ROUTES, *logins]
     return [_ICON, *(application.prefix + path for path in paths)]
 
 
@@ -63,12 +63,12 @@ class ToPage(SecurityHeaders, RedirectHandler):
 
 
 def lead_to_page(application: BokehTornado) -> None:
-    """Redirect the root to the page of the server's only application; Bokeh's own redirect drops the query."""
+    """Redirect the root to the page of the server's only application. Bokeh's own redirect drops the query."""
     paths = list(application.app_paths)
     if len(paths) == 1:
         # A relative address, because a proxy may have removed a part of the path.
-        target = {"url": f".{paths[0]}", "permanent": False}
-        application.add_handlers(".*", [(f"{application.prefix}/", ToPage, target)])
+        redirect_options = {"url": f".{paths[0]}", "permanent": False}
+        application.add_handlers(".*", [(f"{application.prefix}/", ToPage, redirect_options)])
 
 
 class OtherHost(SecurityHeaders):
@@ -83,7 +83,7 @@ def accepted_hosts(application: BokehTornado) -> str:
     """Return the pattern of accepted hosts, without ports: loopback, and the hosts whose pages may open a WebSocket."""
     origins = bokeh_settings.allowed_ws_origin() or application.websocket_origins
     names = {origin.lower().rsplit(":", 1)[0] for origin in origins}
-    # A lone "*" stands for any host, and another "*" for a part of a host's name.
+    # A lone "*" stands for any host. Within a name, "*" stands for a part between dots.
     return "|".join(".*" if name == "*" else re.escape(name).replace(r"\*", "[^.]*") for name in sorted({*LOOPBACK, *names}))
 
 
@@ -129,7 +129,7 @@ class PageHandler(SecurityHeaders, DocHandler):
         self.finish(refusal_page(error.reason or ""))
 
     def write(self, chunk: Any) -> None:
-        """Write a response; a page contains the nonce and the matching policy."""
+        """Write a response. A page contains the nonce and is sent with the matching policy."""
         if isinstance(chunk, str):
             nonce = new_nonce()
             self.set_security_headers(nonce)
@@ -138,7 +138,7 @@ class PageHandler(SecurityHeaders, DocHandler):
 
 
 def install_handlers(per_app_patterns: list[Any], toplevel_patterns: list[Any]) -> None:
-    """Add security headers to the handlers in the lists, and append the server's own routes; a second call has no effect.
+    """Add security headers to the handlers in the lists, and append the server's own routes. A second call has no effect.
 
     Parameters
     ----------
@@ -147,16 +147,16 @@ def install_handlers(per_app_patterns: list[Any], toplevel_patterns: list[Any]) 
     """
     for patterns in (per_app_patterns, toplevel_patterns):
         patterns[:] = [(path, _secured(handler), *rest) for path, handler, *rest in patterns]
-    added = [*ROUTES, *((path, _secured(handler), arguments) for path, handler, arguments in MODULES)]
-    if all(path != added[0][0] for path, *_ in toplevel_patterns):
-        toplevel_patterns += added
+    own_routes = [*ROUTES, *((path, _secured(handler), arguments) for path, handler, arguments in MODULES)]
+    if all(path != own_routes[0][0] for path, *_ in toplevel_patterns):
+        toplevel_patterns += own_routes
 
 
 def _secured(handler: type) -> type:
-    """Return a handler with security headers; a handler of files also compresses them."""
+    """Return a handler with security headers. A handler of files also compresses the files."""
     # Bokeh recognises the root handler by identity.
     if handler is RootHandler or issubclass(handler, SecurityHeaders):
         return handler
-    replaced = {DocHandler: PageHandler, WSHandler: PageWebSocket}
+    replacements = {DocHandler: PageHandler, WSHandler: PageWebSocket}
     mixins = (SecurityHeaders, CompressedFiles) if issubclass(handler, StaticFileHandler) else (SecurityHeaders,)
-    return replaced.get(handler) or type(f"Secured{handler.__name__}", (*mixins, handler), {})
+    return replacements.get(handler) or type(f"Secured{handler.__name__}", (*mixins, handler), {})

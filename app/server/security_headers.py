@@ -1,7 +1,7 @@
 """Security headers of responses.
 
-The Content-Security-Policy allows scripts from this server, inline scripts with the nonce of the served page (injected scripts
-do not run), workers from this server only, and WebAssembly (``wasm-unsafe-eval``), which the engine in the browser needs.
+The Content-Security-Policy allows workers and scripts from this server, inline scripts with the nonce of the served page, and
+WebAssembly (``wasm-unsafe-eval``) for the engine in the browser. Injected scripts lack the nonce, so they do not run.
 Bokeh and Panel need three exceptions: ``unsafe-eval``, because both create functions from text; ``blob:``, from which Panel
 imports components; and ``unsafe-inline`` for styles, which Bokeh inserts at run time.
 """
@@ -19,7 +19,7 @@ _SCRIPT = re.compile(r"<script(?=[\s>])", re.IGNORECASE)
 
 
 class SecurityHeaders(RequestHandler):
-    """Mixin for handlers, which adds the headers to every response, including error pages."""
+    """Mixin that adds the headers to every response of a handler, including error pages."""
 
     def set_default_headers(self) -> None:
         """Set the headers and hide the name and version of the server software."""
@@ -70,7 +70,7 @@ def content_policy(frame_ancestors: tuple[str, ...], nonce: str | None = None) -
 
 
 def security_headers(frame_ancestors: tuple[str, ...], nonce: str | None = None) -> dict[str, str]:
-    """Return the headers of a response; for the parameters see `content_policy`."""
+    """Return the headers of a response. The parameters are those of `content_policy`."""
     headers = {
         "Content-Security-Policy": content_policy(frame_ancestors, nonce),
         "X-Content-Type-Options": "nosniff",

@@ -27,7 +27,13 @@ from tornado.httputil import HTTPServerRequest
 
 from app.state.permalink import PARAMETERS
 
-_SUBPROTOCOL, _TOKEN, _SESSION_ID, _ISSUED = "bokeh", "bokeh-token", "bokeh-session-id", "issued"
+# WebSocket subprotocol of Bokeh.
+_SUBPROTOCOL = "bokeh"
+# Arguments of a request from which Bokeh reads a token or a session id.
+_TOKEN = "bokeh-token"
+_SESSION_ID = "bokeh-session-id"
+# Entry of a token's payload: the time of issue on the monotonic clock, in seconds.
+_ISSUED = "issued"
 # Ten years, in seconds: a token never expires for Bokeh.
 _NO_EXPIRATION = 10 * 365 * 24 * 3600
 
@@ -83,11 +89,11 @@ def use_token(request: HTTPServerRequest, token: str) -> None:
 
 def brings_own_token(application: BokehTornado, request: HTTPServerRequest) -> bool:
     """Whether the request for a WebSocket has a token with a valid signature. The token is not decompressed."""
-    offered = [name.strip() for name in request.headers.get("Sec-WebSocket-Protocol", "").split(",")]
-    if len(offered) != 2 or offered[0] != _SUBPROTOCOL:
+    subprotocols = [name.strip() for name in request.headers.get("Sec-WebSocket-Protocol", "").split(",")]
+    if len(subprotocols) != 2 or subprotocols[0] != _SUBPROTOCOL:
         return False
     try:
-        return bool(check_token_signature(offered[1], _signing_key(application), signed=True))
+        return bool(check_token_signature(subprotocols[1], _signing_key(application), signed=True))
     except (ValueError, TypeError, KeyError, AttributeError, AssertionError, RecursionError):
         # The value is not a token.
         return False

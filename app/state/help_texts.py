@@ -13,11 +13,11 @@ HELP_TEXTS: Mapping[str, str] = MappingProxyType(
     {
         **{picture.name: picture.help for picture in PICTURES.values() if picture.help},
         "well": (
-            "The zero-velocity curve V = h bounds the places that an orbit of this energy can reach; above the escape energy "
-            "it has a gap at each saddle of the potential. An unstable periodic orbit, the Lyapunov orbit, spans each gap: an "
-            "orbit that crosses it outward never returns, so it marks the exit; in a rotating frame some do, and orbits also "
-            "end at bodies and at an escape radius. The orbit under the cursor and the chosen orbits are drawn up to their "
-            "ends, very long ones as density images. A regular orbit fills a regular pattern, a chaotic one does not."
+            "The zero-velocity curve V = h bounds the places that an orbit of this energy can reach. Above the escape energy, it "
+            "has a gap at each saddle of the potential. An unstable periodic orbit, the Lyapunov orbit, spans each gap and marks "
+            "the exit. An orbit that crosses it outward never returns; in a rotating frame, some orbits do. Orbits also end at "
+            "bodies and at an escape radius. The orbit under the cursor and the chosen orbits are drawn up to their ends, very "
+            "long ones as density images. A regular orbit fills a regular pattern, a chaotic one does not."
         ),
         "sali": (
             "SALI, the smaller alignment index, follows two small deviations from the orbit. Chaos aligns them, and SALI "
@@ -26,11 +26,11 @@ HELP_TEXTS: Mapping[str, str] = MappingProxyType(
         ),
         "exponent": (
             "The mean exponential growth rate of a small deviation until t. On a regular orbit it decreases like ln t / t, a "
-            "falling curve on these axes. On a chaotic orbit it converges to the maximal Lyapunov exponent; its inverse is "
+            "falling curve on these axes. On a chaotic orbit it converges to the maximal Lyapunov exponent. Its inverse is "
             "the time in which an error grows by a factor of e."
         ),
         "r2": (
-            "The squared distance from the centre of the well. On a regular orbit it oscillates between fixed limits; a "
+            "The squared distance from the centre of the well. On a regular orbit it oscillates between fixed limits. A "
             "sticky orbit looks like that for a long time, until its range widens and it escapes. Drag over this curve, SALI "
             "or the Lyapunov exponent to see an interval of time in full detail; a double click shows the whole orbit again."
         ),
@@ -40,7 +40,7 @@ HELP_TEXTS: Mapping[str, str] = MappingProxyType(
             "neighbours separate about in proportion to time, a curve that flattens."
         ),
         "histogram": (
-            "How many starts escape when; each bin spans the same factor of time. The peak is the typical escape time. The "
+            "How many starts escape when. Each bin spans the same factor of time. The peak is the typical escape time. The "
             "tail on the right comes from fractal boundaries and from orbits that stick to islands. Bounded orbits are not "
             "included."
         ),
@@ -61,9 +61,10 @@ HELP_TEXTS: Mapping[str, str] = MappingProxyType(
             "one."
         ),
         "watch": (
-            "Orbits move in the well, each in the colour of the exit that it will take; grey ones stay until t = 100. On (x, px) "
-            "the map shows each at its last passage of y = 0. The chart has the share that is still inside, and dashed the law "
-            "of mixed motion: flux through the exits over the volume inside. Orbits that stick to islands stay longer."
+            "Orbits move in the well, each in the colour of the exit that it will take. Grey orbits stay until t = 100. The map "
+            "on (x, px) shows each orbit at its last passage of y = 0. The solid curve of the chart is the share still inside. "
+            "The dashed curve is the law of mixed motion: flux through the exits over the volume inside. Orbits that stick to "
+            "islands stay longer."
         ),
         **{name: measure.help for name, measure in MEASURES.items() if measure.help},
     }

@@ -1,6 +1,6 @@
 """Compute measures of the basins at many energies, or values of a parameter, and write them to STEM.nc and STEM.csv.
 
-With --output FILE.png, FILE.svg or FILE.pdf, they are drawn instead.
+With --output FILE.png, FILE.svg or FILE.pdf, the measures are drawn instead.
 
 Examples:
 
@@ -20,7 +20,7 @@ import typer
 
 from cli.arguments import Case, Slow, check_measures, file_name_part, space_values
 from cli.execution import THREADS_ONLY, Place
-from cli.option_marks import Of
+from cli.option_marks import DocumentedBy
 from cli.options import with_options
 from cli.output_files import Content, Stem, name_files, reserve_output, write_files
 from cli.printing import AsJson, Table, list_rows, print_result
@@ -45,15 +45,15 @@ def run(
     case: Case,
     system: System,
     potential: Potential,
-    low: Annotated[float, Of(space_values)],
-    high: Annotated[float, Of(space_values)],
-    count: Annotated[int, Of(space_values)],
+    low: Annotated[float, DocumentedBy(space_values)],
+    high: Annotated[float, DocumentedBy(space_values)],
+    count: Annotated[int, DocumentedBy(space_values)],
     against: Annotated[str, typer.Option(help=AGAINST_HELP)] = "h",
-    energy: Annotated[float | None, Of(SweepSpec)],
-    refine: Annotated[int, Of(SweepSpec)],
+    energy: Annotated[float | None, DocumentedBy(SweepSpec)],
+    refine: Annotated[int, DocumentedBy(SweepSpec)],
     plane: Slice,
-    resolution: Annotated[tuple[int, int], Of(SweepSpec)] = (112, 112),
-    t_max: Annotated[float, Of(SweepSpec)],
+    resolution: Annotated[tuple[int, int], DocumentedBy(SweepSpec)] = (112, 112),
+    t_max: Annotated[float, DocumentedBy(SweepSpec)],
     measure: Annotated[list[str] | None, typer.Option(help=MEASURE_HELP)] = None,
     exponent: Slow = True,
     style: FigureStyle,
@@ -78,11 +78,11 @@ def run(
     with reserve_output(output or stem):
         with place.run() as context:
             curves = compute_sweep(spec, execution=context.start_stage("curves"))
-        files = write_files({path: _content(curves, ending, style) for ending, path in paths.items()})
+        files = write_files({path: _make_content(curves, ending, style) for ending, path in paths.items()})
     _print(curves, files, as_json)
 
 
-def _content(curves: Sweep, ending: str, style: FigureStyle) -> Content:
+def _make_content(curves: Sweep, ending: str, style: FigureStyle) -> Content:
     """Return the content of the output file with an ending."""
     if ending == "nc":
         return dataset_bytes(curves.dataset)

@@ -1,8 +1,8 @@
 """Follow random orbits, uniform on the energy surface, on a slice, or entering through the exits.
 
-Prints the share of each exit, for entering orbits also by entrance, and the decay rate beside flux over volume.
-With --output FILE.webp, FILE.gif or FILE.mp4 it writes a movie, with FILE.nc the paths, and with FILE.csv the starts and
-outcomes; with a STEM it writes the movie as WebP and the CSV table.
+Prints the share of each exit, and the decay rate next to flux over volume. For entering orbits, prints shares by entrance.
+With --output FILE.webp, FILE.gif or FILE.mp4, writes a movie; with FILE.nc, the paths; with FILE.csv, the starts and outcomes.
+With a STEM, writes the movie as WebP and the CSV table.
 
 Examples:
 
@@ -25,7 +25,7 @@ import typer
 
 from cli.arguments import OneEnergy
 from cli.execution import THREADS_ONLY, Place
-from cli.option_marks import But, Of
+from cli.option_marks import DocumentedBy, OptionChanges
 from cli.options import with_options
 from cli.output_files import Content, Stem, name_files, reserve_output, write_files
 from cli.printing import AsJson, Table, list_rows, print_result
@@ -59,15 +59,15 @@ def run(
     *,
     potential: Potential,
     energy: OneEnergy,
-    count: Annotated[int, Of(sample_starts)] = 3000,
-    seed: Annotated[int, Of(sample_starts)],
-    plane: Annotated[Slice | None, But(defaults={"plane": None})],
-    window: Annotated[GivenWindow | None, Of(sample_starts)],
+    count: Annotated[int, DocumentedBy(sample_starts)] = 3000,
+    seed: Annotated[int, DocumentedBy(sample_starts)],
+    plane: Annotated[Slice | None, OptionChanges(defaults={"plane": None})],
+    window: Annotated[GivenWindow | None, DocumentedBy(sample_starts)],
     entering: bool = False,
-    t_max: Annotated[float, Of(classify_orbits)] = 25.0,
+    t_max: Annotated[float, DocumentedBy(classify_orbits)] = 25.0,
     frames: Annotated[int, typer.Option(min=2, max=5000)] = 126,
     palette: Palette,
-    style: Annotated[FigureStyle, But(defaults={"dpi": 120.0})],
+    style: Annotated[FigureStyle, OptionChanges(defaults={"dpi": 120.0})],
     place: Annotated[Place, THREADS_ONLY],
     output: Stem = None,
     as_json: AsJson = False,
@@ -87,9 +87,9 @@ def run(
         raise ValueError(f"count={count}: movies and files of paths have at most {MOST_PATHS} orbits")
     entrances, starts = _draw_starts(potential, energy, count, seed, plane, window, entering)
 
-    def content(ending: str) -> Content:
+    def make_content(ending: str) -> Content:
         if ending == "csv":
-            return _table(starts, outcomes)
+            return _starts_csv(starts, outcomes)
         if ending == "nc":
             return dataset_bytes(orbits.to_xarray())
         return ensemble_movie_bytes(potential, orbits, palette, MovieFormat(ending), style)
@@ -102,7 +102,7 @@ def run(
             if needs_paths:
                 times = np.linspace(0.0, outcomes.t_max, frames)
                 orbits = sample_orbits(potential, starts, times, execution=context.start_stage("paths"))
-            contents = {path: content(ending) for ending, path in paths.items()}
+            contents = {path: make_content(ending) for ending, path in paths.items()}
         files = write_files(contents)
     matching = None if entrances is None else compute_exit_matching(entrances, outcomes)
     _print(compute_statistics(outcomes), matching, laws, compute_flux(potential, energy), files, as_json)
@@ -117,7 +117,7 @@ def _draw_starts(
     window: GivenWindow | None,
     entering: bool,
 ) -> tuple[np.ndarray | None, np.ndarray]:
-    """Return the entrances, if orbits enter, and states of shape (count, 4); ValueError for options that exclude each other."""
+    """Return the entrances (None unless orbits enter) and states of shape (count, 4); ValueError for contradictory options."""
     if not entering:
         return None, sample_starts(potential, energy, count, plane=plane, window=window, seed=seed)
     if plane is not None or window is not None:
@@ -125,8 +125,8 @@ def _draw_starts(
     return sample_entrances_by_exit(potential, energy, count, seed=seed)
 
 
-def _table(starts: np.ndarray, outcomes: Outcomes) -> str:
-    """Return a line for each orbit: start at full precision, fate, escape time and crossings."""
+def _starts_csv(starts: np.ndarray, outcomes: Outcomes) -> str:
+    """Return a table with a line for each orbit: start at full precision, fate, escape time and crossings."""
     end_columns = (column.tolist() for column in (outcomes.fate, outcomes.escape_time, outcomes.crossings))
     rows = ((*start, *end) for start, *end in zip(starts.tolist(), *end_columns, strict=True))
     return write_csv(("x", "y", "px", "py", "fate", "escape_time", "crossings"), rows)

@@ -36,7 +36,7 @@ def run(
     Parameters
     ----------
     output
-        CSV file of their paths over one period; an existing file is replaced.
+        CSV file of the paths of the orbits over one period; an existing file is replaced.
     """
     if output is not None:
         split_ending(output, ["csv"], [])

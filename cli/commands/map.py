@@ -99,9 +99,9 @@ def run(
     formats
         Output format, by default the ending of --output, or else nc and png; can be repeated.
     """
-    wanted = layers.with_pictures(picture or ())
-    wanted.check(spec)
-    pictures = dict.fromkeys(picture or [*FIRST_PICTURES, *wanted.pictures])
+    requested_layers = layers.with_pictures(picture or ())
+    requested_layers.check(spec)
+    pictures = dict.fromkeys(picture or [*FIRST_PICTURES, *requested_layers.pictures])
     drawing = Drawing(tuple(pictures), palette, style)
     stem = Path(file_stem(spec, file_name_part(case)))
     endings = DEFAULT_FORMATS
@@ -109,16 +109,16 @@ def run(
         stem, endings = split_ending(output, list(Format), DEFAULT_FORMATS)
     with reserve_output(stem):
         with place.run() as context:
-            frame, analyses = compute_map_with_layers(spec, wanted, context)
+            frame, analyses = compute_map_with_layers(spec, requested_layers, context)
         # The cluster is closed now: with a Dask client, xarray would use locks that in-memory files do not support.
         with Place().run() as context:
             context.start_stage("writing")
-            contents = _contents(stem, formats or endings, frame, analyses, drawing)
+            contents = _make_contents(stem, formats or endings, frame, analyses, drawing)
         files = write_files(contents)
     _print(frame, analyses, files, count_outside, as_json)
 
 
-def _contents(
+def _make_contents(
     stem: Path, endings: Sequence[str], frame: EscapeMap, analyses: MapAnalyses, drawing: Drawing
 ) -> dict[Path, Content]:
     """Return the content of each output file: the map in some formats, and tables as CSV."""

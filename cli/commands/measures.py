@@ -20,7 +20,7 @@ import typer
 from cli.arguments import Slow, check_measures
 from cli.execution import THREADS_ONLY, Place
 from cli.map_analyses import compute_whole_map
-from cli.option_marks import But
+from cli.option_marks import OptionChanges
 from cli.options import with_options
 from cli.printing import AsJson, print_result
 from engine import MEASURES, MapSpec, Result
@@ -35,7 +35,7 @@ MEASURE_HELP = f"{', '.join(DESCRIBED)}; all by default. Can be repeated."
 @with_options
 def run(
     *,
-    spec: Annotated[MapSpec, But(without=("backward",))],
+    spec: Annotated[MapSpec, OptionChanges(without=("backward",))],
     measure: Annotated[list[str] | None, typer.Option(help=MEASURE_HELP)] = None,
     exponent: Slow = True,
     place: Annotated[Place, THREADS_ONLY],

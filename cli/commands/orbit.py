@@ -1,7 +1,7 @@
 """Integrate one orbit and print its verdict, SALI, Lyapunov exponent and Birkhoff digits.
 
 With --output STEM, STEM.csv contains the path, SALI, the exponent and R² against time, and STEM.png shows them.
-With --output FILE.csv, FILE.png, FILE.svg or FILE.pdf it writes that file alone.
+With --output FILE.csv, FILE.png, FILE.svg or FILE.pdf, only this file is written.
 
 Examples:
 
@@ -20,7 +20,7 @@ import typer
 
 from cli.arguments import GivenEnergy
 from cli.execution import Place
-from cli.option_marks import Of
+from cli.option_marks import DocumentedBy
 from cli.options import with_options
 from cli.output_files import Content, Stem, name_files, reserve_output, write_files
 from cli.printing import AsJson, print_result
@@ -46,8 +46,8 @@ def run(
     energy: GivenEnergy,
     start: Annotated[tuple[float, float] | None, typer.Option(metavar="X ORDINATE")] = None,
     state: Annotated[State | None, typer.Option(metavar="X Y PX PY")] = None,
-    t_max: Annotated[float, Of(integrate_orbit)],
-    most_rows: Annotated[int, Of(orbits_csv)],
+    t_max: Annotated[float, DocumentedBy(integrate_orbit)],
+    most_rows: Annotated[int, DocumentedBy(orbits_csv)],
     palette: Palette,
     style: FigureStyle,
     output: Stem = None,
@@ -65,7 +65,7 @@ def run(
     initial_state = _find_start(potential, plane, energy, start, state)
     paths = name_files(output, ["csv", *FigureFormat], ["csv", FigureFormat.PNG])
 
-    def content(ending: str) -> Content:
+    def make_content(ending: str) -> Content:
         if ending == "csv":
             return orbits_csv([orbit], most_rows, [verdict])
         curves = [compute_orbit_curves(potential, orbit)]
@@ -79,7 +79,7 @@ def run(
             if orbit.fate == Fate.BOUNDED:
                 digits = compute_birkhoff_digits(potential, initial_state, t_max, execution=context.execution)
         verdict = judge_orbit(orbit, digits)
-        files = write_files({path: content(ending) for ending, path in paths.items()})
+        files = write_files({path: make_content(ending) for ending, path in paths.items()})
     _print(orbit, verdict, evaluate_indicators(orbit, digits), files, as_json)
 
 
@@ -120,8 +120,9 @@ def _print(
         **{name: getattr(orbit, name) for name in ("energy", "escape_time", "crossings", "energy_error", "exits_unknown")},
         "start": [float(getattr(orbit, name)[0]) for name in ("x", "y", "px", "py")],
         "indicators": [
-            {"name": one.name, "value": one.value, "conclusion": one.conclusion, "sentence": one.sentence} for one in indicators
+            {"name": each.name, "value": each.value, "conclusion": each.conclusion, "sentence": each.sentence}
+            for each in indicators
         ],
     }
-    lines = [f"{one.name} {one.value:.3g}: {one.sentence}" for one in indicators]
+    lines = [f"{each.name} {each.value:.3g}: {each.sentence}" for each in indicators]
     print_result(as_json, answer, verdict.describe(), *lines, files=files)

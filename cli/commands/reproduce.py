@@ -70,7 +70,10 @@ def run(
         raise CancelledError(f"stopped; {len(made_figures)} of {len(chosen)} are made and stay in {output}") from None
     seconds = time.perf_counter() - begin
     side = map_quality.resolution
-    rows = [(one["name"], f"{one['seconds']:.1f} s", ", ".join(Path(file).name for file in one["files"])) for one in made_figures]
+    rows = [
+        (figure["name"], f"{figure['seconds']:.1f} s", ", ".join(Path(file).name for file in figure["files"]))
+        for figure in made_figures
+    ]
     sentence = f"Written to {output} in {seconds:.0f} s, {map_quality.name} quality: {side} x {side} starts a map."
     answer = {"quality": map_quality.name, "seconds": seconds, "figures": made_figures}
     print_result(as_json, answer, Table(("made", "in", "files"), rows), sentence)

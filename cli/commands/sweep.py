@@ -19,7 +19,7 @@ import typer
 
 from cli.arguments import space_values
 from cli.execution import Place
-from cli.option_marks import Of
+from cli.option_marks import DocumentedBy
 from cli.options import with_options
 from cli.printing import AsJson, print_result
 from engine import MEASURES, MapSpec, Potential, Slice, SweepSpec, compute_sweep, plan_sweep
@@ -33,15 +33,15 @@ def run(
     *,
     potential: Potential,
     store: Annotated[Path, typer.Option(metavar="FOLDER")],
-    low: Annotated[float | None, Of(space_values)] = None,
-    high: Annotated[float | None, Of(space_values)] = None,
-    count: Annotated[int | None, Of(space_values)] = None,
-    energy: Annotated[list[float] | None, Of(space_values, "listed")],
+    low: Annotated[float | None, DocumentedBy(space_values)] = None,
+    high: Annotated[float | None, DocumentedBy(space_values)] = None,
+    count: Annotated[int | None, DocumentedBy(space_values)] = None,
+    energy: Annotated[list[float] | None, DocumentedBy(space_values, "listed")],
     plane: Slice,
-    window: Annotated[GivenWindow | None, Of(MapSpec)],
-    resolution: Annotated[tuple[int, int], Of(SweepSpec)],
-    t_max: Annotated[float, Of(SweepSpec)],
-    use_evidence: Annotated[bool, Of(MapSpec)],
+    window: Annotated[GivenWindow | None, DocumentedBy(MapSpec)],
+    resolution: Annotated[tuple[int, int], DocumentedBy(SweepSpec)],
+    t_max: Annotated[float, DocumentedBy(SweepSpec)],
+    use_evidence: Annotated[bool, DocumentedBy(MapSpec)],
     measure: Annotated[list[str] | None, typer.Option(help=MEASURE_HELP)] = None,
     plan: bool = False,
     place: Place,

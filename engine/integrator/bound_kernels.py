@@ -32,12 +32,12 @@ from engine.integrator.source.recurrence import Definition, GeneratedCode, find_
 from engine.integrator.source.series import Setting, Structure
 
 _KERNEL_MODULES = (propagate, periodic_shooting, fixed_step, orbit_lanes, interior)
-# Number of cached potentials; to bind the coefficients of another potential of a known structure takes milliseconds.
+# Number of potentials whose bound kernels are cached. Binding another potential of a known structure takes milliseconds.
 _BOUND_POTENTIALS = 256
 # Held while code is generated.
 _lock = threading.Lock()
-# Code, name of the module and kernels of each structure. Entries stay, because machine code is never unloaded.
-_code_by_structure: dict[Structure, tuple[GeneratedCode, str, dict[str, GeneratedKernel]]] = {}
+# Code, module name and functions of each structure. Entries stay, because machine code is never unloaded.
+_code_by_structure: dict[Structure, tuple[GeneratedCode, str, dict[str, GeneratedFunction]]] = {}
 # Outlines (see `_outline`) and settings of all potentials for which functions were generated.
 _outlines: set[tuple[Hashable, Setting]] = set()
 
@@ -64,21 +64,20 @@ def load_kernels(
 
     Returns
     -------
-    A module with these functions, to be called without their leading addresses and without `coefficients`. When a potential of
-    this structure first uses a kernel, the generated functions that it calls are loaded from the cache or compiled, which takes
-    some seconds.
+    A module with these functions. Call them without the leading addresses and without `coefficients`. The first use of a kernel
+    for this structure loads the generated functions that it calls from the cache, or compiles them within some seconds.
     """
     return _load(definition, Setting(channels, sides, rotation != 0.0), rotation)
 
 
 def is_generated(definition: Definition, setting: Setting) -> bool:
-    """Return whether functions were generated for a potential of the same structure; to generate them takes up to 0.3 s."""
-    # Outlines are compared first, because to find the structure of a new formula takes up to 0.2 s.
+    """Return whether functions were generated for the structure of a potential. Generating them takes up to 0.3 s."""
+    # Outlines are compared first, because finding the structure of a new formula takes up to 0.2 s.
     return (_outline(definition), setting) in _outlines and find_structure(definition, setting) in _code_by_structure
 
 
-class GeneratedKernel:
-    """A generated function, compiled at its first use for the types in `SIGNATURES` only."""
+class GeneratedFunction:
+    """A generated function. Its first use compiles it, for the types in `SIGNATURES` only."""
 
     def __init__(self, dispatcher: Any) -> None:
         self._dispatcher = dispatcher
@@ -94,6 +93,10 @@ class GeneratedKernel:
     @property
     def address(self) -> int:
         """Address of the machine code, for calls from other kernels."""
+        return self._ensure_compiled() if self._address is None else self._address
+
+    def _ensure_compiled(self) -> int:
+        """Compile the function unless it is compiled, and return the address of the machine code."""
         if self._address is None:
             with self._compiling:
                 if self._address is None:
@@ -113,16 +116,15 @@ class GeneratedKernel:
         return self._dispatcher.py_func
 
     def __call__(self, *arguments: Any) -> Any:
-        """Call with arguments that can be cast to the types of the signature; TypeError for other arguments."""
-        # `address` compiles the function.
-        assert self.address
+        """Call the function with arguments that can be cast to the types of its signature; TypeError for other arguments."""
+        self._ensure_compiled()
         return self._dispatcher(*arguments)
 
 
 class _BoundKernel:
-    """A kernel together with the addresses and coefficients of one potential."""
+    """A kernel that passes the addresses of generated functions and the coefficients of one potential."""
 
-    def __init__(self, function: Any, callees: tuple[GeneratedKernel, ...], coefficients: np.ndarray) -> None:
+    def __init__(self, function: Any, callees: tuple[GeneratedFunction, ...], coefficients: np.ndarray) -> None:
         self.function = function
         self._callees = callees
         self._coefficients = coefficients
@@ -138,26 +140,26 @@ class _BoundKernel:
 
 @functools.lru_cache(maxsize=_BOUND_POTENTIALS)
 def _load(definition: Definition, setting: Setting, rotation: float) -> ModuleType:
-    code, module_name, generated = _define(find_structure(definition, setting))
+    code, module_name, generated_functions = _find_or_generate(find_structure(definition, setting))
     _outlines.add((_outline(definition), setting))
     coefficients = code.tabulate(definition, rotation)
     bound_module = ModuleType(module_name)
-    for name, function in generated.items():
+    for name, function in generated_functions.items():
         setattr(bound_module, name, _BoundKernel(function, (), coefficients))
     for module in _KERNEL_MODULES:
         for name, function in vars(module).items():
             if isinstance(function, Dispatcher) and function.py_func.__module__ == module.__name__:
                 # Parameters for addresses have the names of the generated functions.
                 parameters = inspect.signature(function.py_func).parameters
-                callees = tuple(generated[parameter] for parameter in parameters if parameter in generated)
+                callees = tuple(generated_functions[each] for each in parameters if each in generated_functions)
                 # Kernels without such parameters depend on no potential.
                 if callees:
                     setattr(bound_module, name, _BoundKernel(function, callees, coefficients))
     return bound_module
 
 
-def _define(structure: Structure) -> tuple[GeneratedCode, str, dict[str, GeneratedKernel]]:
-    """Return the entry of `_code_by_structure`; for a known structure, a thread never waits for other threads."""
+def _find_or_generate(structure: Structure) -> tuple[GeneratedCode, str, dict[str, GeneratedFunction]]:
+    """Return the entry of `_code_by_structure`, made if it is missing. For a known structure, a thread never waits for others."""
     if structure not in _code_by_structure:
         with _lock:
             if structure not in _code_by_structure:
@@ -167,23 +169,23 @@ def _define(structure: Structure) -> tuple[GeneratedCode, str, dict[str, Generat
 
 
 def _outline(definition: Definition) -> Hashable:
-    """Return what identifies most structures without much work: the powers of a polynomial, or the graph of an expression."""
+    """Return a quick key that identifies most structures: the powers of a polynomial, or the graph of an expression."""
     return make_graph((definition,))[0] if isinstance(definition, Expression) else frozenset((i, j) for i, j, _ in definition)
 
 
 @functools.cache
-def _define_module(code: GeneratedCode) -> tuple[str, dict[str, GeneratedKernel]]:
-    """Execute generated source as a module named after its hash; return its name and its kernels, which are not yet compiled."""
+def _define_module(code: GeneratedCode) -> tuple[str, dict[str, GeneratedFunction]]:
+    """Execute generated source as a module named after its hash. Return this name, and the functions, not compiled yet."""
     compiled_operations.add(code.digest, code.operations)
     name = f"kernels_{code.digest[:16]}"
     module = ModuleType(name)
-    # Numba looks for the module of a kernel here when it loads the kernel from the cache.
+    # Numba finds the module of a kernel here when it loads the kernel from the cache.
     sys.modules[name] = module
     source = "\n\n".join(function.kernel for function in code.functions)
-    # Numba reads the source of a function by way of this cache.
+    # Numba reads the source of a function through this cache.
     linecache.cache[f"<{name}>"] = (len(source), None, source.splitlines(keepends=True), f"<{name}>")
     programs = {function.program.name: straight_line(function.program) for function in code.functions}
     vars(module).update(kernel=kernel, read_table=table_reader(len(code.entries)), **programs)
     setattr(module, DEFINE, partial(_define_module, code))
     exec(compile(source, f"<{name}>", "exec"), vars(module))
-    return name, {function.name: GeneratedKernel(getattr(module, function.name)) for function in code.functions}
+    return name, {function.name: GeneratedFunction(getattr(module, function.name)) for function in code.functions}

@@ -1,4 +1,4 @@
-"""A thread-safe cache of results that is bounded by memory and drops the least recently used results."""
+"""A thread-safe cache of results in bounded memory."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 from cachetools import LRUCache
 
-# Size with which a result without arrays counts, in bytes.
+# Size of a result without arrays, in bytes.
 _SMALL_SIZE = 1024
 
 ABSENT: Any = object()
@@ -21,7 +21,7 @@ class ResultCache:
     Parameters
     ----------
     limit
-        Largest total size in bytes, 0 or more; a larger result is not stored. The size of a result is its attribute ``nbytes``; a
+        Largest total size in bytes, 0 or more. A larger result is not stored. The size of a result is its attribute ``nbytes``; a
         result without arrays counts as small.
     """
 
@@ -58,5 +58,5 @@ class ResultCache:
 
 
 def _size(result: Any) -> int:
-    """Return the size in bytes with which a result counts."""
+    """Return the size of a result, in bytes."""
     return getattr(result, "nbytes", 0) or _SMALL_SIZE

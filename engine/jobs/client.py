@@ -1,4 +1,4 @@
-"""A client of the job manager: scheduled fairly against other clients, with a limit on its requests."""
+"""A client of the job manager: it shares the threads fairly with other clients, and has a limit on its requests."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from engine.jobs.manager import Jobs
 from engine.jobs.subscription import Subscription
 
 MOST_REQUESTS = 32
-"""Default limit on the open requests of one client, more than all controls of a page can cause together."""
+"""Default limit on the open requests of one client: more than all controls of a page together can cause."""
 
 # Largest legal limit on the open requests of one client.
 _LARGEST_LIMIT = 1000
@@ -66,11 +66,11 @@ class JobClient:
         self._subscriptions = [subscription for subscription in self._subscriptions if subscription.open]
         if len(self._subscriptions) < self._most_requests:
             return None
-        refused = Subscription(lambda _: None, lambda _: None, on_error)
-        refused.fail(
+        refused_subscription = Subscription(lambda _: None, lambda _: None, on_error)
+        refused_subscription.fail(
             ValueError(
                 f"requests: {self._most_requests} are under way for this page, which is the limit; "
                 "wait for one to finish, or switch something off"
             )
         )
-        return refused
+        return refused_subscription

@@ -1,4 +1,4 @@
-"""A job: a computation as data, which is also the key of its result."""
+"""A job: a computation as data. The job is also the key of its result."""
 
 from __future__ import annotations
 
@@ -14,30 +14,30 @@ from engine.jobs.cache import ResultCache
 
 
 class Queue(Enum):
-    """The kind of the calls of a job, which decides in which queue they wait for a thread."""
+    """The kind of the calls of a job. It decides in which queue they wait for a thread."""
 
     FIRST_FRAME = "first frame"
-    """The function makes many short calls, which precede all other calls until its first result."""
+    """The function submits many short calls. Until its first result, they precede all other calls."""
 
     BACKGROUND = "background"
-    """The function makes many short calls."""
+    """The function submits many short calls."""
 
     LONG_CALL = "long call"
-    """The function is one call of up to seconds."""
+    """The function itself is one call of up to seconds."""
 
     LIMITED = "limited"
-    """The function is one call on text typed by a visitor, in a process with limits if any; one per account at a time."""
+    """The function itself is one call on text typed by a visitor, resource-limited if `Jobs` can; one per account at a time."""
 
     COMPILATION = "compilation"
-    """The function compiles kernels; only one such call runs at a time in the process."""
+    """The function itself is one call that compiles kernels. Only one such call runs at a time in the process."""
 
 
 @dataclass(frozen=True)
 class Job[Result]:
-    """A function and its arguments, hashable; equal jobs are computed once.
+    """A function and its arguments, hashable. Equal jobs are computed once.
 
-    The manager also passes the following arguments, if the function has parameters with these names: ``execution``, ``on_frame``,
-    to call with partial results, ``resume``, and ``find_result``, a function that returns the result of another job.
+    If the function has parameters with these names, the manager also passes ``execution``, ``on_frame`` to call with partial
+    results, ``resume``, and ``find_result``, which returns the result of another job.
 
     Attributes
     ----------
@@ -49,11 +49,11 @@ class Job[Result]:
     options
         ((name, value), …): keyword arguments.
     queue
-        The queue in which calls of the function wait for a thread.
+        The queue in which calls wait for a thread.
     orbits
         Number of orbits that the function holds in memory.
     find_earlier
-        A function of the job and of the cache that returns a cached result to continue, the value of ``resume``, or None.
+        Returns a cached result to continue, given the job and the cache, or None. This result is passed as ``resume``.
     """
 
     function: Callable[..., Result]
@@ -69,7 +69,7 @@ class Job[Result]:
         return self.orbits + sum(argument.orbits_held for argument in self.arguments if isinstance(argument, Job))
 
     def keywords(self, offered: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the keyword arguments of a call: the options, and the offered values for which the function has parameters."""
+        """Return the keyword arguments of a call: the options, and those offered values that the function has parameters for."""
         names = _parameter_names(self.function)
         return {**{name: value for name, value in offered.items() if name in names}, **dict(self.options)}
 
@@ -82,9 +82,9 @@ def run_job[Result](job: Job[Result], execution: Execution, known: Mapping[Job[A
     job
         The job.
     execution
-        The options with which the job and the jobs among its arguments run.
+        Execution of the job, and of the jobs among its arguments.
     known
-        Results by job, for the jobs whose results are known.
+        Known results, by job.
 
     Raises
     ------

@@ -1,4 +1,7 @@
-"""The job manager. Background computations are shared while in flight, can be cancelled, and are cached in bounded memory."""
+"""The job manager. Background computations are shared while in flight, can be cancelled, and are cached in bounded memory.
+
+The function of a job either submits many short calls, or is itself one long call (`Queue`).
+"""
 
 from __future__ import annotations
 
@@ -28,7 +31,7 @@ DEFAULT_CACHE_BYTES = 512 * 2**20
 DEFAULT_ORBITS = 4 * 2**20
 """Default limit on the number of orbits of large running jobs, which take about 500 MiB."""
 
-# Number of coordinating threads, one for each running job, which mostly wait for the pool; further jobs are queued.
+# Number of coordinating threads, one for each running job. They mostly wait for the pool. Further jobs are queued.
 _COORDINATORS = 1024
 
 log = logging.getLogger(__name__)
@@ -43,9 +46,9 @@ class _Run:
     client: Hashable
     account: Hashable
     map_priority: MapPriority | None
-    """Priority of a map on display; None for other jobs, whose short calls run in the background."""
+    """Priority of a map on display; None for other jobs, whose short calls have `Priority.BACKGROUND`."""
     cancel: threading.Event = field(default_factory=threading.Event)
-    latest: Any = None
+    partial_result: Any = None
     """The last partial result."""
     executors: Mapping[Queue, QueueExecutor] = field(default_factory=dict)
 
@@ -57,7 +60,7 @@ class _Run:
 
     def release(self) -> list[Subscription]:
         """Drop all references, so that reference counting alone frees the memory, and return the subscriptions."""
-        subscriptions, self.subscriptions, self.executors, self.latest = self.subscriptions, [], {}, None
+        subscriptions, self.subscriptions, self.executors, self.partial_result = self.subscriptions, [], {}, None
         return subscriptions
 
     def priority(self) -> Priority:
@@ -73,17 +76,17 @@ class Jobs:
     Parameters
     ----------
     executor
-        Any `concurrent.futures.Executor` for the computations; None for a thread pool that is scheduled fairly among clients.
+        Executor of the computations; None for a thread pool that is scheduled fairly among clients.
     cache_bytes
         Memory limit of complete and interrupted results, in bytes.
     most_orbits
         Largest number of orbits of all large running jobs together, at about 120 bytes per orbit.
     threads
         Size of the manager's own thread pool; None for the default pool of this process.
-    limited
-        Calls a function in a process with limits until an event is set, for `Queue.LIMITED`; None for a thread of this process.
-    limited_calls
-        Largest number of limited calls at a time, each of a different account.
+    run_limited
+        Runs a function in a resource-limited process, and aborts it when the event is set; None for a thread of this process.
+    most_limited_calls
+        Largest number of calls of `run_limited` at a time, each for a different account.
     clock
         The clock; by default the clock of this process.
     """
@@ -94,17 +97,17 @@ class Jobs:
         cache_bytes: int = DEFAULT_CACHE_BYTES,
         most_orbits: int = DEFAULT_ORBITS,
         threads: int | None = None,
-        limited: Callable[[Callable[[], Any], threading.Event], Any] | None = None,
-        limited_calls: int = 1,
+        run_limited: Callable[[Callable[[], Any], threading.Event], Any] | None = None,
+        most_limited_calls: int = 1,
         clock: Clock = time,
     ) -> None:
         self._executor = executor
-        self._limited = limited
+        self._run_limited = run_limited
         self._clock = clock
         self._scheduler = FairScheduler(None if threads is None else create_thread_pool(threads), clock)
         # Numba compiles one function at a time, so more threads would only wait for each other.
         self._compilations = FairScheduler(create_thread_pool(1), clock)
-        self._limited_calls = FairScheduler(create_thread_pool(limited_calls), clock, one_each=True)
+        self._limited_calls = FairScheduler(create_thread_pool(most_limited_calls), clock, one_each=True)
         self._semaphore = OrbitSemaphore(most_orbits)
         self._ended: Counter[str] = Counter()
         self._coordinators = ThreadPoolExecutor(_COORDINATORS, thread_name_prefix="jobs")
@@ -137,23 +140,26 @@ class Jobs:
             Identifies the client for fair scheduling: clients are served in turn, and the first frame of every map comes before
             the second frame of any map.
         account
-            The account whose share of the limit of compiled code the job uses, and whose turn it takes in the queues of limited
-            calls and of compilations. With None, no account is charged, and the job takes the turn of its client.
+            The account whose limit of compiled code the job uses. Limited calls and compilations take turns by account. Without
+            an account, no limit is charged, and these calls take turns by client.
         """
         subscription = Subscription(partial(self._unsubscribe, job), on_result, on_error)
         with self._lock:
-            latest = self.cache.get(job, ABSENT)
-            complete = _is_complete(latest)
-            if not complete and job in self._in_flight:
-                self._in_flight[job].subscriptions.append(subscription)
-                latest = self._in_flight[job].latest
-            elif not complete:
-                latest = None
+            cached_result = self.cache.get(job, ABSENT)
+            is_complete = _is_complete(cached_result)
+            partial_result: Any = None
+            if not is_complete and job in self._in_flight:
+                run = self._in_flight[job]
+                run.subscriptions.append(subscription)
+                partial_result = run.partial_result
+            elif not is_complete:
                 priority = self._map_priority() if job.queue is Queue.FIRST_FRAME else None
                 run = self._in_flight[job] = _Run(job, [subscription], client, account, priority)
                 self._coordinators.submit(self._run_job, run)
-        if complete or latest is not None:
-            subscription.deliver(latest, last=complete)
+        if is_complete:
+            subscription.deliver(cached_result, last=True)
+        elif partial_result is not None:
+            subscription.deliver(partial_result, last=False)
         return subscription
 
     @property
@@ -178,11 +184,11 @@ class Jobs:
         )
 
     def _map_priority(self) -> MapPriority:
-        return MapPriority(lambda: self._scheduler.first_frames_spared, self._clock)
+        return MapPriority(lambda: self._scheduler.first_frames_preferred, self._clock)
 
-    def spare_first_frames(self, spared: bool) -> None:
-        """Defer calls whose results may be replaced before they are seen, or end this; see `FairScheduler.spare_first_frames`."""
-        self._scheduler.spare_first_frames(spared)
+    def prefer_first_frames(self, preferred: bool) -> None:
+        """Start or end the preference for first frames, see `FairScheduler.prefer_first_frames`."""
+        self._scheduler.prefer_first_frames(preferred)
 
     def pause_background(self, paused: bool) -> None:
         """Pause or resume all but first frames, long calls and calls of other processes; see `FairScheduler.pause_background`."""
@@ -228,24 +234,24 @@ class Jobs:
                 subscription.deliver(result, last=True)
 
     def _compute(self, job: Job[Any], run: _Run, publish: Callable[[Any], None] | None) -> Any:
-        """Call the function of the job of a run, or of another job that it needs."""
+        """Call the function of a job: the job of the run, or a job whose result it needs."""
         arguments = [self._find_result(run, value) if isinstance(value, Job) else value for value in job.arguments]
         executors: Mapping[Queue, Executor] = dict.fromkeys(Queue, self._executor) if self._executor else run.executors
-        offered = {
+        offered_arguments = {
             "execution": Execution(executors[Queue.BACKGROUND], run.cancel),
             "on_frame": publish,
             "find_result": partial(self._find_result, run),
             "resume": job.find_earlier(job, self.cache) if job.find_earlier is not None else None,
         }
-        call = partial(job.function, *arguments, **job.keywords(offered))
-        if job.queue is Queue.LIMITED and self._limited is not None:
-            call = partial(self._limited, call, run.cancel)
+        call = partial(job.function, *arguments, **job.keywords(offered_arguments))
+        if job.queue is Queue.LIMITED and self._run_limited is not None:
+            call = partial(self._run_limited, call, run.cancel)
         if job.queue in (Queue.LONG_CALL, Queue.LIMITED, Queue.COMPILATION):
             return executors[job.queue].submit(call).result()
         return call()
 
     def _find_result[Result](self, run: _Run, job: Job[Result]) -> Result:
-        """Return the complete result of a job that the job of a run needs, from the cache or computed and then cached."""
+        """Return the complete result of a job that the job of the run needs. A computed result is cached."""
         result: Any = self.cache.get(job, ABSENT)
         if not _is_complete(result):
             result = self._compute(job, run, None)
@@ -256,13 +262,13 @@ class Jobs:
         return complete_result
 
     def _create_executors(self, run: _Run) -> Mapping[Queue, QueueExecutor]:
-        """Return the executors of a run, one for each kind of calls."""
-        # All pages of an account share a turn if one call may occupy the only thread for seconds.
+        """Return an executor for each `Queue`."""
+        # One limited call or compilation may occupy a thread for seconds, so all pages of an account share a turn.
         turn = run.client if run.account is None else run.account
-        calls = self._scheduler.executor(run.client, run.priority)
+        short_calls = self._scheduler.executor(run.client, run.priority)
         return {
-            Queue.FIRST_FRAME: calls,
-            Queue.BACKGROUND: calls,
+            Queue.FIRST_FRAME: short_calls,
+            Queue.BACKGROUND: short_calls,
             Queue.LONG_CALL: self._scheduler.executor(run.client, lambda: Priority.LONG_CALL),
             Queue.LIMITED: self._limited_calls.executor(turn, lambda: Priority.BACKGROUND),
             Queue.COMPILATION: self._compilations.executor(turn, lambda: Priority.LONG_CALL),
@@ -284,7 +290,7 @@ class Jobs:
         if result.complete:
             return
         with self._lock:
-            run.latest = result
+            run.partial_result = result
             if run.map_priority is not None:
                 run.map_priority.add_frame(result.horizon)
             subscriptions = list(run.subscriptions)

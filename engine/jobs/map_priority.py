@@ -1,4 +1,4 @@
-"""Priority of the calls of a map: its first frame comes first; parts that the next map may replace before they are seen, last."""
+"""Priority of the calls of a map: highest for its first frame, lowest while the next map may soon replace it."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from collections.abc import Callable
 from engine.jobs.scheduler import Clock, Priority
 
 REST_SECONDS = 1.0
-"""Time after its request, in seconds, during which a map is often replaced, because its user is still searching."""
+"""Time after the request of a map, in seconds, during which the map is often replaced: its user is still searching."""
 
 CROWDED_REST_SECONDS = 3.0
-"""This time while the process is crowded, in seconds; most maps are then replaced before a second frame is computed."""
+"""This time while the process is crowded, in seconds. Most maps are then replaced before a second frame is computed."""
 
 
 class MapPriority:
-    """Priority of the calls of one map; the time counts from the request, at which the object is made.
+    """Priority of the calls of one map. Construct it at the request, because its times count from then.
 
     Calls until the first frame have `Priority.FIRST_FRAME`. Calls with longer integration times, which change few pixels, have
     `Priority.UNSETTLED` during the first `REST_SECONDS`: other calls run first, but no thread stays idle. While the process is
@@ -36,7 +36,7 @@ class MapPriority:
         self._horizon = 0.0
 
     def add_frame(self, horizon: float) -> None:
-        """Count a frame; `horizon` as in `EscapeMap`."""
+        """Note that a frame is complete up to `horizon`, as in `EscapeMap`."""
         if self._first_horizon is None:
             self._first_horizon = horizon
         self._horizon = horizon

@@ -9,9 +9,9 @@ from contextlib import contextmanager
 from engine.foundations.execution import Execution
 
 SMALL_JOB = 2**16
-"""Largest number of orbits, such as a map of 256 × 256, of a job that does not count and never waits."""
+"""Largest number of orbits of a small job, such as a map of 256 × 256. Small jobs are not counted and never wait."""
 
-# Interval between checks for a cancellation of a waiting job, in seconds.
+# Interval between checks whether a waiting job is cancelled, in seconds.
 _CANCEL_POLL_SECONDS = 0.2
 
 
@@ -31,7 +31,7 @@ class OrbitSemaphore:
 
     @contextmanager
     def acquire(self, orbits: int, execution: Execution) -> Iterator[None]:
-        """Hold this many orbits while the context is active; CancelledError if the wait is cancelled."""
+        """Wait until this many orbits may be held, and hold them in this context; CancelledError if the wait is cancelled."""
         counted_orbits = orbits if orbits > SMALL_JOB else 0
         with self._released:
             while counted_orbits and self.held and self.held + counted_orbits > self.limit:

@@ -20,12 +20,12 @@ from engine.foundations.execution import count_workers, default_executor
 # Pause after a long call while background calls are paused, in units of its duration: a duty cycle of 10 %.
 _PAUSE_PER_LONG_CALL = 9.0
 
-# Number of clients whose last turns are known.
+# Number of clients whose last turns are remembered.
 _KNOWN_CLIENTS = 1000
 
 
 class Clock(Protocol):
-    """The functions of the module `time` that jobs use; tests replace them by a clock that is set by hand."""
+    """The functions of the module `time` that jobs use. Tests replace them by a clock that is set by hand."""
 
     def monotonic(self) -> float:
         """Return seconds since a fixed moment."""
@@ -38,13 +38,13 @@ class Priority(IntEnum):
     """Priority of a call; lower values run first."""
 
     FIRST_FRAME = 0
-    """Part of the first frame of a map; until this frame is complete the page shows nothing."""
+    """Part of the first frame of a map. The page shows nothing until this frame is complete."""
 
     LONG_CALL = 1
-    """A single call of up to seconds, such as one orbit. If there are several threads, one is kept free of such calls."""
+    """A single call of up to seconds, such as one orbit. One of several threads is kept free of such calls."""
 
     BACKGROUND = 2
-    """Part of a larger computation, about 50 ms long; under load most calls have this priority."""
+    """Part of a larger computation, about 50 ms long. Under load, most calls have this priority."""
 
     UNSETTLED = 3
     """Like `BACKGROUND`, for a result that is likely to be replaced before anyone sees it."""
@@ -74,9 +74,9 @@ class _Call(NamedTuple):
 
 
 class FairScheduler:
-    """Chooses the next call when a thread is free: by priority, and then of the client whose last turn is longest ago.
+    """Chooses the next call when a thread is free: by priority, then by the time since the last turn of its client.
 
-    Clients with many calls are thus served in turn, and a client that has not asked for a while is served before them.
+    Clients with many calls are thus served in turn. A client without recent calls is served before them.
 
     Parameters
     ----------
@@ -91,8 +91,8 @@ class FairScheduler:
     ----------
     computed
         Processor time of the calls that have ended, in seconds.
-    first_frames_spared
-        Whether `spare_first_frames` is in force.
+    first_frames_preferred
+        Whether `prefer_first_frames` is in force.
     """
 
     def __init__(self, pool: ThreadPoolExecutor | None = None, clock: Clock = time, *, one_each: bool = False) -> None:
@@ -101,18 +101,18 @@ class FairScheduler:
         self._one_each = one_each
         self.threads = count_workers(self._pool)
         self._lock = threading.Lock()
-        # The queues by client, then by executor, oldest first; clients without pending calls are removed.
+        # Queues of calls by client, then by executor, oldest first. Clients without pending calls are removed.
         self._pending: dict[Hashable, dict[QueueExecutor, deque[_Call]]] = {}
         self._turns = 0
-        # Number of the last turn of a client, from 1.
+        # Numbers of the last turns of the clients, from 1.
         self._last_turns: LRUCache[Hashable, int] = LRUCache(_KNOWN_CLIENTS)
         self._cancelled: WeakSet[QueueExecutor] = WeakSet()
-        # Number of threads of the pool that run calls.
+        # Number of threads that run calls.
         self._active_threads = 0
-        self._running: Counter[Priority] = Counter()
-        self._served: Counter[Hashable] = Counter()
+        self._running_by_priority: Counter[Priority] = Counter()
+        self._running_by_client: Counter[Hashable] = Counter()
         self._background_paused = False
-        self.first_frames_spared = False
+        self.first_frames_preferred = False
         self.computed = 0.0
         # Earliest start of the next long call while background calls are paused, on the monotonic clock.
         self._next_long_call = 0.0
@@ -139,27 +139,27 @@ class FairScheduler:
         """Pause or resume `Priority.BACKGROUND` calls and calls of lower priority, to relieve an overloaded process.
 
         During the pause, long calls have a duty cycle of 10 % of one thread. The next long call starts only when this method is
-        called, so it should be called about every 0.1 s during the pause.
+        called, so call it about every 0.1 s during the pause.
         """
         with self._lock:
             resumed, self._background_paused = self._background_paused and not paused, paused
         if resumed or paused:
             self._start_threads(self.threads if resumed else 1)
 
-    def spare_first_frames(self, spared: bool) -> None:
-        """Keep one thread free for first frames and delay `Priority.UNSETTLED` calls, or end this.
+    def prefer_first_frames(self, preferred: bool) -> None:
+        """Start or end the preference for first frames. It keeps one thread free for them, and delays `Priority.UNSETTLED` calls.
 
-        When other programs use the processor, a short call takes long, and the first frame of a map would wait for several short
-        calls in turn. If there is only one thread, it is not kept free. Delayed calls whose priority has changed start only when
-        this method is called, so it should be called about every 0.1 s.
+        When other programs use the processor, short calls take long, and the first frame of a map would wait for several of them.
+        A single thread is not kept free. Delayed calls whose priority has changed start only when this method is called: call it
+        about every 0.1 s.
         """
         with self._lock:
-            ended, self.first_frames_spared = self.first_frames_spared and not spared, spared
-        if ended or spared:
+            ended, self.first_frames_preferred = self.first_frames_preferred and not preferred, preferred
+        if ended or preferred:
             self._start_threads(self.threads if ended else 1)
 
     def add(self, call: _Call) -> None:
-        """Queue a call, or cancel it if the calls of its executor have been cancelled."""
+        """Queue a call. If the calls of its executor have been cancelled, cancel this call."""
         with self._lock:
             is_cancelled = call.executor in self._cancelled
             if not is_cancelled:
@@ -178,10 +178,10 @@ class FairScheduler:
         for call in cancelled:
             call.cancel()
 
-    def _start_threads(self, most: int) -> None:
-        """Start up to `most` more threads of the pool, if calls are pending."""
+    def _start_threads(self, most_threads: int) -> None:
+        """Start up to `most_threads` further threads of the pool, if calls are pending."""
         with self._lock:
-            count = min(most, self.threads - self._active_threads) if self._pending else 0
+            count = min(most_threads, self.threads - self._active_threads) if self._pending else 0
             self._active_threads += count
         for _ in range(count):
             self._pool.submit(self._run_calls)
@@ -190,28 +190,29 @@ class FairScheduler:
         """Run calls until no call may start."""
         while chosen := self._take_next():
             call, priority = chosen
-            begun, computed = self._clock.monotonic(), self._clock.thread_time()
+            start, start_processor_time = self._clock.monotonic(), self._clock.thread_time()
             call.run()
-            self._end_call(call.executor.client, priority, self._clock.monotonic() - begun, self._clock.thread_time() - computed)
+            duration, processor_time = self._clock.monotonic() - start, self._clock.thread_time() - start_processor_time
+            self._end_call(call.executor.client, priority, duration, processor_time)
 
-    def _end_call(self, client: Hashable, priority: Priority, duration: float, computed: float) -> None:
+    def _end_call(self, client: Hashable, priority: Priority, duration: float, processor_time: float) -> None:
         with self._lock:
-            self._running[priority] -= 1
-            self.computed += computed
-            self._served -= Counter([client])
+            self._running_by_priority[priority] -= 1
+            self.computed += processor_time
+            self._running_by_client -= Counter([client])
             if priority is Priority.LONG_CALL:
                 self._next_long_call = self._clock.monotonic() + _PAUSE_PER_LONG_CALL * duration
 
     def _take_next(self) -> tuple[_Call, Priority] | None:
-        """Return the next call that may start; if there is none, the thread is no longer active."""
+        """Take the next call that may start from its queue. If there is none, count the thread as ended and return None."""
         with self._lock:
             chosen = self._find_next()
             if chosen is None:
                 self._active_threads -= 1
                 return None
             executor, priority = chosen
-            self._running[priority] += 1
-            self._served[executor.client] += 1
+            self._running_by_priority[priority] += 1
+            self._running_by_client[executor.client] += 1
             queues = self._pending[executor.client]
             call = queues[executor].popleft()
             if not queues[executor]:
@@ -223,7 +224,7 @@ class FairScheduler:
 
     def _find_next(self) -> tuple[QueueExecutor, Priority] | None:
         """Return the executor of the next call that may start, and its priority; None if there is no such call."""
-        allowed = [client for client in self._pending if not (self._one_each and self._served[client])]
+        allowed = [client for client in self._pending if not (self._one_each and self._running_by_client[client])]
         allowed.sort(key=lambda client: self._last_turns.get(client, 0))
         candidates = [(executor, executor.priority()) for client in allowed for executor in self._pending[client]]
         priority = min((priority for _, priority in candidates if self._may_start(priority)), default=None)
@@ -237,14 +238,14 @@ class FairScheduler:
         """Return whether a call of a priority may start now."""
         if priority is Priority.FIRST_FRAME:
             return True
-        # One thread is kept free, unless it is the only one.
+        # Keep one thread free, unless it is the only one.
         most_threads = max(self.threads - 1, 1)
-        running_others = self._running.total() - self._running[Priority.FIRST_FRAME]
-        if self.first_frames_spared and (running_others >= most_threads or priority is Priority.UNSETTLED):
+        running_other_calls = self._running_by_priority.total() - self._running_by_priority[Priority.FIRST_FRAME]
+        if self.first_frames_preferred and (running_other_calls >= most_threads or priority is Priority.UNSETTLED):
             return False
         if priority is not Priority.LONG_CALL:
             return not self._background_paused
-        running_long_calls = self._running[Priority.LONG_CALL]
+        running_long_calls = self._running_by_priority[Priority.LONG_CALL]
         if self._background_paused:
             return running_long_calls == 0 and self._clock.monotonic() >= self._next_long_call
         return running_long_calls < most_threads

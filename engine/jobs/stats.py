@@ -14,7 +14,7 @@ class JobStats:
     in_flight
         Running and queued jobs.
     calls_waiting
-        Calls of these jobs that no thread has started; 0 if `Jobs` has an executor of the caller.
+        Calls of these jobs that no thread has started; 0 if `Jobs` uses an executor of the caller.
     done, failed, cancelled
         Number of jobs that have ended, by outcome.
     cache_bytes, cache_limit

@@ -1,4 +1,4 @@
-"""Subscriptions, which deliver the results of a job to a caller."""
+"""Subscriptions deliver the results of a job to a caller."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Subscription:
         """Whether more results, or an error, may follow."""
 
     def cancel(self) -> None:
-        """Close the subscription, which receives nothing more. Returns at once; may be called repeatedly."""
+        """Close the subscription, without waiting. It receives nothing more. Repeated calls are allowed."""
         self.open = False
         self._release(self)
 

@@ -22,7 +22,7 @@ from engine.maps.spec import MapSpec
 from engine.maps.stages import OnChange, Stage, run_stages, run_to_frame
 
 LARGEST_RUN = 2**20
-"""Largest number of pixels whose orbits are in memory together; larger maps are computed in blocks and cannot be resumed."""
+"""Largest number of pixels whose orbits are in memory together. Larger maps are computed in blocks and cannot be resumed."""
 
 DEEP_PIXEL = 1e-7
 """Distance of pixels, in units of the well, below which the share of pixels lost to double precision is estimated."""
@@ -80,7 +80,7 @@ def compute_map(
     execution = replace(execution, **{name: value for name, value in fields_by_name.items() if value is not None})
     if resume is not None:
         _check_resumable(spec, resume)
-    work = _begin(spec, resume, coarse_first=on_frame is not None)
+    work = _begin_computation(spec, resume, coarse_first=on_frame is not None)
     run_stages(work, execution, None if on_frame is None else lambda frame: on_frame(_in_units_of(spec, frame)))
     result = _in_units_of(spec, _with_rounded_share(work.result(), execution))
     if on_frame is not None and result.complete:
@@ -88,7 +88,7 @@ def compute_map(
     return result
 
 
-def _begin(spec: MapSpec, resume: EscapeMap | None, *, coarse_first: bool) -> MapRun | LineStack | BlockStack:
+def _begin_computation(spec: MapSpec, resume: EscapeMap | None, *, coarse_first: bool) -> MapRun | LineStack | BlockStack:
     """Return the computation of a map, in units of the well or, along a parameter, in the units of the request."""
     keeps_states = spec.resolution[0] * spec.resolution[1] <= LARGEST_RUN
     if spec.plane.parameter is not None:
@@ -100,7 +100,7 @@ def _begin(spec: MapSpec, resume: EscapeMap | None, *, coarse_first: bool) -> Ma
 
 
 def _in_units_of(spec: MapSpec, escape_map: EscapeMap) -> EscapeMap:
-    """Return a map of `_begin` in the units of its request."""
+    """Convert a map of `_begin_computation` to the units of its request."""
     return escape_map if spec.plane.parameter is not None else escape_map.restored(spec)
 
 
@@ -108,13 +108,13 @@ def _check_resumable(spec: MapSpec, resume: EscapeMap) -> None:
     """Raise ValueError unless a map can be continued for a request."""
     if resume.batch is None:
         raise ValueError("resume: this map has no integration state; must be a map returned by compute_map, not a frame")
-    different = [field.name for field in fields(spec) if getattr(resume.spec, field.name) != getattr(spec, field.name)]
-    if different not in ([], ["t_max"]) or resume.spec.t_max > spec.t_max:
-        raise ValueError(f"resume: a map with another {', '.join(different)}; must be equal but for a smaller t_max")
+    different_fields = [field.name for field in fields(spec) if getattr(resume.spec, field.name) != getattr(spec, field.name)]
+    if different_fields not in ([], ["t_max"]) or resume.spec.t_max > spec.t_max:
+        raise ValueError(f"resume: a map with another {', '.join(different_fields)}; must be equal but for a smaller t_max")
 
 
 def _with_rounded_share(result: EscapeMap, execution: Execution) -> EscapeMap:
-    """Add the share of pixels that double precision does not support to a map of `_begin`, if it is a deep zoom."""
+    """Add, in a deep zoom, the share of pixels that double precision does not support to a map of `_begin_computation`."""
     spacings = (np.ptp(axis) / max(axis.size - 1, 1) for axis in (result.x, result.ordinate))
     # The spacing of a single row or column is 0.
     is_deep = result.spec.plane.parameter is None and 0.0 < min(spacings) < DEEP_PIXEL
@@ -125,7 +125,7 @@ def _with_rounded_share(result: EscapeMap, execution: Execution) -> EscapeMap:
 
 
 def row_blocks(spec: MapSpec, max_pixels: int) -> Iterator[np.ndarray]:
-    """Divide the rows of a map into blocks; each block contains the mirror images of its rows.
+    """Divide the rows of a map into blocks. Each block contains the mirror images of its rows.
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ def row_blocks(spec: MapSpec, max_pixels: int) -> Iterator[np.ndarray]:
 
     Yields
     ------
-    The increasing row numbers of each block; together the blocks contain every row once.
+    The increasing row numbers of each block. Together, the blocks contain every row once.
     """
     columns, rows = spec.resolution
     height = max(max_pixels // columns, 1)
@@ -167,7 +167,7 @@ class BlockStack:
         self._arrays = empty_arrays(PIXEL_ARRAYS, spec.resolution[::-1])
 
     def stages(self, execution: Execution, _on_change: OnChange) -> Iterator[Stage]:
-        """Yield the stages, see `Staged`; each computes a block."""
+        """Yield the stages, see `Staged`. Each stage computes a block."""
         for rows in row_blocks(self.spec, self._max_pixels):
             yield partial(self._compute, rows, replace(execution, on_progress=None))
 
@@ -191,7 +191,7 @@ class BlockStack:
         return collect_map(self.spec, self.spec.pixel_centres(), self._arrays, **stage)
 
     def result(self) -> EscapeMap:
-        """Return the map so far; it has no integration state."""
+        """Return the map so far. It has no integration state."""
         return self.frame()
 
 
@@ -214,8 +214,8 @@ def estimate_rounded_share(escape_map: EscapeMap, execution: Execution = DEFAULT
     The share of the sampled interior pixels whose fate or number of crossings changes, 0 to 1; NaN without interior pixels.
     """
     sample = _sample_pixels(escape_map)
-    unlike = find_unlike_neighbours(sample.fate, sample.crossings)
-    return run_to_frame(TrustTest(sample, unlike, SAME_STARTS), execution).doubtful_share
+    has_unlike_neighbour = find_unlike_neighbours(sample.fate, sample.crossings)
+    return run_to_frame(TrustTest(sample, has_unlike_neighbour, SAME_STARTS), execution).doubtful_share
 
 
 def _sample_pixels(escape_map: EscapeMap) -> EscapeMap:

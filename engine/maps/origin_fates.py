@@ -19,7 +19,7 @@ from engine.maps.spec import MapSpec
 from engine.propagation.fates import Fate
 from engine.systems.outcomes import Exit
 
-# The verb for an orbit and its outcome, by array.
+# Verbs for the outcomes of an orbit, by array.
 _VERBS = {"origin": "entered", "fate": "leaves"}
 
 
@@ -50,7 +50,7 @@ class OriginFateMap(PixelAnalysis):
         return [outcome.label for outcome in self.spec.outcomes]
 
     def count_passages(self) -> np.ndarray:
-        """Return the number of starts by origin (row) and fate (column), 0 for bounded; int64, (outcomes + 1, outcomes + 1)."""
+        """Return the numbers of starts by origin (row) and fate (column), (outcomes + 1, outcomes + 1). Index 0 is bounded."""
         size = len(self.spec.outcomes) + 1
         is_decided = (self.origin >= 0) & (self.fate >= 0)
         pair_codes = self.origin[is_decided].astype(np.int64) * size + self.fate[is_decided]

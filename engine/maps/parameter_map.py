@@ -28,8 +28,8 @@ from engine.slices.axes import HeldParameter, highest_energy
 from engine.slices.parameter_family import ManyExitsError, parameter_family
 from engine.slices.window import Window
 
-# Time up to which a line is one task of the executor, in units of the well; a task takes about 50 ms at most. To divide a line
-# into tiles, for which a thread waits, takes three times as long, and pays only for orbits that are still inside at this time.
+# Time up to which a line is one task of the executor, in units of the well. The task takes at most about 50 ms. Dividing a line
+# into tiles takes three times as long, and pays only for orbits that are still inside at this time.
 _FIRST_HORIZON = 1000.0
 # Strides between the lines of successive frames.
 _STRIDES = (8, 4, 2, 1)
@@ -61,8 +61,8 @@ class Line:
     place: Place
     numbers: np.ndarray
 
-    def of(self, escape_map: EscapeMap) -> EscapeMap:
-        """Return this line of a map, with the outcome numbers of the line, and with its integration state if the map has one."""
+    def extract(self, escape_map: EscapeMap) -> EscapeMap:
+        """Return this line of a map, with the outcome numbers of the line, and with the integration state if the map has one."""
         line_numbers = np.zeros(int(self.numbers.max(initial=0)) + 1, np.int8)
         line_numbers[self.numbers] = np.arange(self.numbers.size)
         arrays: dict[str, Any] = {name: getattr(escape_map, name)[self.place] for name in PIXEL_ARRAYS}
@@ -91,7 +91,7 @@ def _line(spec: MapSpec, window: Window, find_member: Callable[[float], Any], k:
     try:
         member = find_member(value)
     except ManyExitsError:
-        # This is a ValueError too, but concerns the whole map.
+        # This ValueError concerns the whole map.
         raise
     except ValueError:
         return None
@@ -136,10 +136,10 @@ class LineStack:
                 index = (slice(None), k) if spec.plane.parameter_axis == 0 else k
                 self._arrays["fate"][index], self._arrays["started"][index] = Fate.FORBIDDEN, True
             elif resume is not None:
-                self._put(k, self._lines[k].of(resume))
+                self._put(k, self._lines[k].extract(resume))
 
     def stages(self, execution: Execution, on_change: OnChange) -> Iterator[Stage]:
-        """Yield the stages, see `Staged`; each integrates the orbits of some lines to a horizon."""
+        """Yield the stages, see `Staged`. Each stage integrates the orbits of some lines to a horizon."""
         first, last = _FIRST_HORIZON * self.spec.potential.units.time, self.spec.t_max
         has_two_horizons = first < last and self._keeps_states and not self._line_maps
         for horizon in (first, last) if has_two_horizons else (last,):
@@ -157,15 +157,15 @@ class LineStack:
 
     def _advance(self, stride: int, lines: list[int], horizon: float, execution: Execution, on_change: OnChange) -> None:
         """Integrate the orbits of some lines up to a time."""
-        continued = [k for k in lines if _continues(self._line_maps.get(k))]
-        arguments = [(self._lines[k], horizon, self._line_maps.get(k)) for k in continued]
+        continued_lines = [k for k in lines if _continues(self._line_maps.get(k))]
+        arguments = [(self._lines[k], horizon, self._line_maps.get(k)) for k in continued_lines]
         with _coordinating_threads() as threads:
             if horizon <= _FIRST_HORIZON * self.spec.potential.units.time:
                 futures = [execution.submit(_compute_line, *each) for each in arguments]
             else:
-                without_progress = replace(execution, on_progress=None)
-                futures = [threads.submit(_compute_line, *each, without_progress) for each in arguments]
-            for k, line_map in _as_finished(dict(zip(futures, continued, strict=True)), execution):
+                silent_execution = replace(execution, on_progress=None)
+                futures = [threads.submit(_compute_line, *each, silent_execution) for each in arguments]
+            for k, line_map in _as_finished(dict(zip(futures, continued_lines, strict=True)), execution):
                 self._put(k, line_map)
                 on_change(False)
         if not execution.is_cancelled:
@@ -179,7 +179,7 @@ class LineStack:
             values = getattr(line_map, name)
             array[line.place] = renumber(values, line.numbers) if name in _OUTCOME_ARRAYS else values
         if line_map.spec.t_max < self.spec.t_max:
-            # Orbits that are bounded until then only are undecided on the whole map.
+            # Orbits that are bounded only until this shorter time are undecided on the whole map.
             is_undecided = (line_map.fate == Fate.BOUNDED) & (line_map.evidence == Evidence.INTEGRATED)
             for name, value in (("fate", Fate.NOT_COMPUTED), ("evidence", Evidence.NONE)):
                 array = self._arrays[name]
@@ -222,14 +222,14 @@ def analyse_map[Analysis: PixelAnalysis](
     execution: Execution,
     **choices: Any,
 ) -> Analysis:
-    """Analyse a complete map; a map along a parameter is analysed line by line.
+    """Analyse a complete map. A map along a parameter is analysed line by line.
 
     Parameters
     ----------
     escape_map
         The map.
     begin
-        A function that begins the analysis of a map of one potential, or of a line with its place, and returns its computation.
+        Returns the computation that analyses a map of one potential, or a line with its place.
     kind
         The class of the analysis, for a map along a parameter.
     **choices
@@ -241,7 +241,7 @@ def analyse_map[Analysis: PixelAnalysis](
 
     Returns
     -------
-    The analysis of the map; it is complete when the analyses of all lines are complete.
+    The analysis of the map. It is complete when the analyses of all lines are complete.
     """
     if escape_map.spec.plane.parameter is None:
         return run_to_frame(begin(escape_map, ALL_PIXELS), execution, on_frame)
@@ -265,14 +265,14 @@ class _LineAnalyses[Analysis: PixelAnalysis]:
         self._finished_count, self._complete = 0, True
 
     def stages(self, execution: Execution, on_change: OnChange) -> Iterator[Stage]:
-        """Yield the stages, see `Staged`; all lines form one stage."""
+        """Yield the stages, see `Staged`. All lines form one stage."""
         yield partial(self._analyse, execution, on_change)
 
     def _analyse(self, execution: Execution, on_change: OnChange) -> None:
         """Analyse all lines."""
-        without_progress = replace(execution, on_progress=None)
+        silent_execution = replace(execution, on_progress=None)
         with _coordinating_threads() as threads:
-            lines = {threads.submit(self._analyse_line, line, without_progress): line for line in self._lines}
+            lines = {threads.submit(self._analyse_line, line, silent_execution): line for line in self._lines}
             for line, analysis in _as_finished(lines, execution):
                 for name, values in self._arrays.items():
                     values[line.place] = getattr(analysis, name)
@@ -281,7 +281,7 @@ class _LineAnalyses[Analysis: PixelAnalysis]:
                 on_change(True)
 
     def _analyse_line(self, line: Line, execution: Execution) -> Analysis:
-        return run_to_frame(self._begin(line.of(self._map), line.place), execution)
+        return run_to_frame(self._begin(line.extract(self._map), line.place), execution)
 
     def progress(self) -> float:
         """Return the share of the lines that are finished."""
@@ -309,7 +309,7 @@ def _as_finished[Key, Result](keys: dict[Future[Result], Key], execution: Execut
 
 
 def _coordinating_threads() -> ThreadPoolExecutor:
-    """Return threads for lines that are computed concurrently; they share the executor, and mostly wait for tiles."""
+    """Return threads for lines that are computed concurrently. The threads share the executor, and mostly wait for tiles."""
     return ThreadPoolExecutor(2 * count_cores(), thread_name_prefix="lines")
 
 

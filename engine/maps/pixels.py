@@ -49,7 +49,7 @@ def code_share(codes: np.ndarray, *counted: int) -> float:
 
 
 class MirrorPixels:
-    """Pairs of pixels whose orbits are exact mirror images under x → −x; only the first pixel of a pair needs computing.
+    """Pairs of pixels whose orbits are exact mirror images under x → −x. Only the first pixel of a pair needs computing.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ class MirrorPixels:
     symmetric
         Whether the potential and the pixels are symmetric under x → −x.
     partner
-        (n,) the mirror image of each pixel; without this symmetry, the pixel itself.
+        (n,) mirror image of each pixel; without this symmetry, the pixel itself.
     """
 
     def __init__(self, spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> None:
@@ -71,27 +71,27 @@ class MirrorPixels:
         self.symmetric = partner is not None
         self.partner = np.arange(x.size * ordinate.size) if partner is None else partner
 
-    def firsts_among(self, pixels: np.ndarray) -> np.ndarray:
-        """Return those of `pixels` (n,) that are the first of their pair."""
-        firsts: np.ndarray = pixels[pixels <= self.partner[pixels]]
-        return firsts
+    def select_first_images(self, pixels: np.ndarray) -> np.ndarray:
+        """Return those of `pixels`, of shape (n,), that are the first of their pair."""
+        first_images: np.ndarray = pixels[pixels <= self.partner[pixels]]
+        return first_images
 
-    def firsts_of(self, pixels: np.ndarray) -> np.ndarray:
-        """Return the first pixel of the pair of each of `pixels` (n,); given and returned pixels are sorted and distinct."""
+    def find_first_images(self, pixels: np.ndarray) -> np.ndarray:
+        """Return the first pixels of the pairs of `pixels`, of shape (n,). Given and returned pixels are sorted and distinct."""
         if not self.symmetric:
             return pixels
         is_first = np.zeros(self.partner.size, bool)
         is_first[np.minimum(pixels, self.partner[pixels])] = True
         return np.flatnonzero(is_first)
 
-    def copy_to_seconds(self, values: np.ndarray) -> None:
-        """Overwrite the second pixel of each pair by the first in an array (rows, columns)."""
-        seconds = np.flatnonzero(self.partner < np.arange(self.partner.size))
-        values.ravel()[seconds] = values.ravel()[self.partner[seconds]]
+    def copy_to_second_images(self, values: np.ndarray) -> None:
+        """Overwrite, in an array (rows, columns), the second pixel of each pair by the first."""
+        second_images = np.flatnonzero(self.partner < np.arange(self.partner.size))
+        values.ravel()[second_images] = values.ravel()[self.partner[second_images]]
 
 
 class PixelCodes:
-    """Holds the codes of the pixels of a map while an analysis decides them. Two mirror images have the same code.
+    """The codes of the pixels of a map while an analysis decides them. Mirror images have the same code.
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ class PixelCodes:
     def __init__(self, escape_map: EscapeMap, codes: np.ndarray, pending: int) -> None:
         self._mirror = MirrorPixels(escape_map.spec, escape_map.x, escape_map.ordinate)
         self._codes, self._pending = codes.astype(np.int8), pending
-        self.pixels = self._mirror.firsts_among(np.flatnonzero(codes == pending))
+        self.pixels = self._mirror.select_first_images(np.flatnonzero(codes == pending))
 
     def assign(self, pixels: np.ndarray, code: int) -> None:
         """Set the code of the pixels (n,)."""
@@ -120,7 +120,7 @@ class PixelCodes:
     def mirrored(self, values: np.ndarray) -> np.ndarray:
         """Return a read-only copy of values (rows, columns) in which the second pixel of each pair has the value of the first."""
         mirrored = values.copy()
-        self._mirror.copy_to_seconds(mirrored)
+        self._mirror.copy_to_second_images(mirrored)
         return read_only(mirrored)
 
     def snapshot(self) -> tuple[np.ndarray, bool]:

@@ -52,13 +52,13 @@ type MapLike = EscapeMap | xr.Dataset
 """A map as measures and analyses accept it: an `EscapeMap`, or its dataset, such as a map of a sweep."""
 
 NOTED_SHARE = 0.01
-"""Smallest share of interior pixels that double precision does not support at which a map reports this share."""
+"""Smallest share of interior pixels lost to double precision that a map reports."""
 
 
 @with_former_fields
 @dataclass(frozen=True, eq=False, repr=False)
 class EscapeMap(MapResult):
-    """An escape map, complete or in progress; arrays are read-only and of shape (rows, columns), with row 0 at the bottom.
+    """An escape map, complete or in progress. Arrays are read-only and of shape (rows, columns), with row 0 at the bottom.
 
     Attributes
     ----------
@@ -67,7 +67,7 @@ class EscapeMap(MapResult):
     x, ordinate
         (columns,), (rows,) pixel centres.
     fate, escape_time, crossings, energy_error
-        See `Outcomes`; undecided pixels are `Fate.NOT_COMPUTED`.
+        See `Outcomes`. Undecided pixels are `Fate.NOT_COMPUTED`.
     evidence
         int8, the `Evidence` of each bounded orbit: the reason why it is called bounded. Crossings and energy error of an orbit
         that is bounded on evidence refer to the time up to which it was integrated.
@@ -79,7 +79,7 @@ class EscapeMap(MapResult):
     horizon
         Time up to which orbits are integrated in the current stage; t_max in the last stage.
     progress
-        Share of the work done, 0 to 1; an undecided orbit counts by the share of t_max up to which it is integrated.
+        Share of the work done, 0 to 1. An undecided orbit counts by the share of t_max up to which it is integrated.
     complete
         Whether every pixel is decided.
     started
@@ -177,7 +177,7 @@ class EscapeMap(MapResult):
             raise ValueError(f"{name}: the map is not complete, its progress is {self.progress:.1%}; must be a complete map")
 
     def in_well_units(self) -> EscapeMap:
-        """Return the map with coordinates, energies and times in units of the well; its `batch` is always in these units."""
+        """Return the map with coordinates, energies and times in units of the well. Its `batch` is always in these units."""
         units, spec = self.spec.potential.units, self.spec.in_well_units()
         x_unit, ordinate_unit = self.spec.plane.axis_units(units)
         return replace(units.inverse.restore(self), spec=spec, x=self.x / x_unit, ordinate=self.ordinate / ordinate_unit)
@@ -268,7 +268,7 @@ def pixel_dataset(
 def collect_map(
     spec: MapSpec, centres: tuple[np.ndarray, np.ndarray], arrays: Mapping[str, np.ndarray], **stage: Any
 ) -> EscapeMap:
-    """Return a map with read-only views of `PIXEL_ARRAYS`; `stage` is its `stride`, `horizon` and `progress`."""
+    """Return a map with read-only views of `PIXEL_ARRAYS`. `stage` is its `stride`, `horizon` and `progress`."""
     x, ordinate = centres
     complete = bool(arrays["started"].all() and not np.any(arrays["fate"] == Fate.NOT_COMPUTED))
     pixels: dict[str, Any] = {name: read_only(array.reshape(ordinate.size, x.size)) for name, array in arrays.items()}
@@ -290,7 +290,7 @@ def find_interior(fate: np.ndarray) -> np.ndarray:
 
 
 def representative_indices(size: int, stride: int) -> np.ndarray:
-    """Return, for each of `size` rows or columns, the first computed in its block of `stride`: the middle, or the last of all."""
+    """Return, for each of `size` indices, the first computed index of its block of `stride`: the middle, or the last of all."""
     return np.minimum(np.arange(size) // stride * stride + stride // 2, size - 1)
 
 
@@ -300,7 +300,7 @@ def as_complete_map(name: str, value: Any) -> EscapeMap:
     Raises
     ------
     ValueError
-        If the value is neither, is a dataset of several maps, or is not complete; the message contains `name` as the parameter.
+        If the value is neither, is a dataset of several maps, or is not complete. The message contains `name` as the parameter.
     """
     legal = "an EscapeMap, or a dataset of one"
     escape_map = value if isinstance(value, EscapeMap) else read_map(checked_dataset(name, value, _STORED_ARRAYS, legal))

@@ -25,7 +25,7 @@ COARSE_PIXELS = 1200
 """Largest number of pixels in the first frame."""
 
 FIRST_TEST_TIME = 1000.0
-"""Time, in units of the well, at which undecided orbits are first tested for evidence; most escapes happen earlier."""
+"""Time, in units of the well, at which undecided orbits are first tested for evidence. Most escapes happen earlier."""
 
 # Horizon of the first stages, in units of the well.
 _FIRST_HORIZON = 100.0
@@ -43,7 +43,7 @@ def rising_horizons(first: float, factor: float, t_max: float) -> Iterator[float
 
 
 def looks_for_tori(spec: MapSpec) -> bool:
-    """Return whether the orbits of a map are tested for evidence."""
+    """Return whether the orbits of a map are tested for evidence of tori."""
     return spec.use_evidence and spec.potential.tori_are_evidence
 
 
@@ -77,20 +77,20 @@ class MapRun:
         self, spec: MapSpec, resume: EscapeMap | None = None, rows: np.ndarray | None = None, *, coarse_first: bool = True
     ) -> None:
         self.spec = spec
-        self.x, self.ordinate = spec.pixel_centres()
-        self.ordinate = self.ordinate if rows is None else self.ordinate[rows]
+        self.x, ordinate = spec.pixel_centres()
+        self.ordinate = ordinate if rows is None else ordinate[rows]
         self.shape = (self.ordinate.size, self.x.size)
         self.stride = _coarsest_stride(self.shape) if coarse_first else 1
         self.horizon = min(_FIRST_HORIZON, spec.t_max)
         self._mirror = MirrorPixels(spec, self.x, self.ordinate)
         rows_of_pixels, columns_of_pixels = np.divmod(np.arange(self.ordinate.size * self.x.size), self.x.size)
         self._energy = spec.energies(self.x[columns_of_pixels], self.ordinate[rows_of_pixels])
-        # With an axis h, each row or column of pixels has its own energy and exits, which are a row of `_curves`.
+        # With an axis h, each row or column of pixels has its own energy, and its own exits in a row of `_curves`.
         self._curve_row = spec.plane.energy_groups(*self.shape)
         self._curves = np.repeat(closed_exits(spec.potential)[None], self._curve_row[-1] + 1, axis=0)
         self._rows_without_exits = set(range(len(self._curves)))
         self._batch, self._started = OrbitBatch.empty(self._curve_row), np.zeros(self._curve_row.size, bool)
-        # Energy errors of the orbits that an earlier map has finished, whose states are not stored; NaN for all other orbits.
+        # Energy errors of orbits that an earlier map has finished, because their states are not stored; NaN for other orbits.
         self._earlier_errors: np.ndarray | None = None
         if resume is not None:
             self._continue(resume)
@@ -110,11 +110,11 @@ class MapRun:
         self._batch.reopen(continued_pixels)
 
     def stages(self, execution: Execution, on_change: OnChange) -> Iterator[Stage]:
-        """Yield the stages, see `Staged`; each integrates orbits to a horizon, or looks for evidence there."""
+        """Yield the stages, see `Staged`. Each stage integrates orbits to a horizon, or looks for evidence there."""
         on_pixels = partial(on_change, False)
         self._find_starts(execution)
         for pixels, stride, horizon in self._targets():
-            # Here `self.horizon` is that of the preceding stage.
+            # Here, `self.horizon` is the horizon of the preceding stage.
             if looks_for_tori(self.spec) and self.horizon >= FIRST_TEST_TIME:
                 yield partial(self._test_for_evidence, self.horizon, execution, on_pixels)
             yield partial(self._advance, pixels, stride, horizon, execution, on_pixels)
@@ -128,20 +128,22 @@ class MapRun:
             yield pixels, stride, horizon
 
     def _refinements(self) -> Iterator[tuple[np.ndarray, int]]:
-        """Yield (pixels, stride) of each refinement, coarse to fine; the last refinement contains all pixels."""
+        """Yield (pixels, stride) of each refinement, coarse to fine. The last refinement contains all pixels."""
         numbers = np.arange(self._started.size).reshape(self.shape)
         stride = 1 if self._started.all() else self.stride
         while stride > 1:
             rows, columns = (np.unique(representative_indices(size, stride)) for size in self.shape)
-            yield self._mirror.firsts_of(numbers[np.ix_(rows, columns)].ravel()), stride
+            yield self._mirror.find_first_images(numbers[np.ix_(rows, columns)].ravel()), stride
             stride //= 2
-        yield self._mirror.firsts_of(numbers.ravel()), 1
+        yield self._mirror.find_first_images(numbers.ravel()), 1
 
     def _find_starts(self, execution: Execution) -> None:
         """Find the initial states of all pixels without a state."""
-        missing = self._mirror.firsts_among(np.flatnonzero((self._batch.fate == Fate.NOT_COMPUTED) & ~self._started))
+        pixels_without_state = self._mirror.select_first_images(
+            np.flatnonzero((self._batch.fate == Fate.NOT_COMPUTED) & ~self._started)
+        )
         axes = self.spec, self.x, self.ordinate
-        for part, states in run_parts(_start_states, missing, lambda part: (*axes, part), execution=execution):
+        for part, states in run_parts(_start_states, pixels_without_state, lambda part: (*axes, part), execution=execution):
             self._batch.set_starts(part, states)
 
     def _advance(
@@ -182,37 +184,37 @@ class MapRun:
                 self._rows_without_exits.discard(row)
 
     def _test_for_evidence(self, reached: float, execution: Execution, on_round: Callable[[], None]) -> None:
-        """Mark orbits that are inside at t = `reached` as bounded if there is evidence; a cancelled test marks no orbits."""
+        """Mark orbits that are inside at t = `reached` as bounded if there is evidence. A cancelled test marks no orbits."""
         spec, batch = self.spec, self._batch
-        tested = self._find_untested(reached, execution)
-        if not tested.size:
+        tested_pixels = self._find_untested(reached, execution)
+        if not tested_pixels.size:
             return
-        grid_indices = np.column_stack(np.divmod(tested, self.shape[1]))
+        grid_indices = np.column_stack(np.divmod(tested_pixels, self.shape[1]))
         time_left = (_HORIZON_FACTOR - 1.0) * reached
         search = BoundedOrbitSearch(
-            spec.potential, spec.common_energy, batch.state[tested], grid_indices, time_left, execution,
-            tested_for=time_left / _HORIZON_FACTOR, digits=batch.digits[tested],
+            spec.potential, spec.common_energy, batch.state[tested_pixels], grid_indices, time_left, execution,
+            tested_for=time_left / _HORIZON_FACTOR, digits=batch.digits[tested_pixels],
         )  # fmt: skip
 
         def mark_bounded() -> None:
-            batch.mark_bounded(tested, search.evidence)
+            batch.mark_bounded(tested_pixels, search.evidence)
             on_round()
 
         if search.run(mark_bounded):
-            batch.tested[tested], batch.digits[tested] = reached, search.digits
+            batch.tested[tested_pixels], batch.digits[tested_pixels] = reached, search.digits
         else:
             # When the map is continued, the test is repeated with all these orbits, so that its result is the same.
-            batch.reopen(tested)
+            batch.reopen(tested_pixels)
 
     def _find_untested(self, reached: float, execution: Execution) -> np.ndarray:
         """Return the pixels whose orbits are inside at t = `reached` and have not been tested at that time."""
         batch = self._batch
         untested = np.flatnonzero((batch.fate == Fate.NOT_COMPUTED) & (batch.tested < reached))
-        firsts = self._mirror.firsts_among(untested)
+        first_images = self._mirror.select_first_images(untested)
         # Orbits stop before the step across `reached`. On a map with t_max = `reached`, an orbit can escape in this step, so the
-        # step is taken here too.
-        propagate_batch(self.spec.potential, self._curves, batch, firsts, reached, final=True, execution=execution)
-        inside: np.ndarray = firsts[batch.fate[firsts] == Fate.BOUNDED]
+        # step is also taken here.
+        propagate_batch(self.spec.potential, self._curves, batch, first_images, reached, final=True, execution=execution)
+        inside: np.ndarray = first_images[batch.fate[first_images] == Fate.BOUNDED]
         batch.reopen(inside)
         return inside
 
@@ -231,12 +233,14 @@ class MapRun:
         return collect_map(self.spec, (self.x, self.ordinate), arrays, **stage)
 
     def _outcomes(self) -> Outcomes:
-        """Return the outcomes of all n pixels, (n,) arrays; second mirror images get the outcomes of the first."""
+        """Return the outcomes of all pixels, arrays of shape (n,). Second mirror images get the outcomes of the first."""
         partner = self._mirror.partner
-        firsts = np.flatnonzero(self._started & (partner > np.arange(partner.size)))
-        if firsts.size:
-            self._batch.copy_to_images(firsts, partner[firsts], self.spec.potential.well.mirror_numbers(self._energy[firsts]))
-            self._started[partner[firsts]] = True
+        first_images = np.flatnonzero(self._started & (partner > np.arange(partner.size)))
+        if first_images.size:
+            self._batch.copy_to_images(
+                first_images, partner[first_images], self.spec.potential.well.mirror_numbers(self._energy[first_images])
+            )
+            self._started[partner[first_images]] = True
         outcomes = collect_outcomes(self.spec.potential, self._energy, self._batch)
         if self._earlier_errors is None:
             return outcomes
@@ -248,12 +252,12 @@ class MapRun:
         fate = self._batch.fate
         shares = np.where(fate == Fate.NOT_COMPUTED, np.minimum(self._batch.t / self.spec.t_max, 1.0), 1.0)
         # Second mirror images do not count, because they are copied later.
-        counts = find_interior(fate) & (self._mirror.partner >= np.arange(fate.size))
-        return float(shares[counts].mean()) if counts.any() else 1.0
+        is_counted = find_interior(fate) & (self._mirror.partner >= np.arange(fate.size))
+        return float(shares[is_counted].mean()) if is_counted.any() else 1.0
 
 
 def _start_states(spec: MapSpec, x: np.ndarray, ordinate: np.ndarray, pixels: np.ndarray) -> np.ndarray:
-    """Return the initial states of n pixels of a map with these pixel centres, of shape (n, 4); called in a worker."""
+    """Return the initial states of n pixels of a map with these pixel centres, of shape (n, 4). A worker calls this."""
     rows, columns = np.divmod(pixels, x.size)
     return spec.start_states(x[columns], ordinate[rows])
 

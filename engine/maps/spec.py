@@ -36,7 +36,7 @@ DEFAULT_RESOLUTION = (224, 224)
 """Default number of columns and rows of a map: even, so that no pixel lies on a line of symmetry."""
 
 FINEST_PIXEL = 1e-15
-"""Smallest distance of neighbouring pixels, in units of the well: a few units in the last place of coordinates of order 1."""
+"""Smallest distance of neighbouring pixels, relative to the larger of the well's unit and the largest coordinate."""
 
 
 @with_former_fields
@@ -54,28 +54,28 @@ class MapSpec:
         The slice of starts: a `Plane` or another `Slice`. A plane can be given by name: "x_px", as on the command line, or
         "(x, px)".
     energy
-        h, finite, dimensionless; on a slice with an axis h a pair (low, high). At or below the escape energy no orbit escapes.
+        h, finite, dimensionless. On a slice with an axis h, a pair (low, high). At or below the escape energy, no orbit escapes.
     resolution
         Columns and rows, each 1 to 4096.
     window
         Part of the slice: a `Window`, or (x_low, x_high, ordinate_low, ordinate_high). None for the default window, which shows
-        the whole interior, also after ``dataclasses.replace(spec, energy=…)``. With an odd number of columns or rows, the default
-        window is shifted by half a pixel if its middle line would be a line of symmetry, on which orbits stay for ever.
+        the whole interior, also after ``dataclasses.replace(spec, energy=…)``. With an odd number of columns or rows, a line of
+        pixels could lie on a line of symmetry, on which orbits stay for ever. The default window is then shifted by half a pixel.
     t_max
-        Integration time, 0 < t_max ≤ 1e8, dimensionless. The default is 1e5. In rotating frames it is 1000/Ω, and with bodies or
-        an escape radius 1000, because bounded orbits are then integrated to the end. If the unit of time 1/ω of the well is above
-        1, the limit is 1e8 in this unit.
+        Integration time, 0 < t_max ≤ 1e8, dimensionless. The default is 1e5; in rotating frames 1000/|Ω|, and otherwise 1000 with
+        bodies or an escape radius. The default is shorter there because bounded orbits are integrated to the end. If the unit of
+        time 1/ω of the well is above 1, the limit is 1e8 in this unit.
     use_evidence
         Whether an orbit may be called bounded before t_max, on evidence that it never escapes, see `Evidence`.
     backward
-        Whether to follow orbits into the past, which equals following (x, y, −px, −py) into the future, in a rotating frame with
-        −Ω for Ω. Fates are then the outcomes backward in time, such as the channels through which orbits entered. Escape times
-        count backward from the start, and crossings are the upward crossings of the reversed orbit.
+        Whether to follow orbits into the past. This equals following (x, y, −px, −py) into the future, with −Ω for Ω. Fates are
+        then the outcomes backward in time, such as the channels through which orbits entered. Escape times count backward from
+        the start. Crossings are the upward crossings of the reversed orbit.
 
     Raises
     ------
     ValueError
-        When a parameter is invalid; the message names it, its value and the legal values.
+        If a parameter is invalid. The message names the parameter, its value and the legal values.
 
     Examples
     --------
@@ -98,7 +98,7 @@ class MapSpec:
     use_evidence: bool = True
     backward: bool = False
 
-    # Type checkers accept the types that are converted; the fields have the types of the stored values.
+    # `__init__` accepts more types than the fields have, and converts them. This declaration tells type checkers.
     if TYPE_CHECKING:
 
         def __init__(
@@ -170,7 +170,7 @@ class MapSpec:
         return trace_zero_velocity_curve(self.potential, self.plane, self.energy, self.find_window())
 
     def in_well_units(self) -> MapSpec:
-        """Return the request in units of the well, with its window; the legal ranges of t_max and energy do not apply to it."""
+        """Return the request in units of the well, with its window. The legal ranges of t_max and energy do not apply to it."""
         units, window = self.potential.units, self.find_window()
         potential = self.potential.reversed_in_time if self.backward else self.potential
         return replace_unchecked(
@@ -252,12 +252,12 @@ def _checked_resolution(resolution: Any) -> tuple[int, int]:
 
 
 def read_spec(dataset: xr.Dataset) -> MapSpec:
-    """Return the request of a map, from the attributes of its dataset; the energy of one map of a sweep is its coordinate h."""
+    """Return the request of a map from the attributes of its dataset. The energy of a map of a sweep is its coordinate h."""
     attributes = dataset.attrs
     if attributes.get("along"):
         raise ValueError(
-            f"dataset: is of a sweep along {attributes['axis']}, whose fates have the numbers of the sweep; must be a map of "
-            "compute_map, or one of a sweep over energies"
+            f"dataset: is a map of a sweep along {attributes['axis']}, with the fate numbers of the whole sweep; must be a map "
+            "of compute_map, or of a sweep over energies"
         )
     try:
         system_fields = json.loads(attributes["system"])

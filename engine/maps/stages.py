@@ -24,7 +24,7 @@ Pause = Callable[[float], float]
 """A function that returns the pause in seconds after a frame, given the time in seconds since the start of the computation."""
 
 OnChange = Callable[[bool], None]
-"""A function to call whenever pixels may have changed; its argument is whether a stage has ended."""
+"""A function to call whenever pixels may have changed. Its argument tells whether a stage has ended."""
 
 
 class Frame(Protocol):
@@ -39,7 +39,7 @@ class Staged[F: Frame](Protocol):
     """A computation in stages: coarse to fine, short to long integration times, or part by part of a map."""
 
     def stages(self, execution: Execution, on_change: OnChange) -> Iterator[Stage]:
-        """Yield the stages; each is called before the next one is requested. Stages call `on_change` repeatedly."""
+        """Yield the stages. Each stage is called before the next one is requested. Stages call `on_change` repeatedly."""
 
     def progress(self) -> float:
         """Return the share of the work done, 0 to 1."""
@@ -63,14 +63,14 @@ def run_stages[F: Frame](
     work
         The computation.
     execution
-        How the computation runs; progress is reported whenever pixels may have changed.
+        How the computation runs. Progress is reported whenever pixels may have changed.
     on_frame
         Called in this thread with incomplete frames: first at the end of a stage, so that the frame has one resolution, and then
         after pauses.
     pause
-        Returns the pause after a frame; by default, pauses grow.
+        Returns the pause after a frame. By default, pauses grow.
     """
-    on_change = _Follower(work, execution, on_frame, pause)
+    on_change = _FrameReporter(work, execution, on_frame, pause)
     for stage in work.stages(execution, on_change):
         if execution.is_cancelled:
             break
@@ -81,7 +81,7 @@ def run_stages[F: Frame](
 def run_to_frame[F: Frame](
     work: Staged[F], execution: Execution, on_frame: Callable[[F], None] | None = None, pause: Pause = frame_pause
 ) -> F:
-    """Apply `run_stages`, and return the last frame; if it is complete, `on_frame` also receives it."""
+    """Apply `run_stages`, and return the last frame. If this frame is complete, `on_frame` also receives it."""
     run_stages(work, execution, on_frame, pause)
     frame = work.frame()
     if on_frame is not None and frame.complete:
@@ -89,7 +89,7 @@ def run_to_frame[F: Frame](
     return frame
 
 
-class _Follower[F: Frame]:
+class _FrameReporter[F: Frame]:
     """An `OnChange` that reports progress, and publishes incomplete frames of a computation with pauses between them."""
 
     def __init__(self, work: Staged[F], execution: Execution, on_frame: Callable[[F], None] | None, pause: Pause) -> None:

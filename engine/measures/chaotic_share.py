@@ -18,16 +18,16 @@ _JUDGEMENTS = (Regularity.REGULAR, Regularity.CHAOTIC, Regularity.NO_SIGN_OF_CHA
 
 @dataclass(frozen=True)
 class ChaoticShare(Result):
-    """Counts of chaotic orbits among the bounded orbits.
+    """The share of chaotic orbits among the judged bounded orbits.
 
     Attributes
     ----------
     chaotic, judged
-        Number of chaotic orbits, and number of all bounded orbits that are judged.
+        Number of chaotic orbits, and number of all judged bounded orbits, which include the chaotic ones.
     share
         Share of the chaotic orbits among the judged orbits; NaN if no orbit is judged.
     low, high
-        95 % Wilson interval of the share, which holds for independent random starts; NaN if no orbit is judged.
+        Ends of the 95 % Wilson interval of the share, for independent random starts; NaN if no orbit is judged.
     """
 
     chaotic: int
@@ -39,9 +39,9 @@ class ChaoticShare(Result):
     def describe(self) -> str:
         """Return the share with its interval in a sentence."""
         if not self.judged:
-            return "No orbit is bounded."
+            return "No bounded orbit was judged."
         interval = format_share_range(self.low, self.high, 1)
-        return f"Of the {self.judged} bounded orbits {format_share(self.share)} are chaotic ({interval})."
+        return f"Of the {self.judged} bounded orbits judged, {format_share(self.share)} are chaotic ({interval})."
 
 
 def compute_chaotic_share(character: Any) -> ChaoticShare:
@@ -61,7 +61,7 @@ def compute_chaotic_share(character: Any) -> ChaoticShare:
     Raises
     ------
     ValueError
-        If there are no codes.
+        If `character` is not an array of codes.
 
     Examples
     --------
@@ -71,12 +71,13 @@ def compute_chaotic_share(character: Any) -> ChaoticShare:
     >>> round(share.low, 2), round(share.share, 2), round(share.high, 2)
     (0.17, 0.23, 0.3)
     """
+    # A `RegularityMap` has the codes as its attribute `character`.
     codes = np.asarray(getattr(character, "character", character))
     if codes.dtype.kind not in "iu":
         raise ValueError(f"character={short_repr(character)}: must be a RegularityMap, or an array of codes of Regularity")
-    chaotic = int(np.count_nonzero(codes == Regularity.CHAOTIC))
-    judged = int(np.count_nonzero(np.isin(codes, _JUDGEMENTS)))
-    if not judged:
+    chaotic_count = int(np.count_nonzero(codes == Regularity.CHAOTIC))
+    judged_count = int(np.count_nonzero(np.isin(codes, _JUDGEMENTS)))
+    if not judged_count:
         return ChaoticShare(0, 0, np.nan, np.nan, np.nan)
-    low, high = wilson_interval(chaotic, judged)
-    return ChaoticShare(chaotic, judged, chaotic / judged, float(low), float(high))
+    low, high = wilson_interval(chaotic_count, judged_count)
+    return ChaoticShare(chaotic_count, judged_count, chaotic_count / judged_count, float(low), float(high))

@@ -46,7 +46,7 @@ class OrbitVerdict(OrbitResult):
     exits_unknown
         The reason why the exits over saddles are not known at the energy, see `Orbit`; empty if they are known.
     findings
-        The indicators one by one: SALI, the Lyapunov exponent, the Birkhoff digits of both halves of a bounded orbit and, if
+        What each indicator concludes: SALI, the Lyapunov exponent, the Birkhoff digits of both halves of a bounded orbit and, if
         given, the digits of windows. Each finding has a `name`, a `value` at the end of the orbit (NaN if not available), a
         `conclusion` (one of the words of `character`, or None) and a `sentence` with the reason.
     """
@@ -83,6 +83,7 @@ class OrbitVerdict(OrbitResult):
             manner = f"after {crossings}" if self.crossings else "directly, without crossing y = 0 upward"
             return f"{outcome_of(self.fate, self.outcomes).past} at t = {time}, {manner}{self._character_inside}."
         if self.character is None:
+            # The orbit neither escaped nor is bounded, as when its start is forbidden.
             return describe_fate(self.fate, self.outcomes)
         reason = describe_evidence(self.evidence)
         match self.evidence:
@@ -98,6 +99,7 @@ class OrbitVerdict(OrbitResult):
         if self.fate >= 1:
             return f"{name_fate(self.fate, self.outcomes)} at t = {format_time(self.t_end, digits=5)}{self._character_inside}"
         if self.character is None:
+            # The orbit neither escaped nor is bounded, as when its start is forbidden.
             return name_fate(self.fate, self.outcomes)
         until = "for ever" if self.is_bounded_for_ever else f"until t = {format_time(self.t_end)}"
         return f"{self._participle} {until}, {self.character}"
@@ -140,9 +142,9 @@ class OrbitVerdict(OrbitResult):
 def judge_orbit(orbit: Orbit, digits: BirkhoffDigits | None = None) -> OrbitVerdict:
     """Judge an orbit by its energy, its outcome and its chaos indicators.
 
-    A bounded orbit is regular or chaotic if an indicator concludes so and no indicator concludes the opposite. If no indicator
-    concludes either, and all indicators of deviation vectors conclude that there is no sign of chaos, so does the verdict. In all
-    other cases the orbit is undecided. The orbit is bounded for ever if its energy is below every saddle. In a well at rest,
+    A bounded orbit is regular or chaotic if an indicator concludes so and no indicator concludes the opposite. If none concludes
+    either, and all indicators of deviation vectors conclude that there is no sign of chaos, so does the verdict. In all other
+    cases, the orbit is undecided. The orbit is bounded for ever if its energy is below every saddle. In a non-rotating well,
     Birkhoff averages that agree as on an invariant torus are evidence that the orbit is bounded for ever
     (`Potential.tori_are_evidence`), unless another indicator shows chaos. An escaping orbit is chaotic while inside if an
     indicator concludes so.
@@ -152,7 +154,7 @@ def judge_orbit(orbit: Orbit, digits: BirkhoffDigits | None = None) -> OrbitVerd
     orbit
         The `Orbit`.
     digits
-        The `BirkhoffDigits` of the same orbit, ``orbit.compute_birkhoff_digits()``; None leaves them out.
+        The `BirkhoffDigits` of this orbit, ``orbit.compute_birkhoff_digits()``; None to judge without digits.
 
     Examples
     --------
@@ -167,30 +169,30 @@ def judge_orbit(orbit: Orbit, digits: BirkhoffDigits | None = None) -> OrbitVerd
     Lyapunov exponent no sign of chaos
     Birkhoff digits of halves regular
     """
-    indicators = evaluate_indicators(orbit, digits)
-    conclusions = [indicator.conclusion for indicator in indicators]
-    character = _combine(indicators) if orbit.fate == Fate.BOUNDED else _judge_inside(conclusions)
+    findings = evaluate_indicators(orbit, digits)
+    conclusions = [finding.conclusion for finding in findings]
+    character = _combine(findings) if orbit.fate == Fate.BOUNDED else _judge_inside(conclusions)
     return OrbitVerdict(
         orbit.fate,
         float(orbit.t[-1]),
         orbit.crossings,
         _find_evidence(orbit, digits, Verdict.CHAOTIC in conclusions),
         character,
-        _deciding_indicators(indicators, character),
+        _deciding_indicators(findings, character),
         orbit.outcomes,
         orbit.exits_unknown,
-        findings=indicators,
+        findings=findings,
         made_by=orbit.made_by,
     )
 
 
-def _combine(indicators: Sequence[IndicatorVerdict]) -> Verdict:
+def _combine(findings: Sequence[IndicatorVerdict]) -> Verdict:
     """Combine the conclusions on a bounded orbit, see `judge_orbit`."""
-    decisive = {Verdict.REGULAR, Verdict.CHAOTIC}.intersection(indicator.conclusion for indicator in indicators)
+    decisive = {Verdict.REGULAR, Verdict.CHAOTIC}.intersection(finding.conclusion for finding in findings)
     if len(decisive) == 1:
         return decisive.pop()
-    of_deviations = {indicator.conclusion for indicator in indicators if indicator.name in _DEVIATION_INDICATORS}
-    return Verdict.NO_SIGN if not decisive and of_deviations == {Verdict.NO_SIGN} else Verdict.UNDECIDED
+    deviation_conclusions = {finding.conclusion for finding in findings if finding.name in _DEVIATION_INDICATORS}
+    return Verdict.NO_SIGN if not decisive and deviation_conclusions == {Verdict.NO_SIGN} else Verdict.UNDECIDED
 
 
 def _judge_inside(conclusions: Sequence[Verdict | None]) -> Verdict | None:
@@ -198,15 +200,17 @@ def _judge_inside(conclusions: Sequence[Verdict | None]) -> Verdict | None:
     return Verdict.CHAOTIC_INSIDE if Verdict.CHAOTIC_INSIDE in conclusions else None
 
 
-def _deciding_indicators(indicators: Sequence[IndicatorVerdict], character: Verdict | None) -> str:
-    """Return the indicators that conclude this character, with their values."""
-    deciding = [indicator for indicator in indicators if character is not None and indicator.conclusion is character]
-    return ", ".join(f"{indicator.name} {indicator.value:.2g}" for indicator in deciding)
+def _deciding_indicators(findings: Sequence[IndicatorVerdict], character: Verdict | None) -> str:
+    """Return the names and values of the indicators that conclude this character; empty without a character."""
+    deciding = [finding for finding in findings if character is not None and finding.conclusion is character]
+    return ", ".join(f"{finding.name} {finding.value:.2g}" for finding in deciding)
 
 
-def _find_evidence(orbit: Orbit, digits: BirkhoffDigits | None, shows_chaos: bool) -> Evidence:
-    if orbit.evidence is not Evidence.INTEGRATED or shows_chaos or digits is None or not digits.digits.size:
+def _find_evidence(orbit: Orbit, birkhoff_digits: BirkhoffDigits | None, shows_chaos: bool) -> Evidence:
+    """Return the evidence of an orbit, or `Evidence.QUASI_PERIODIC` if the digits of its longest window show a torus."""
+    if orbit.evidence is not Evidence.INTEGRATED or shows_chaos or birkhoff_digits is None or not birkhoff_digits.digits.size:
         return orbit.evidence
     if orbit.potential is not None and not orbit.potential.tori_are_evidence:
         return orbit.evidence
-    return Evidence.QUASI_PERIODIC if digits.digits[-1] >= TORUS_DIGITS else Evidence.INTEGRATED
+    longest_window_digits = birkhoff_digits.digits[-1]
+    return Evidence.QUASI_PERIODIC if longest_window_digits >= TORUS_DIGITS else Evidence.INTEGRATED

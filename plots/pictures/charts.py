@@ -43,7 +43,7 @@ def find_numbers(measure: Measure, curves: Sweep) -> np.ndarray:
 
 
 def law_curve(fit: LawFit) -> tuple[np.ndarray, np.ndarray]:
-    """Return times (n,) and shares (n,) of a fitted law, as far as a logarithmic axis can show them."""
+    """Return the times and the shares above 0 of a fitted law, each of shape (n,). A logarithmic axis cannot show 0."""
     t = np.geomspace(fit.t_low, fit.t_high, _LAW_POINTS)
     share = fit.curve(t)
     return t[share > 0.0], share[share > 0.0]

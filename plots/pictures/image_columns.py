@@ -16,12 +16,16 @@ NO_LAYER = [np.zeros((1, 1), np.uint8)]
 # Images of a map without layers.
 _IMAGES = ("fate", "crossing_class", "crossings", "escape_time")
 
+# Pixel codes by fate, of fates that are not ends.
 _OUTCOME_CODES = {fate: code for code, fate in enumerate(OUTCOMES)}
 FIRST_CLASS = len(OUTCOMES)
 """The first pixel code of a class. Lower codes are for fates that are not ends."""
 
+# Pixel code of orbits that are not computed.
 _UNDECIDED = _OUTCOME_CODES[Fate.NOT_COMPUTED]
+# Pixel codes of starts without an orbit.
 _WITHOUT_ORBIT = (_OUTCOME_CODES[Fate.OUTSIDE], _OUTCOME_CODES[Fate.FORBIDDEN])
+# Fewest crossings of each crossing class.
 _LEAST_CROSSINGS = np.array([least for least, _ in CROSSING_CLASSES])
 
 
@@ -57,23 +61,23 @@ def fate_codes(fate: np.ndarray, outcomes: Sequence[Outcome]) -> np.ndarray:
 
 
 def draw_over(columns: dict[str, list[Any]], earlier: dict[str, list[Any]], sides: tuple[int, int]) -> dict[str, list[Any]]:
-    """Return the columns of an unfinished frame over an earlier map. Pixels of that map stay until finer pixels are computed.
+    """Return the columns of an unfinished frame over an earlier map, whose pixels stay until finer pixels are computed.
 
     Parameters
     ----------
     columns, earlier
         Columns of `map_columns`. The windows may differ.
     sides
-        (columns, rows) of the finished map, the largest size of the images. Smaller images have the finer pixels of both maps.
+        (columns, rows) of the finished map, the largest size of the images. The pixels are as fine as the finer of both maps.
     """
     if columns["complete"][0]:
         return columns
     pixels, earlier_pixels = _pixel_sides(columns), _pixel_sides(earlier)
     is_earlier_finer = earlier_pixels[0] < pixels[0]
-    lengths = columns["dw"][0], columns["dh"][0]
+    window_sides = columns["dw"][0], columns["dh"][0]
     finer_pixels = earlier_pixels if is_earlier_finer else pixels
     column_count, row_count = (
-        min(max(round(length / pixel), 1), side) for length, pixel, side in zip(lengths, finer_pixels, sides, strict=True)
+        min(max(round(length / pixel), 1), side) for length, pixel, side in zip(window_sides, finer_pixels, sides, strict=True)
     )
     x = columns["x"][0] + columns["dw"][0] * (np.arange(column_count) + 0.5) / column_count
     y = columns["y"][0] + columns["dh"][0] * (np.arange(row_count) + 0.5) / row_count
@@ -119,18 +123,18 @@ def difference_column(columns: dict[str, list[Any]], other: dict[str, list[Any]]
     return {"difference": [_difference_codes(columns["fate"][0], other_codes)]}
 
 
-def _difference_codes(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Return codes of `DIFFERENCES` for two arrays of pixel codes of fates. A pixel without an orbit in both keeps its code."""
-    lacks_one = np.isin(one, _WITHOUT_ORBIT)
-    lacks_other = np.isin(other, _WITHOUT_ORBIT)
+def _difference_codes(codes: np.ndarray, other_codes: np.ndarray) -> np.ndarray:
+    """Return codes of `DIFFERENCES` for pixel codes of fates in two views. Pixels without an orbit in both keep their codes."""
+    lacks_orbit = np.isin(codes, _WITHOUT_ORBIT)
+    lacks_other_orbit = np.isin(other_codes, _WITHOUT_ORBIT)
     # Indices of `DIFFERENCES`.
-    classes = np.where(lacks_one != lacks_other, 2, np.where(one != other, 1, 0))
-    codes = np.where(lacks_one & lacks_other, one, FIRST_CLASS + classes)
-    return np.where((one == _UNDECIDED) | (other == _UNDECIDED), _UNDECIDED, codes).astype(np.uint8)
+    classes = np.where(lacks_orbit != lacks_other_orbit, 2, np.where(codes != other_codes, 1, 0))
+    difference_codes = np.where(lacks_orbit & lacks_other_orbit, codes, FIRST_CLASS + classes)
+    return np.where((codes == _UNDECIDED) | (other_codes == _UNDECIDED), _UNDECIDED, difference_codes).astype(np.uint8)
 
 
 def end_words(outcomes: Sequence[Outcome]) -> list[str]:
-    """Return what orbits do at each of `Palette.ends`; empty for ends that the potential does not have."""
+    """Return the words for an orbit at each of `Palette.ends`; empty words for ends that the potential does not have."""
     return at_places(outcomes, [outcome.present for outcome in outcomes])
 
 
@@ -143,7 +147,7 @@ def at_places(outcomes: Sequence[Outcome], words: Sequence[str]) -> list[str]:
 
 
 def pixel_coding(outcomes: Sequence[Outcome]) -> dict[str, Any]:
-    """Return how pixels of a potential with these outcomes become codes, for the browser, which makes columns itself.
+    """Return the tables with which the browser turns pixels of a potential with these outcomes into codes.
 
     The result contains the fates that are not ends, the first class, the places and words of the ends, the classes of crossings,
     the code of pixels that are not decided, and for each code the codes of differences from all codes.
@@ -168,7 +172,7 @@ def end_numbers(fate: np.ndarray, outcomes: Sequence[Outcome]) -> np.ndarray:
 
 
 def pixel_codes(fate: np.ndarray, classes: np.ndarray, *, bounded_too: bool = False) -> np.ndarray:
-    """Return pixel codes: of fates that are not ends, then of classes. Bounded pixels have classes if `bounded_too`."""
+    """Return pixel codes of fates that are not ends, and of classes elsewhere. `bounded_too` gives bounded pixels classes."""
     codes = (FIRST_CLASS + classes).astype(np.min_scalar_type(FIRST_CLASS + int(classes.max(initial=0))))
     for outcome, code in _OUTCOME_CODES.items():
         if not (bounded_too and outcome is Fate.BOUNDED):

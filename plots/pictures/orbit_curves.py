@@ -1,4 +1,4 @@
-"""Orbits reduced for the browser: long paths as images, their histories, and a moving point with its trail."""
+"""Orbits reduced for the browser: long paths as images, histories, and the trail behind a moving point."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ from plots.pictures.orbit_quantities import ORBIT_QUANTITIES
 MOST_LINE_POINTS = 20_000
 """Longer paths are drawn as density images."""
 
-TRAIL = 25.0
-"""Duration of the trail behind the moving point: about four periods of the well."""
+TRAIL_DURATION = 25.0
+"""Duration of the trail behind the moving point, dimensionless: about four periods of the well."""
 
 # Side of a density image, in pixels: twice the side of the plot, for high-density screens.
 _SHADED_PIXELS = 600
 # Smallest opacity of visited pixels in a density image, 0 to 255.
-_FAINTEST = 50
+_LEAST_OPACITY = 50
 # Half the side of the window of a path, in units of the largest |x| or |y| of the path.
-_AROUND_PATH = 1.1
-# Largest half of the side, in units of the distance of the farthest saddle.
-_FARTHEST_SHOWN = 10.0
+_PATH_MARGIN_FACTOR = 1.1
+# Largest half of this side, in units of the distance of the farthest saddle from the origin.
+_MOST_SADDLE_DISTANCES = 10.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,15 +39,15 @@ class OrbitCurves:
     orbit
         The orbit.
     window
-        Window of the (x, y) plane that contains the interior at its energy.
+        Window of the (x, y) plane, which contains the interior at the energy of the orbit; without known exits, the nearby path.
     histories
-        The history of each of `ORBIT_QUANTITIES` by name.
+        Histories by name, one for each of `ORBIT_QUANTITIES`.
     section
         x and px of the upward crossings of y = 0, of shape (n, 2).
     visits
-        Opacity of the density image of a long path, uint8 of shape (n, n), row 0 lowest; None for shorter paths.
+        Opacity of each pixel of the density image of a long path, uint8 of shape (n, n), row 0 lowest; None for shorter paths.
     part
-        Samples of the orbit that path and histories show; all by default.
+        Index range of the samples of the orbit in `path` and `histories`; all by default.
     """
 
     orbit: Orbit
@@ -63,7 +63,7 @@ class OrbitCurves:
         return self.orbit.x[self.part], self.orbit.y[self.part]
 
     def shaded(self, colour: str) -> np.ndarray:
-        """Return the RGBA image of the visits, (n, n) uint32."""
+        """Return the RGBA image of the visits, uint32 of shape (n, n)."""
         assert self.visits is not None
         red, green, blue = (int(colour[k : k + 2], 16) for k in (1, 3, 5))
         ink = np.array([red, green, blue, 0], np.uint8).view(np.uint32)
@@ -76,10 +76,10 @@ def compute_orbit_curves(potential: Potential, orbit: Orbit, *, with_visits: boo
     With `with_visits`, a long path gets a density image, which needs the extra ``page``.
     """
     window = _path_window(potential, orbit) if orbit.exits_unknown else find_well_window(potential, orbit.energy)
-    everything = slice(None)
+    all_samples = slice(None)
     section = orbit.find_section_crossings()
-    visits = _visits(orbit, window, everything) if with_visits else None
-    return OrbitCurves(orbit, window, _histories(orbit, everything), section, visits)
+    visits = _visits(orbit, window, all_samples) if with_visits else None
+    return OrbitCurves(orbit, window, _histories(orbit, all_samples), section, visits)
 
 
 def find_well_window(potential: Potential, energy: float) -> Window:
@@ -93,9 +93,9 @@ def find_well_window(potential: Potential, energy: float) -> Window:
 
 
 def _path_window(potential: Potential, orbit: Orbit) -> Window:
-    """Return a square around the origin and the nearby path, for an orbit without known exits, which may go far away."""
-    reach = float(max(np.abs(orbit.x).max(), np.abs(orbit.y).max()))
-    half = min(_AROUND_PATH * reach, _FARTHEST_SHOWN * float(np.hypot(*potential.saddles.T).max()))
+    """Return a square around the origin and the nearby path. An orbit without known exits may go far away."""
+    largest_coordinate = float(max(np.abs(orbit.x).max(), np.abs(orbit.y).max()))
+    half = min(_PATH_MARGIN_FACTOR * largest_coordinate, _MOST_SADDLE_DISTANCES * float(np.hypot(*potential.saddles.T).max()))
     return Window(-half, half, -half, half)
 
 
@@ -137,22 +137,22 @@ def _visits(orbit: Orbit, window: Window, part: slice) -> np.ndarray | None:
 
     canvas = datashader.Canvas(_SHADED_PIXELS, _SHADED_PIXELS, *window.ranges)
     counts = canvas.line(pd.DataFrame({"x": x, "y": y}), "x", "y")
-    shaded = transfer_functions.shade(counts, cmap="#000000", how="eq_hist", min_alpha=_FAINTEST)
+    shaded = transfer_functions.shade(counts, cmap="#000000", how="eq_hist", min_alpha=_LEAST_OPACITY)
     image = transfer_functions.dynspread(shaded, max_px=1).to_numpy()
     return np.ascontiguousarray((image >> 24).astype(np.uint8))
 
 
 @dataclass(frozen=True)
-class Moment:
+class Trail:
     """x and y of the trail of an orbit, each of shape (n,). The last point is the position of the orbit."""
 
     x: np.ndarray
     y: np.ndarray
 
 
-def moment(orbit: Orbit, t: float) -> Moment:
-    """Return the trail of an orbit at a time: before the first sample, only this sample; after the last, the trail at the end."""
+def find_trail(orbit: Orbit, t: float) -> Trail:
+    """Return the trail of an orbit at a time. A time outside the orbit is replaced by its nearest end."""
     last = max(int(np.searchsorted(orbit.t, t, side="right")) - 1, 0)
-    first = int(np.searchsorted(orbit.t, orbit.t[last] - TRAIL))
+    first = int(np.searchsorted(orbit.t, orbit.t[last] - TRAIL_DURATION))
     trail = slice(first, last + 1)
-    return Moment(orbit.x[trail], orbit.y[trail])
+    return Trail(orbit.x[trail], orbit.y[trail])

@@ -12,10 +12,14 @@ from engine.foundations.wording import format_number
 from engine.propagation.fates import CHAOS_THRESHOLD
 from plots.pictures.histories import History, find_decades, reduce_history
 
-# Ends of the axis of SALI.
-_LEAST_SALI, _LARGEST_SALI = 1e-17, 10.0
-# Ends of the axis of the Lyapunov exponent.
-_LEAST_EXPONENT, _LARGEST_EXPONENT = 1e-7, 1.0
+# Lower end of the axis of SALI.
+_LEAST_SALI = 1e-17
+# Upper end of the axis of SALI.
+_LARGEST_SALI = 10.0
+# Lower end of the axis of the Lyapunov exponent.
+_LEAST_EXPONENT = 1e-7
+# Upper end of the axis of the Lyapunov exponent.
+_LARGEST_EXPONENT = 1.0
 # Smallest upper end of the axis of R².
 _LEAST_R2 = 1e-3
 
@@ -61,11 +65,11 @@ class OrbitQuantity:
     def history(self, orbit: Orbit, part: slice) -> History:
         """Return the quantity over some samples of an orbit, without the sample at t = 0."""
         first = 1 if orbit.t[0] == 0.0 else 0
-        later = slice(max(part.start or 0, first), part.stop)
-        values = self.values(orbit)[later]
+        samples = slice(max(part.start or 0, first), part.stop)
+        values = self.values(orbit)[samples]
         if self.least is not None:
             values = np.maximum(values, self.least)
-        return reduce_history(orbit.t[later], values, logarithmic=self.logarithmic)
+        return reduce_history(orbit.t[samples], values, logarithmic=self.logarithmic)
 
 
 def _sali_limits(histories: Sequence[History]) -> tuple[float, float]:

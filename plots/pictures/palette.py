@@ -1,7 +1,7 @@
 """Colours of the page and their meaning: the palette of the paper and a palette safe for colour-blind readers.
 
-A colour has one meaning: outcomes, crossing classes, escape times, orbits and curves share no colour with each other or with the
-layers, whose colours are in their entries in `plots.layers`.
+A colour has one meaning: outcomes, crossing classes, escape times, orbits and curves share no colour with each other or with a
+layer. The colours of a layer are in its entries in `plots.layers`.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ DIFFERENCES: tuple[tuple[str, str], ...] = (
 
 
 def end_places(outcomes: Sequence[Outcome]) -> list[int]:
-    """Return the place of each outcome in `Palette.ends`, equal in all systems. Outcomes beyond the last place share it."""
+    """Return the place of each outcome in `Palette.ends`, equal in all systems. Surplus outcomes of a kind share a place."""
     counts = {key: len(PAPER.of_kinds[key]) for key in KINDS}
     # `accumulate` also returns the sum of all counts, which `zip` drops.
     first_places = dict(zip(counts, accumulate(counts.values(), initial=0), strict=False))
@@ -163,7 +163,7 @@ class Palette:
         return [Entry(label, colour) for (_, label), colour in zip(CROSSING_CLASSES, self.classes, strict=True)]
 
     def entry(self, fate: int, outcomes: Sequence[Outcome]) -> Entry:
-        """Return the label and colour of a fate. `outcomes` are the potential's; without them, all ends are channels."""
+        """Return the label and colour of a fate. `outcomes` are those of the potential. Without them, all ends are channels."""
         if fate < 1:
             return self.outcomes[Fate(fate)]
         [entry] = self.end_entries([outcome_of(fate, outcomes)])
@@ -195,7 +195,7 @@ class Palette:
 
     @cached_property
     def background_colours(self) -> list[str]:
-        """Colours of the pixel codes under the escape times, which cover escaped pixels."""
+        """Colours of the pixel codes below the image of escape times, which covers the pixels of escaping orbits."""
         return [*self.outcome_colours, *([_FORBIDDEN] * len(self.ends))]
 
     @cached_property
@@ -221,9 +221,9 @@ def rgba(colours: Sequence[str]) -> np.ndarray:
 
 
 def mixed(colour: str, other: str, share: float) -> str:
-    """Interpolate linearly between two colours ``#rrggbb``."""
+    """Interpolate linearly between two colours ``#rrggbb``; `share` is that of the other colour."""
     pairs = zip(bytes.fromhex(colour[1:]), bytes.fromhex(other[1:]), strict=True)
-    return "#" + "".join(f"{round(one + share * (two - one)):02x}" for one, two in pairs)
+    return "#" + "".join(f"{round(value + share * (other_value - value)):02x}" for value, other_value in pairs)
 
 
 PAPER = Palette(

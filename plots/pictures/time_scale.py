@@ -10,16 +10,16 @@ import numpy as np
 
 from engine import EscapeMap, Fate
 
-# Share of the escape times below the scale, and share above the scale.
-_LEFT_OUT = 0.01
+# Share of the escape times that are below the scale, and equal share above the scale.
+_OMITTED_SHARE = 0.01
 # Smallest lower end of a fitted scale (dimensionless time). An orbit that starts at an exit escapes at once.
-_LEAST = 0.1
+_LEAST_LOW_END = 0.1
 # Smallest length of a long scale, in powers of ten. Long scales end at round numbers, so they seldom change between maps.
-_LONG = 1.0
+_LONG_SCALE_DECADES = 1.0
 # Ends of long scales, in units of a power of ten.
-_ROUND = (1.0, 2.0, 5.0, 10.0)
+_ROUND_STEPS = (1.0, 2.0, 5.0, 10.0)
 # Ends of short scales, in units of a power of ten.
-_FINE = tuple(tenth / 10.0 for tenth in range(10, 101))
+_FINE_STEPS = tuple(tenth / 10.0 for tenth in range(10, 101))
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class TimeScale:
             raise ValueError(f"low={self.low}, high={self.high}: must be positive and finite, low below high")
 
     def classes(self, times: np.ndarray, count: int) -> np.ndarray:
-        """Return the indices (n,) of the colours, out of `count`, for times (n,)."""
+        """Return the index of the colour of each time, of shape (n,), out of `count` colours."""
         share = np.log(np.clip(times, self.low, self.high) / self.low) / math.log(self.high / self.low)
         index: np.ndarray = np.minimum((share * count).astype(int), count - 1)
         return index
@@ -63,8 +63,8 @@ def fitted_scale(frame: EscapeMap) -> TimeScale:
     times = frame.escape_time[frame.fate > Fate.BOUNDED]
     if times.size == 0:
         return WITHOUT_ESCAPES
-    low, high = np.maximum(np.quantile(times, (_LEFT_OUT, 1.0 - _LEFT_OUT)), _LEAST)
-    steps = _ROUND if math.log10(high / low) >= _LONG else _FINE
+    low, high = np.maximum(np.quantile(times, (_OMITTED_SHARE, 1.0 - _OMITTED_SHARE)), _LEAST_LOW_END)
+    steps = _ROUND_STEPS if math.log10(high / low) >= _LONG_SCALE_DECADES else _FINE_STEPS
     lower = _round(low, steps, up=False)
     upper = _round(high, steps, up=True)
     if lower == upper:
@@ -79,7 +79,7 @@ def common_scale(frames: Iterable[EscapeMap]) -> TimeScale:
 
 
 def _round(number: float, steps: tuple[float, ...], *, up: bool) -> float:
-    """Round a positive number up or down to one of steps · 10^k."""
+    """Round a positive number up or down to a multiple of a power of ten. `steps` are the allowed factors."""
     # `math.log10` could be rounded up to the next whole number. The notation with all digits has the exact exponent.
     power = 10.0 ** int(f"{number:.16e}".partition("e")[2])
     candidates = [float(f"{step * power:.6g}") for step in steps]

@@ -24,15 +24,15 @@ _DASHED = (0, (4.0, 3.0))
 # Height of the figure of curves with two columns, in units of the width.
 _HEIGHT = 1.2
 # Height of the figure of curves with one column, in units of the width.
-_HEIGHT_OF_COLUMN = 4.5
+_ONE_COLUMN_HEIGHT = 4.5
 # Largest share of remaining starts for which the curve of survivors leaves the upper right corner free.
-_MOST_STAY = 0.4
+_MOST_SURVIVORS = 0.4
 # Symbols of the rates of decay laws.
-_SYMBOLS = {"exponential": r"\kappa", "power law": r"\gamma"}
+_RATE_SYMBOLS = {"exponential": r"\kappa", "power law": r"\gamma"}
 # Largest number of points of a curve with markers.
 _MOST_MARKERS = 60
 # Line styles of decay laws.
-_DASHES = {"exponential": "--", "power law": "-."}
+_LAW_DASHES = {"exponential": "--", "power law": "-."}
 
 
 def draw_curves_figure(curves: Sweep, style: FigureStyle) -> Figure:
@@ -49,7 +49,7 @@ def draw_curves_figure(curves: Sweep, style: FigureStyle) -> Figure:
     request = curves.dataset.attrs
     starts = " × ".join(str(side) for side in request["resolution"])
     title = f"{request['potential']}, {request['plane']}, {starts} starts, t_max = {request['t_max']:g}"
-    figure = new_figure(style, style.width * (_HEIGHT if columns == 2 else _HEIGHT_OF_COLUMN), title)
+    figure = new_figure(style, style.width * (_HEIGHT if columns == 2 else _ONE_COLUMN_HEIGHT), title)
     measures = [measure for measure in CURVE_PANELS if is_measured(measure, curves)]
     grid = np.ravel(figure.subplots(math.ceil((1 + len(measures)) / columns), columns)).tolist()
     draw_shares(grid[0], curves.values, curves["share"], curves.outcomes, style)
@@ -77,7 +77,7 @@ def draw_measure(axes: Axes, curves: Sweep, measure: Measure, style: FigureStyle
     if curve.logarithmic:
         axes.set_yscale("log")
     axes.set_xlim(float(curves.values[0]), float(curves.values[-1]))
-    style_axes(axes, style, grid=True, names=(curves.symbol, curve.axis))
+    style_axes(axes, style, grid=True, labels=(curves.symbol, curve.axis))
     if len(axes.lines) > 1:
         add_panel_legend(axes, "best", style)
 
@@ -93,7 +93,7 @@ def draw_statistics_figure(statistics: EscapeStatistics, style: FigureStyle) -> 
     crossing_axes.bar(np.arange(len(probabilities)), probabilities, color=MEASURED)
     crossing_axes.set_xlim(-0.6, MOST_CROSSINGS + 0.6)
     crossing_axes.set_ylim(0.0, 1.0)
-    style_axes(crossing_axes, style, grid=True, names=("upward crossings n", "p"), title="Escapes after n crossings")
+    style_axes(crossing_axes, style, grid=True, labels=("upward crossings n", "p"), title="Escapes after n crossings")
     return figure
 
 
@@ -102,18 +102,18 @@ def draw_escape_times(axes: Axes, statistics: EscapeStatistics, style: FigureSty
     edges, counts = statistics.time_histogram(BINS)
     axes.stairs(counts, edges, fill=True, color=MEASURED)
     axes.set_xscale("log")
-    style_axes(axes, style, grid=True, names=("escape time", "starts"))
+    style_axes(axes, style, grid=True, labels=("escape time", "starts"))
 
 
 def draw_shares(
     axes: Axes, energies: np.ndarray, shares: np.ndarray, outcomes: Sequence[Outcome], style: FigureStyle = SCREEN
 ) -> None:
-    """Draw percentages of bounded starts and of each outcome, of shape (m, outcomes + 1), against energies, of shape (m,)."""
+    """Draw shares of bounded starts and each outcome, of shape (m, outcomes + 1), in percent against energies, of shape (m,)."""
     for code, share in enumerate(shares.T):
         if code == Fate.BOUNDED:
             line: dict[str, Any] = {"color": PAPER.bounded, "linewidth": 2.2, "label": PAPER.outcomes[Fate.BOUNDED].label}
         else:
-            is_dashed = any(np.array_equal(share, other) for other in shares.T[1:code])
+            is_dashed = any(np.array_equal(share, earlier_share) for earlier_share in shares.T[1:code])
             entry = PAPER.entry(code, outcomes)
             line = {"color": entry.colour, "linewidth": 1.7, "label": entry.label}
             if is_dashed:
@@ -141,13 +141,13 @@ def draw_decay_laws(axes: Axes, laws: DecayLaws, t_max: float) -> None:
     # The factor 0.99 makes the axis span at least a decade, so that it has labels.
     axes.set_ylim(10.0 ** np.floor(np.log10(0.99 * survival[is_positive].min())), 1.4)
     style_axes(axes, grid=True)
-    add_panel_legend(axes, "lower left" if survival[-1] > _MOST_STAY else "upper right")
+    add_panel_legend(axes, "lower left" if survival[-1] > _MOST_SURVIVORS else "upper right")
 
 
 def _draw_law(axes: Axes, fit: LawFit, *, preferred: bool) -> None:
     name = str(fit.law)
-    label = f"{name}, ${_SYMBOLS[name]} = {_mathtext(fit.rate)}$" + (" (preferred)" if preferred else "")
-    axes.plot(*law_curve(fit), color=LAW_COLOURS[name], linewidth=1.8, linestyle=_DASHES[name], label=label)
+    label = f"{name}, ${_RATE_SYMBOLS[name]} = {_mathtext(fit.rate)}$" + (" (preferred)" if preferred else "")
+    axes.plot(*law_curve(fit), color=LAW_COLOURS[name], linewidth=1.8, linestyle=_LAW_DASHES[name], label=label)
 
 
 def _mathtext(number: float) -> str:
@@ -163,4 +163,4 @@ def draw_line(axes: Axes, x: np.ndarray, y: np.ndarray, x_label: str, y_label: s
         axes.set_xscale("log")
     if "y" in logarithmic:
         axes.set_yscale("log")
-    style_axes(axes, grid=True, names=(x_label, y_label))
+    style_axes(axes, grid=True, labels=(x_label, y_label))

@@ -56,8 +56,8 @@ class _Stage:
     figure: Figure
     window: Window
     particles: PathCollection
-    survival: Line2D
-    count: Text
+    survival_line: Line2D
+    count_title: Text
 
 
 def ensemble_movie_bytes(
@@ -83,19 +83,19 @@ def ensemble_movie_bytes(
     ModuleNotFoundError
         If the encoder of MP4 is not installed.
     """
-    with tempfile.TemporaryDirectory() as folder, RENDER_LOCK, _options(format):
+    with tempfile.TemporaryDirectory() as folder, RENDER_LOCK, _encoder_settings(format):
         path = Path(folder, f"movie.{format}")
         stage = _draw_stage(potential, orbits, palette, style)
         writer = _make_writer(format)
         with writer.saving(stage.figure, str(path), style.dpi):
             for index in range(orbits.t.shape[1]):
-                _show(stage, orbits, index)
+                _show_frame(stage, orbits, index)
                 writer.grab_frame()
         return path.read_bytes()
 
 
-def _options(format: MovieFormat) -> Any:
-    """Return a context with the settings of Matplotlib for the encoder."""
+def _encoder_settings(format: MovieFormat) -> Any:
+    """Return a context with Matplotlib's settings for the encoder of a format."""
     if format is not MovieFormat.MP4:
         return rc_context()
     require_package("imageio_ffmpeg", "movies")
@@ -112,23 +112,25 @@ def _make_writer(format: MovieFormat) -> AbstractMovieWriter:
 def _draw_stage(potential: Potential, orbits: SampledOrbits, palette: Palette, style: FigureStyle) -> _Stage:
     energy = float(orbits.energy[0])
     figure = new_figure(style, _HEIGHT * style.width, f"{potential.name}, h = {energy:.6g}")
-    well, chart = figure.subplots(1, 2, width_ratios=[1.15, 1.0])
+    well_axes, chart_axes = figure.subplots(1, 2, width_ratios=[1.15, 1.0])
     window = find_well_window(potential, energy)
-    draw_well(well, potential, energy, window, palette)
-    show_window(well, window, "x", "y", style, equal=True)
-    count = well.set_title(" ", loc="left", fontsize=style.font_size, color=LIGHT.text)
+    draw_well(well_axes, potential, energy, window, palette)
+    show_window(well_axes, window, "x", "y", style, equal=True)
+    count_title = well_axes.set_title(" ", loc="left", fontsize=style.font_size, color=LIGHT.text)
     colours = [palette.entry(max(fate, Fate.BOUNDED), orbits.outcomes).colour for fate in orbits.fate.tolist()]
-    particles = well.scatter(np.zeros(len(colours)), np.zeros(len(colours)), s=_PARTICLE_AREA, c=colours, linewidths=0, zorder=3)
-    survival = _draw_chart(chart, potential, orbits, style)
+    particles = well_axes.scatter(
+        np.zeros(len(colours)), np.zeros(len(colours)), s=_PARTICLE_AREA, c=colours, linewidths=0, zorder=3
+    )
+    survival_line = _draw_chart(chart_axes, potential, orbits, style)
     set_font(figure)
     # One layout is enough, because the axes do not move between frames.
     figure.draw_without_rendering()
     figure.set_layout_engine("none")
-    return _Stage(figure, window, particles, survival, count)
+    return _Stage(figure, window, particles, survival_line, count_title)
 
 
 def _draw_chart(axes: Axes, potential: Potential, orbits: SampledOrbits, style: FigureStyle) -> Line2D:
-    """Draw the chart of the share inside, with the law of mixed motion. Return the line that `_show` extends."""
+    """Draw the chart of the share inside, with the law of mixed motion. Return the line that `_show_frame` extends."""
     last_time = float(orbits.t[0, -1])
     least_share = _LEAST_SHARE / len(orbits.fate)
     times = np.linspace(0.0, last_time, 200)
@@ -139,13 +141,13 @@ def _draw_chart(axes: Axes, potential: Potential, orbits: SampledOrbits, style: 
     axes.set_xlim(0.0, last_time)
     axes.set_ylim(max(least_share, 0.5 * np.exp(-rate * last_time)), 1.2)
     axes.yaxis.set_major_locator(LogLocator())
-    style_axes(axes, style, grid=True, names=("t", "share inside"), title="Share still inside")
+    style_axes(axes, style, grid=True, labels=("t", "share inside"), title="Share still inside")
     axes.legend(loc="upper right", fontsize=style.small_size, frameon=False)
     line: Line2D = survival
     return line
 
 
-def _show(stage: _Stage, orbits: SampledOrbits, index: int) -> None:
+def _show_frame(stage: _Stage, orbits: SampledOrbits, index: int) -> None:
     """Show the orbits at the time with this index."""
     window = stage.window
     t = float(orbits.t[0, index])
@@ -156,5 +158,5 @@ def _show(stage: _Stage, orbits: SampledOrbits, index: int) -> None:
     past_times = escape_times[escape_times <= t]
     count = len(orbits.fate)
     shares = np.concatenate([[1.0], 1.0 - np.arange(1, len(past_times) + 1) / count])
-    stage.survival.set_data(np.concatenate([[0.0], past_times, [t]]), np.append(shares, shares[-1]))
-    stage.count.set_text(f"t = {t:.1f}: {count - len(past_times)} of {count} inside")
+    stage.survival_line.set_data(np.concatenate([[0.0], past_times, [t]]), np.append(shares, shares[-1]))
+    stage.count_title.set_text(f"t = {t:.1f}: {count - len(past_times)} of {count} inside")

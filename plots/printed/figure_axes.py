@@ -32,13 +32,16 @@ RENDER_LOCK = threading.Lock()
 """A thread holds this lock while it draws and saves a figure."""
 
 MOST_PIXELS = 20_000_000
-"""Largest number of pixels of a PNG file: four maps 16 cm wide at 600 pixels per inch. Drawing needs up to 50 bytes per pixel."""
+"""Largest number of pixels of a PNG file: a figure of four maps, 16 cm wide in all, at 600 pixels per inch.
+
+Drawing needs up to 50 bytes per pixel.
+"""
 
 # Fonts of texts, which Matplotlib contains. STIX has Greek letters, fractions and mathematical symbols. DejaVu Serif has
 # superscripts that STIX lacks.
-_FAMILY = ["STIXGeneral", "DejaVu Serif", "serif"]
+_FONT_FAMILIES = ["STIXGeneral", "DejaVu Serif", "serif"]
 # Fonts of formulas.
-_MATHS = "stix"
+_MATH_FONT = "stix"
 # Settings of Matplotlib while a file is saved.
 _FILE_OPTIONS: Any = {
     # Text in SVG files stays text. Programs without the STIX fonts show it in another font of about the same width.
@@ -50,7 +53,7 @@ _FILE_OPTIONS: Any = {
     "svg.hashsalt": "escape-explorer",
 }
 # Width of the lines of frames and ticks, in points.
-_FRAME = 0.7
+_FRAME_WIDTH = 0.7
 # Largest number of intervals between ticks on a linear axis.
 _MOST_TICK_INTERVALS = 5
 # Approximate number of letters in a line of text as wide as its font size.
@@ -97,16 +100,16 @@ def label_axes(axes: Axes, x_label: str, y_label: str, style: FigureStyle = SCRE
 
 
 def style_axes(
-    axes: Axes, style: FigureStyle = SCREEN, *, grid: bool = False, names: tuple[str, str] | None = None, title: str = ""
+    axes: Axes, style: FigureStyle = SCREEN, *, grid: bool = False, labels: tuple[str, str] | None = None, title: str = ""
 ) -> None:
     """Give axes a thin frame, short ticks, at most five intervals between ticks on linear axes, and optionally a faint grid.
 
-    `names` are the labels of the x axis and the y axis. `title` is the title of the panel, see `set_title`.
+    `labels` are the labels of the x axis and the y axis. `title` is the title of the panel, see `set_title`.
     """
-    axes.tick_params(direction="out", labelsize=style.small_size, width=_FRAME, length=3.0, which="major")
-    axes.tick_params(direction="out", width=0.6 * _FRAME, length=1.8, which="minor")
+    axes.tick_params(direction="out", labelsize=style.small_size, width=_FRAME_WIDTH, length=3.0, which="major")
+    axes.tick_params(direction="out", width=0.6 * _FRAME_WIDTH, length=1.8, which="minor")
     for spine in axes.spines.values():
-        spine.set_linewidth(_FRAME)
+        spine.set_linewidth(_FRAME_WIDTH)
     for axis, scale in ((axes.xaxis, axes.get_xscale()), (axes.yaxis, axes.get_yscale())):
         if scale == "log":
             axis.set_minor_formatter(NullFormatter())
@@ -114,8 +117,8 @@ def style_axes(
             axis.set_major_locator(MaxNLocator(_MOST_TICK_INTERVALS, steps=[1, 2, 5, 10]))
     if grid:
         axes.grid(alpha=0.25, linewidth=0.5)
-    if names is not None:
-        label_axes(axes, *names, style)
+    if labels is not None:
+        label_axes(axes, *labels, style)
     if title:
         set_title(axes, title, style)
 
@@ -137,19 +140,19 @@ def legend_handles(entries: Iterable[Entry]) -> list[Artist]:
     return [_HANDLES[entry.mark](entry) for entry in entries]
 
 
-def _patch(entry: Entry) -> Artist:
+def _patch_handle(entry: Entry) -> Artist:
     return Patch(facecolor=entry.colour, edgecolor=PATCH_EDGE, linewidth=0.5, label=entry.label)
 
 
-def _line(entry: Entry) -> Artist:
+def _line_handle(entry: Entry) -> Artist:
     return Line2D([], [], color=entry.colour, linewidth=1.2, label=entry.label)
 
 
-def _chessboard(entry: Entry) -> Artist:
+def _chessboard_handle(entry: Entry) -> Artist:
     return Patch(facecolor=entry.second_colour, edgecolor=entry.colour, hatch="xxxxx", linewidth=0.5, label=entry.label)
 
 
-_HANDLES = {Mark.PATCH: _patch, Mark.LINE: _line, Mark.CHESSBOARD: _chessboard}
+_HANDLES = {Mark.PATCH: _patch_handle, Mark.LINE: _line_handle, Mark.CHESSBOARD: _chessboard_handle}
 
 
 def add_figure_legend(figure: Figure, handles: Sequence[Artist], style: FigureStyle = SCREEN, columns: int | None = None) -> None:
@@ -158,10 +161,10 @@ def add_figure_legend(figure: Figure, handles: Sequence[Artist], style: FigureSt
     _colour_text(figure.legend(handles=list(handles), loc="outside lower center", ncols=column_count, **_legend_style(style)))
 
 
-def below(axes: Axes, depth: float, left: float = 0.0) -> Transform:
-    """Return coordinates in shares of a panel, moved down by `depth` and to the left by `left` points."""
-    move = ScaledTranslation(-left / POINTS_PER_INCH, -depth / POINTS_PER_INCH, figure_of(axes).dpi_scale_trans)
-    return axes.transAxes + move
+def transform_below(axes: Axes, depth: float, left: float = 0.0) -> Transform:
+    """Return the transform from shares of a panel to pixels, moved down by `depth` and to the left by `left` points."""
+    offset = ScaledTranslation(-left / POINTS_PER_INCH, -depth / POINTS_PER_INCH, figure_of(axes).dpi_scale_trans)
+    return axes.transAxes + offset
 
 
 def add_legend_below(axes: Axes, handles: Sequence[Artist], place: tuple[float, float], width: float, style: FigureStyle) -> None:
@@ -182,19 +185,19 @@ def add_legend_below(axes: Axes, handles: Sequence[Artist], place: tuple[float, 
     """
     left, depth = place
     options = {
-        "loc": "upper left", "bbox_to_anchor": (0.0, 0.0), "bbox_transform": below(axes, depth, left),
+        "loc": "upper left", "bbox_to_anchor": (0.0, 0.0), "bbox_transform": transform_below(axes, depth, left),
         "borderaxespad": 0.0, "borderpad": 0.0, **_legend_style(style),
     }  # fmt: skip
-    names = [str(handle.get_label()) for handle in handles]
-    for columns in range(min(len(names), _MOST_COLUMNS), 0, -1):
-        legend = axes.legend(list(handles), names, ncols=columns, **options)
-        available_share = width * figure_of(axes).dpi / POINTS_PER_INCH / legend.get_window_extent().width
-        if available_share >= 1.0:
+    labels = [str(handle.get_label()) for handle in handles]
+    for columns in range(min(len(labels), _MOST_COLUMNS), 0, -1):
+        legend = axes.legend(list(handles), labels, ncols=columns, **options)
+        width_ratio = width * figure_of(axes).dpi / POINTS_PER_INCH / legend.get_window_extent().width
+        if width_ratio >= 1.0:
             break
     else:
-        # Even a single column is too wide.
-        names = [fill(name, max(1, int(available_share * max(map(len, names))))) for name in names]
-        legend = axes.legend(list(handles), names, **options)
+        # A single column is too wide: wrap its labels.
+        labels = [fill(label, max(1, int(width_ratio * max(map(len, labels))))) for label in labels]
+        legend = axes.legend(list(handles), labels, **options)
     _colour_text(legend)
 
 
@@ -212,7 +215,7 @@ def figure_of(artist: Artist) -> Figure:
 
 
 def _legend_style(style: FigureStyle) -> dict[str, Any]:
-    font = {"family": _FAMILY, "size": style.font_size * 11.0 / 12.0}
+    font = {"family": _FONT_FAMILIES, "size": style.font_size * 11.0 / 12.0}
     return {"frameon": False, "prop": font, "handlelength": 1.4, "handleheight": 0.9, "columnspacing": 1.3}
 
 
@@ -233,10 +236,10 @@ def _colour_text(legend: Legend) -> None:
 def set_font(figure: Figure) -> None:
     """Set one font family on every text of a figure. Matplotlib's rcParams would set the family for the whole process."""
     for axes in figure.axes:
-        axes.tick_params(labelfontfamily=_FAMILY, which="both")
+        axes.tick_params(labelfontfamily=_FONT_FAMILIES, which="both")
     for text in figure.findobj(Text):
-        text.set_fontfamily(_FAMILY)
-        text.set_math_fontfamily(_MATHS)
+        text.set_fontfamily(_FONT_FAMILIES)
+        text.set_math_fontfamily(_MATH_FONT)
 
 
 def software() -> str:
@@ -267,7 +270,7 @@ def save_figure(figure: Figure, format: FigureFormat, facts: Mapping[str, str]) 
     file = BytesIO()
     with rc_context(_FILE_OPTIONS):
         figure.savefig(file, format=format, dpi=figure.dpi, metadata=_metadata(format, facts))
-    # Another file of the figure has the same layout.
+    # Freeze the layout, so that further files of this figure have the same one.
     figure.set_layout_engine("none")
     return file.getvalue()
 

@@ -34,7 +34,7 @@ def map_figure_bytes(
     """
     from plots.printed.map_figure import draw_map_figure
 
-    return _file(
+    return _make_file(
         lambda: draw_map_figure(frame, pictures, palette, style, analyses=analyses, starts=starts, times=times),
         format,
         {name: str(value) for name, value in frame.provenance().items()},
@@ -56,7 +56,7 @@ def orbits_figure_bytes(
     for number, (curves, verdict) in enumerate(zip(orbits, verdicts, strict=True), 1):
         facts[f"start {number}"] = ", ".join(map(repr, initial_state(curves.orbit)))
         facts |= {f"energy {number}": repr(curves.orbit.energy), f"verdict {number}": verdict}
-    return _file(lambda: draw_orbits_figure(potential, orbits, palette, verdicts, style), format, facts)
+    return _make_file(lambda: draw_orbits_figure(potential, orbits, palette, verdicts, style), format, facts)
 
 
 def well_figure_bytes(
@@ -71,7 +71,7 @@ def well_figure_bytes(
     from plots.printed.orbit_figure import draw_well_figure
 
     facts = {"potential": potential.name, "energy": repr(energy)}
-    return _file(lambda: draw_well_figure(potential, energy, orbits, palette, style), format, facts)
+    return _make_file(lambda: draw_well_figure(potential, energy, orbits, palette, style), format, facts)
 
 
 def statistics_figure_bytes(frame: EscapeMap, box: Window | None, format: FigureFormat, style: FigureStyle) -> bytes:
@@ -79,7 +79,7 @@ def statistics_figure_bytes(frame: EscapeMap, box: Window | None, format: Figure
     from plots.printed.curve_figures import draw_statistics_figure
 
     facts = {name: str(value) for name, value in frame.provenance().items()} | ({} if box is None else {"box": str(box)})
-    return _file(lambda: draw_statistics_figure(compute_statistics(frame, box), style), format, facts)
+    return _make_file(lambda: draw_statistics_figure(compute_statistics(frame, box), style), format, facts)
 
 
 def curves_figure_bytes(curves: Sweep, format: FigureFormat, style: FigureStyle) -> bytes:
@@ -87,10 +87,10 @@ def curves_figure_bytes(curves: Sweep, format: FigureFormat, style: FigureStyle)
     from plots.printed.curve_figures import draw_curves_figure
 
     facts = {str(name): str(value) for name, value in curves.dataset.attrs.items()}
-    return _file(lambda: draw_curves_figure(curves, style), format, facts)
+    return _make_file(lambda: draw_curves_figure(curves, style), format, facts)
 
 
-def _file(draw: Callable[[], Figure], format: FigureFormat, facts: Mapping[str, str]) -> bytes:
+def _make_file(draw: Callable[[], Figure], format: FigureFormat, facts: Mapping[str, str]) -> bytes:
     from plots.printed.figure_axes import RENDER_LOCK, save_figure
 
     with RENDER_LOCK:

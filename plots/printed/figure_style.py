@@ -82,14 +82,14 @@ class FigureStyle:
 
     def columns(self, panels: int) -> int:
         """Return the number of columns of square panels, each wide enough for its legend."""
-        most_columns = max(1, int(self.inches * POINTS_PER_INCH // (_LEAST_PANEL * self.font_size)))
+        most_columns = max(1, int(self.inches * POINTS_PER_INCH // (_LEAST_PANEL_WIDTH * self.font_size)))
         rows = math.ceil(panels / most_columns)
-        # Rows of equal length.
+        # Spread the panels evenly over the rows.
         return math.ceil(panels / rows)
 
 
 # Smallest width of a panel with its labels, in units of the font size.
-_LEAST_PANEL = 16.0
+_LEAST_PANEL_WIDTH = 16.0
 
 SCREEN = FigureStyle(width=29.0, dpi=180.0, font_size=12.0)
 """Style of figures on a screen, such as those of the reproduction and of notebooks."""

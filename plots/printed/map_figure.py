@@ -23,7 +23,6 @@ from plots.pictures.provenance import provenance_line
 from plots.pictures.time_scale import TimeScale, fitted_scale
 from plots.printed.figure_axes import (
     add_legend_below,
-    below,
     figure_of,
     fit_height,
     legend_handles,
@@ -31,6 +30,7 @@ from plots.printed.figure_axes import (
     set_font,
     set_title,
     size_in_points,
+    transform_below,
     write_below,
 )
 from plots.printed.figure_style import POINTS_PER_INCH, SCREEN, FigureStyle
@@ -64,14 +64,14 @@ def draw_map_figure(
     starts: Sequence[tuple[float, float]] = (),
     times: TimeScale | None = None,
 ) -> Figure:
-    """Draw pictures of a map in rows. Each has a title, axes, curves and a legend. The provenance is below all pictures.
+    """Draw pictures of a map in rows, each with title, axes, curves and legend. The provenance is below all pictures.
 
     Parameters
     ----------
     frame
         The map, finished or not. Its window is stretched to a square.
     pictures
-        Some of `TITLES`.
+        Names of pictures, from `TITLES`.
     palette
         Colours.
     style
@@ -96,10 +96,10 @@ def draw_map_figure(
     figure = new_figure(style, rows * _ROW_HEIGHT * style.width / columns, equal=True)
     # Measure texts at low resolution, because Matplotlib allocates all pixels of the figure to measure a text.
     figure.set_dpi(POINTS_PER_INCH)
-    grid = figure.subplots(rows, columns, squeeze=False).ravel().tolist()
-    for axes in grid[len(pictures) :]:
+    panels = figure.subplots(rows, columns, squeeze=False).ravel().tolist()
+    for axes in panels[len(pictures) :]:
         axes.remove()
-    for axes, picture in zip(grid, pictures, strict=False):
+    for axes, picture in zip(panels, pictures, strict=False):
         axes.set_label(picture)
         axes.set_box_aspect(1.0)
         draw_picture(axes, frame, picture, palette, analyses, time_scale, style)
@@ -122,15 +122,15 @@ def draw_picture(
     times: TimeScale | None = None,
     style: FigureStyle = SCREEN,
 ) -> None:
-    """Draw title, pixels, curves and axes of one of `TITLES`. `times` is the scale of the escape times."""
+    """Draw a picture, one of `TITLES`: its pixels, curves, axes and title. `times` is the scale of the escape times."""
     spec = frame.spec
     window = spec.find_window()
     draw_pixels(axes, picture_pixels(frame, picture, palette, analyses, times), window, window)
     draw_limits(axes, spec.potential, spec.plane, spec.energy, window, palette.channels)
     for name, result in analyses.items():
-        over = LAYERS[name].over_picture(picture)
-        if over is not None and over.strokes is not None:
-            draw_strokes(axes, over.strokes(result), window, palette)
+        overlay = LAYERS[name].over_picture(picture)
+        if overlay is not None and overlay.strokes is not None:
+            draw_strokes(axes, overlay.strokes(result), window, palette)
     show_window(axes, window, *spec.plane.axis_symbols, style)
     letters = int(_LETTERS_PER_EM * size_in_points(axes)[0] / style.font_size)
     set_title(axes, textwrap.fill(TITLES[picture], max(1, letters)), style)
@@ -150,7 +150,7 @@ def _explain_picture(
     depth = _BELOW_AXIS * style.font_size
     legend = map_legend(picture, ShownMap.of(frame, palette, analyses, times))
     if legend.scale is not None:
-        bar_axes = axes.inset_axes((0.0, -_BAR_HEIGHT, 1.0, _BAR_HEIGHT), transform=below(axes, depth))
+        bar_axes = axes.inset_axes((0.0, -_BAR_HEIGHT, 1.0, _BAR_HEIGHT), transform=transform_below(axes, depth))
         add_colour_bar(figure_of(axes), legend.scale, style, cax=bar_axes, orientation="horizontal")
         bar_axes.get_xticklabels()[-1].set_horizontalalignment("right")
         depth += _BELOW_BAR * style.font_size

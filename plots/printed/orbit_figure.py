@@ -31,19 +31,19 @@ from plots.printed.window_axes import draw_curve, draw_limits, draw_pixels, show
 # Height of the figure with two columns, in units of the width.
 _HEIGHT = 0.58
 # Height of the figure with one column, in units of the width.
-_HEIGHT_OF_COLUMN = 1.9
-# Lower end of the axis of time, in units of time.
+_ONE_COLUMN_HEIGHT = 1.9
+# Lower end of the time axis, dimensionless.
 _EARLIEST_TIME = 0.01
 # Name of the panel of the paths.
-_PATH = "path"
+_PATH_PANEL = "path"
 # The quantities with a panel. The Lyapunov exponent has none, because it repeats what SALI shows.
-_PRINTED = {quantity.name: quantity for quantity in ORBIT_QUANTITIES if quantity.name != "exponent"}
+_PRINTED_QUANTITIES = {quantity.name: quantity for quantity in ORBIT_QUANTITIES if quantity.name != "exponent"}
 
 
 def draw_orbits_figure(
     potential: Potential, orbits: Sequence[OrbitCurves], palette: Palette, verdicts: Sequence[str], style: FigureStyle
 ) -> Figure:
-    """Draw paths, SALI and R² of orbits in the colours of their numbers, with the verdicts below.
+    """Draw paths, SALI and R² of orbits, each orbit in the colour of its number, with the verdicts below.
 
     Raises
     ------
@@ -52,19 +52,19 @@ def draw_orbits_figure(
     """
     if not orbits:
         raise ValueError(f"orbits={orbits!r}: must be at least one")
-    one_column = style.columns(2) == 1
-    title = f"{'Orbit' if len(orbits) == 1 else 'Orbits'} at h = {', '.join(_energies(orbits))}"
-    figure = new_figure(style, style.width * (_HEIGHT_OF_COLUMN if one_column else _HEIGHT), title)
-    if one_column:
-        rows: list[list[Any]] = [[_PATH], *([name] for name in _PRINTED)]
-        panels = figure.subplot_mosaic(rows, height_ratios=[2, *([1] * len(_PRINTED))])
+    has_one_column = style.columns(2) == 1
+    title = f"{'Orbit' if len(orbits) == 1 else 'Orbits'} at h = {', '.join(_list_energies(orbits))}"
+    figure = new_figure(style, style.width * (_ONE_COLUMN_HEIGHT if has_one_column else _HEIGHT), title)
+    if has_one_column:
+        rows: list[list[Any]] = [[_PATH_PANEL], *([name] for name in _PRINTED_QUANTITIES)]
+        panels = figure.subplot_mosaic(rows, height_ratios=[2, *([1] * len(_PRINTED_QUANTITIES))])
     else:
-        panels = figure.subplot_mosaic([[_PATH, name] for name in _PRINTED])
-    draw_path(panels[_PATH], potential, orbits, palette, style)
-    for name, quantity in _PRINTED.items():
+        panels = figure.subplot_mosaic([[_PATH_PANEL, name] for name in _PRINTED_QUANTITIES])
+    draw_path(panels[_PATH_PANEL], potential, orbits, palette, style)
+    for name, quantity in _PRINTED_QUANTITIES.items():
         draw_quantity(panels[name], quantity, orbits, palette, style)
     if len(orbits) > 1:
-        add_panel_legend(panels[next(iter(_PRINTED))], "lower left", style)
+        add_panel_legend(panels[next(iter(_PRINTED_QUANTITIES))], "lower left", style)
     if style.titles:
         lines = [f"{number}: {verdict}" for number, verdict in enumerate(verdicts, 1)] if len(orbits) > 1 else verdicts
         write_below(figure, lines, style)
@@ -86,7 +86,7 @@ def draw_well_figure(
     return figure
 
 
-def _energies(orbits: Sequence[OrbitCurves]) -> list[str]:
+def _list_energies(orbits: Sequence[OrbitCurves]) -> list[str]:
     return list(dict.fromkeys(f"{curves.orbit.energy:.6g}" for curves in orbits))
 
 
@@ -94,10 +94,10 @@ def draw_path(
     axes: Axes, potential: Potential, orbits: Sequence[OrbitCurves], palette: Palette, style: FigureStyle = SCREEN
 ) -> None:
     """Draw paths as lines, long paths as density images, and the exits at the highest energy of the orbits."""
-    highest = max(orbits, key=lambda curves: curves.orbit.energy)
-    window = highest.window
+    highest_curves = max(orbits, key=lambda curves: curves.orbit.energy)
+    window = highest_curves.window
     _draw_paths(axes, orbits, window, palette)
-    draw_limits(axes, potential, SPACE, highest.orbit.energy, window, palette.channels)
+    draw_limits(axes, potential, SPACE, highest_curves.orbit.energy, window, palette.channels)
     show_window(axes, window, "x", "y", style, equal=True)
     set_title(axes, "Path", style)
 
@@ -123,12 +123,12 @@ def draw_quantity(
     axes.set_xlim(_EARLIEST_TIME, max(10.0 * _EARLIEST_TIME, *(float(curves.orbit.t[-1]) for curves in orbits)))
     if quantity.logarithmic:
         axes.set_yscale("log")
-    drawn = [history for history in histories if history.line[0].size]
-    if drawn:
-        axes.set_ylim(*quantity.limits(drawn))
+    histories_with_samples = [history for history in histories if history.line[0].size]
+    if histories_with_samples:
+        axes.set_ylim(*quantity.limits(histories_with_samples))
     if quantity.threshold is not None:
         axes.axhline(quantity.threshold, color=THRESHOLD, linestyle="--", linewidth=1.0)
-    style_axes(axes, style, names=("t", quantity.label), title=quantity.title)
+    style_axes(axes, style, labels=("t", quantity.label), title=quantity.title)
 
 
 def _draw_history(axes: Axes, history: History, colour: str, label: str) -> None:

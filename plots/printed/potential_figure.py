@@ -18,7 +18,7 @@ _LEVELS = (-6.0, -4.0, -2.0, -1.0, 0.0, 0.15, 0.3, 0.5, 0.7, 0.85, 1.25, 1.6, 2.
 # Levels of equipotentials inside the well, in the same units.
 _INNER_LEVELS = (0.1, 0.3, 0.5, 0.7, 0.9)
 # Side of a panel, in units of the width of the interior.
-_ENLARGED = 1.35
+_ENLARGEMENT = 1.35
 
 
 def draw_equipotentials(axes: Axes, potential: Potential, window: Window) -> None:
@@ -30,7 +30,7 @@ def draw_equipotentials(axes: Axes, potential: Potential, window: Window) -> Non
 
 
 def draw_well(axes: Axes, potential: Potential, energy: float, window: Window, palette: Palette) -> None:
-    """Draw equipotentials, zero-velocity curve and Lyapunov orbits of an energy in shares of a window."""
+    """Draw equipotentials, and the zero-velocity curve and Lyapunov orbits of an energy, in shares of a window."""
     for pieces in trace_equipotentials(potential, SPACE, depth_levels(potential, _INNER_LEVELS), window):
         draw_curve(axes, pieces, window, colors=LIGHT.equipotential, linewidths=0.6)
     draw_limits(axes, potential, SPACE, energy, window, palette.channels)
@@ -46,5 +46,5 @@ def enlarge(window: Window) -> Window:
     """Return a square window around a window, larger by a margin."""
     x = 0.5 * (window.x_low + window.x_high)
     ordinate = 0.5 * (window.ordinate_low + window.ordinate_high)
-    half = 0.5 * _ENLARGED * window.width
+    half = 0.5 * _ENLARGEMENT * window.width
     return Window(x - half, x + half, ordinate - half, ordinate + half)

@@ -35,13 +35,14 @@ from plots.printed.potential_figure import draw_equipotentials, enlarge
 from plots.printed.window_axes import draw_limits, draw_pixels, draw_strokes, show_window
 
 # Width and height of a picture, in inches.
-_INCHES = (4.6, 4.0)
+_FIGURE_SIZE = (4.6, 4.0)
 # Pixels per inch of a picture in a notebook.
 _NOTEBOOK_DPI = 72.0
 # Position of the legend of a map in shares of the axes: the middle, below the label of the horizontal axis.
 _BELOW_AXES = (0.5, -0.13)
+# CSS that puts the picture and the table of a result side by side.
 _SIDE_BY_SIDE = "display:flex;gap:1em;flex-wrap:wrap;align-items:flex-start"
-# Smaller values are drawn here on logarithmic axes, because these cannot show 0.
+# Smallest value drawn on a logarithmic axis, which cannot show 0. Smaller values are drawn there.
 _LOG_FLOOR = 1e-16
 # Number of parameters of each `_draw…` function before its options: the result, the axes and the palette.
 _FIXED_PARAMETERS = 3
@@ -55,14 +56,14 @@ def plot_result(result: Result, ax: Axes | None = None, *, palette: str = "paper
     """Draw a result, as described in `engine.foundations.result.Result.plot`."""
     if palette not in PALETTES:
         raise ValueError(f"palette={palette!r}: must be one of {', '.join(PALETTES)}")
-    legal = list(inspect.signature(_draw.dispatch(type(result))).parameters)[_FIXED_PARAMETERS:]
-    if unknown := [name for name in options if name not in legal]:
-        options_text = f"the picture of {type(result).__name__} has {', '.join(['palette', *legal])}"
+    legal_options = list(inspect.signature(_draw.dispatch(type(result))).parameters)[_FIXED_PARAMETERS:]
+    if unknown := [name for name in options if name not in legal_options]:
+        options_text = f"the picture of {type(result).__name__} has {', '.join(['palette', *legal_options])}"
         raise TypeError(f"{unknown[0]}: no such option; {options_text}")
     if ax is None:
         from matplotlib import pyplot
 
-        _, ax = pyplot.subplots(figsize=_INCHES, layout="constrained")
+        _, ax = pyplot.subplots(figsize=_FIGURE_SIZE, layout="constrained")
     if not isinstance(ax, Axes):
         raise TypeError(f"ax={ax!r}: must be Matplotlib axes or None")
     _draw(result, ax, PALETTES[palette], **options)
@@ -77,7 +78,7 @@ def to_html(result: Result) -> str:
     sentence = f"<p>{html.escape(describe())}</p>" if describe is not None else ""
     return (
         f"<div><strong>{type(result).__name__}</strong>{sentence}<div style='{_SIDE_BY_SIDE}'>"
-        f"{_picture(result)}<table>{rows}</table></div></div>"
+        f"{_picture_html(result)}<table>{rows}</table></div></div>"
     )
 
 
@@ -91,13 +92,13 @@ def to_holoviews(result: Result) -> Any:
     table = result.to_pandas()
     if result.row_dimension:
         table = table.rename_axis(result.row_dimension).reset_index()
-    index, *others = table.columns
-    return hv.Overlay([hv.Curve(table, index, name, label=name) for name in others if table[name].dtype.kind in "if"])
+    index, *value_names = table.columns
+    return hv.Overlay([hv.Curve(table, index, name, label=name) for name in value_names if table[name].dtype.kind in "if"])
 
 
-def _picture(result: Result) -> str:
+def _picture_html(result: Result) -> str:
     file = BytesIO()
-    figure = Figure(figsize=_INCHES, dpi=_NOTEBOOK_DPI, layout="constrained")
+    figure = Figure(figsize=_FIGURE_SIZE, dpi=_NOTEBOOK_DPI, layout="constrained")
     with RENDER_LOCK:
         try:
             _draw(result, figure.subplots(), PALETTES["paper"])
@@ -124,7 +125,7 @@ def _draw(result: Result, axes: Axes, palette: Palette) -> None:
     y = columns[chart.y]
     if chart.by_channel:
         axes.bar(list(map(str, x)), y, color=[palette.channels[channel - 1] for channel in x])
-        style_axes(axes, names=(chart.x_label, chart.y_label))
+        style_axes(axes, labels=(chart.x_label, chart.y_label))
     else:
         drawn_y = np.maximum(y, _LOG_FLOOR) if "y" in chart.logarithmic else y
         draw_line(axes, x, drawn_y, chart.x_label, chart.y_label, logarithmic=chart.logarithmic)
@@ -141,7 +142,7 @@ def _draw_layer(layer: Layer, result: Result, axes: Axes, palette: Palette) -> N
         codes = layer.pixels.codes(result, None)
         pixels = rgba([*layer.pixels.colours(palette)])[codes]
         # `draw_pixels` takes row 0 on top.
-        draw_pixels(panel, pixels[::-1], window, shown=window)
+        draw_pixels(panel, pixels[::-1], window, shown_window=window)
         if entries := layer.pixels.entries(result, palette):
             _add_legend_below(panel, entries)
     draw_limits(panel, spec.potential, spec.plane, spec.energy, window, palette.channels)
@@ -188,9 +189,9 @@ def _draw_orbit(result: Orbit, axes: Axes, palette: Palette, *, show: str = "pat
         draw_path(panel, result.potential, [curves], palette)
         axes.set_box_aspect(panel.get_box_aspect())
         return
-    quantity = next((one for one in ORBIT_QUANTITIES if one.name == show), None)
+    quantity = next((each for each in ORBIT_QUANTITIES if each.name == show), None)
     if quantity is None:
-        raise ValueError(f"show={show!r}: must be one of path, {', '.join(one.name for one in ORBIT_QUANTITIES)}")
+        raise ValueError(f"show={show!r}: must be one of path, {', '.join(each.name for each in ORBIT_QUANTITIES)}")
     draw_quantity(axes, quantity, [curves], palette)
 
 
@@ -204,7 +205,7 @@ def _draw_sampled_orbits(result: SampledOrbits, axes: Axes, palette: Palette) ->
         x, y = (np.pad(paths[has_fate], ((0, 0), (0, 1)), constant_values=np.nan) for paths in (result.x, result.y))
         axes.plot(x.ravel(), y.ravel(), color=entries[-1].colour, linewidth=0.8)
     axes.set_aspect("equal")
-    style_axes(axes, names=("x", "y"), title="Paths")
+    style_axes(axes, labels=("x", "y"), title="Paths")
     _add_legend_below(axes, entries)
 
 
@@ -212,7 +213,7 @@ def _draw_sampled_orbits(result: SampledOrbits, axes: Axes, palette: Palette) ->
 def _draw_lyapunov(result: LyapunovOrbit, axes: Axes, palette: Palette) -> None:
     axes.plot(*result.half_path.T, color=palette.channels[result.channel - 1], linewidth=2.2)
     axes.set_aspect("equal", adjustable="datalim")
-    style_axes(axes, names=("x", "y"), title=f"Lyapunov orbit {result.channel} at h = {result.energy:.6g}")
+    style_axes(axes, labels=("x", "y"), title=f"Lyapunov orbit {result.channel} at h = {result.energy:.6g}")
 
 
 @_draw.register
@@ -226,7 +227,7 @@ def _draw_potential(result: Potential, axes: Axes, palette: Palette) -> None:
     axes.set_xlim(window.x_low, window.x_high)
     axes.set_ylim(window.ordinate_low, window.ordinate_high)
     axes.set_aspect("equal")
-    style_axes(axes, names=("x", "y"), title=f"{result.name}: escape energy {result.escape_energy:.6g}")
+    style_axes(axes, labels=("x", "y"), title=f"{result.name}: escape energy {result.escape_energy:.6g}")
 
 
 @_draw.register
@@ -246,9 +247,9 @@ def _draw_sweep(result: Sweep, axes: Axes, palette: Palette, *, measure: str | N
     if measure is not None and measure not in measures:
         raise ValueError(f"measure={measure!r}: must be one of {', '.join(measures)}")
     # By default, the first measure.
-    chosen = measure or next(iter(measures))
-    if chosen != SHARES.name:
-        draw_measure(axes, result, measures[chosen])
+    chosen_name = measure or next(iter(measures))
+    if chosen_name != SHARES.name:
+        draw_measure(axes, result, measures[chosen_name])
         return
     draw_shares(axes, result.values, result["share"], result.outcomes)
     label_axes(axes, result.symbol, "percentage of starts")

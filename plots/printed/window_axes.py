@@ -1,4 +1,4 @@
-"""Draw in axes that show a window of a plane: pixels, curves, exits, curves of layers, and marks of starts.
+"""Draw pixels, curves, exits, and marks of starts in axes that show a window of a plane.
 
 The coordinates of a drawing are shares of the window, from 0 to 1. In a deep zoom, the transform of coordinates of the plane to
 pixels would lose all digits.
@@ -32,19 +32,19 @@ _LETTER_WIDTH = 0.5
 _BETWEEN_LABELS = 1.0
 # Dashes of exits without colours.
 _EXIT_DASHES = (0, (2.0, 1.5))
-# Width of the curves of layers in a file, relative to the width on the page.
+# Width of the curves of layers in a figure, relative to their width on the web page.
 _LINE_SCALE = 0.6
 # Drawing order of halos: over pixels, below curves.
 _HALO_ORDER = 1.5
-# Curves are cut at this distance outside the window, as a share of the window.
-_RIM = 0.02
-# Width of the rim at the right and the upper edge, as a share of the side, where numbers of starts are on the inner side.
-_EDGE = 0.06
+# Distance outside the window at which curves are cut, as a share of its sides.
+_CLIP_MARGIN = 0.02
+# Distance from the right or upper edge within which the number of a start is on the inner side, as a share of the side.
+_LABEL_MARGIN = 0.06
 
 
-def draw_pixels(axes: Axes, pixels: np.ndarray, window: Window, shown: Window) -> None:
-    """Draw the pixels of a window, row 0 on top, in axes that show `shown`."""
-    (left, low), (right, high) = _shares(shown, _corners(window))
+def draw_pixels(axes: Axes, pixels: np.ndarray, window: Window, shown_window: Window) -> None:
+    """Draw the pixels of a window, row 0 on top, in axes that show `shown_window`."""
+    (left, low), (right, high) = _to_shares(shown_window, _corners(window))
     axes.imshow(pixels, extent=(left, right, low, high), origin="upper", interpolation="none", aspect="auto", zorder=1)
 
 
@@ -53,60 +53,64 @@ def draw_limits(
     potential: Potential,
     plane: Slice,
     energy: float | tuple[float, float],
-    shown: Window,
+    shown_window: Window,
     channel_colours: Sequence[str] | None = None,
 ) -> None:
     """Draw the limiting curve of a slice and, on (x, y), the known Lyapunov orbits.
 
-    Without `channel_colours`, the orbits are black and dashed.
+    `energy` is h, or the range (low, high) of an axis h. Without `channel_colours`, the orbits are black and dashed.
     """
     limit_style: dict[str, Any] = {"colors": LIGHT.limiting_curve, "linewidths": 1.0}
-    draw_curve(axes, trace_zero_velocity_curve(potential, plane, energy, shown), shown, "limiting curve", **limit_style)
+    draw_curve(
+        axes, trace_zero_velocity_curve(potential, plane, energy, shown_window), shown_window, "limiting curve", **limit_style
+    )
     h = common_energy(energy)
     orbits = find_known_exits(potential, h) if plane.shows_positions and h is not None else ()
     if channel_colours is None:
         paths = [orbit.half_path for orbit in orbits]
-        draw_curve(axes, paths, shown, "Lyapunov orbits", linestyles=[_EXIT_DASHES], **limit_style)
+        draw_curve(axes, paths, shown_window, "Lyapunov orbits", linestyles=[_EXIT_DASHES], **limit_style)
         return
     for orbit in orbits:
         style: dict[str, Any] = {"colors": channel_colours[orbit.channel - 1], "linewidths": 2.2}
-        draw_curve(axes, [orbit.half_path], shown, f"Lyapunov orbit {orbit.name}", halo=True, **style)
+        draw_curve(axes, [orbit.half_path], shown_window, f"Lyapunov orbit {orbit.name}", halo=True, **style)
 
 
-def draw_strokes(axes: Axes, strokes: Sequence[Stroke], shown: Window, palette: Palette) -> None:
+def draw_strokes(axes: Axes, strokes: Sequence[Stroke], shown_window: Window, palette: Palette) -> None:
     """Draw curves of a layer, from back to front, in the colours of their channels."""
     for stroke in strokes:
         if stroke.halo_width:
             halo: dict[str, Any] = {"colors": LIGHT.halo, "linewidths": _LINE_SCALE * stroke.halo_width}
-            draw_curve(axes, stroke.lines, shown, zorder=_HALO_ORDER, **halo)
+            draw_curve(axes, stroke.lines, shown_window, zorder=_HALO_ORDER, **halo)
     for stroke in strokes:
         line: dict[str, Any] = {"colors": palette.channels[stroke.channel - 1], "linewidths": _LINE_SCALE * stroke.width}
-        draw_curve(axes, stroke.lines, shown, alpha=stroke.alpha, **line)
+        draw_curve(axes, stroke.lines, shown_window, alpha=stroke.alpha, **line)
 
 
 def draw_curve(
-    axes: Axes, pieces: Iterable[np.ndarray], shown: Window, label: str = "", *, halo: bool = False, **style: Any
+    axes: Axes, pieces: Iterable[np.ndarray], shown_window: Window, label: str = "", *, halo: bool = False, **style: Any
 ) -> None:
     """Draw the part of a curve that is inside the window. The curve consists of pieces.
 
     Parameters
     ----------
     axes
-        Axes that show `shown`.
+        Axes that show `shown_window`.
     pieces
         Points of each piece in the plane, of shape (n, 2). Pieces of a single point are skipped.
-    shown
+    shown_window
         Window of the axes.
     label
         Label in the legend.
     halo
-        Whether the curve has a light rim, so that it is visible on any colour.
+        Whether the curve has a light border, which makes it visible on any colour.
     style
         Properties of `matplotlib.collections.LineCollection`.
     """
     # Matplotlib clips lines after the transform to pixels. Far outside a deep zoom, this transform has too few digits.
-    lines = [shapely.LineString(_shares(shown, piece)) for piece in pieces if len(piece) > 1]
-    visible_parts = shapely.get_parts(shapely.clip_by_rect(lines, -_RIM, -_RIM, 1.0 + _RIM, 1.0 + _RIM))
+    lines = [shapely.LineString(_to_shares(shown_window, piece)) for piece in pieces if len(piece) > 1]
+    visible_parts = shapely.get_parts(
+        shapely.clip_by_rect(lines, -_CLIP_MARGIN, -_CLIP_MARGIN, 1.0 + _CLIP_MARGIN, 1.0 + _CLIP_MARGIN)
+    )
     if not len(visible_parts):
         return
     if halo:
@@ -118,19 +122,19 @@ def draw_curve(
 
 
 def mark_starts(
-    axes: Axes, starts: Sequence[tuple[float, float]], palette: Palette, shown: Window, style: FigureStyle = SCREEN
+    axes: Axes, starts: Sequence[tuple[float, float]], palette: Palette, shown_window: Window, style: FigureStyle = SCREEN
 ) -> None:
-    """Mark starts (x, ordinate) with numbered crosses in the colours of their orbits. Starts outside are counted, not drawn."""
+    """Mark starts (x, ordinate) with numbered crosses in the colours of their orbits. A start outside is not drawn."""
     scale = style.font_size / SCREEN.font_size
     for number, start in enumerate(starts, 1):
-        x, y = _shares(shown, np.array(start))
+        x, y = _to_shares(shown_window, np.array(start))
         if not (0.0 <= x <= 1.0 and 0.0 <= y <= 1.0):
             continue
         # From back to front: a light line for dark pictures, a dark one for light pictures, and the colour of the orbit.
         for colour, width in ((LIGHT.halo, 7.0), (MARK_EDGE, 4.8), (palette.orbits[(number - 1) % len(palette.orbits)], 2.4)):
             size: dict[str, Any] = {"markersize": scale * (9.6 + width), "markeredgewidth": scale * width}
             axes.plot(x, y, "+", color=colour, zorder=3, **size)
-        is_right, is_high = x > 1.0 - _EDGE, y > 1.0 - _EDGE
+        is_right, is_high = x > 1.0 - _LABEL_MARGIN, y > 1.0 - _LABEL_MARGIN
         offset = (-6.0 * scale if is_right else 6.0 * scale, -3.6 * scale if is_high else 3.6 * scale)
         axes.annotate(
             str(number), (x, y), offset, textcoords="offset points",
@@ -140,29 +144,31 @@ def mark_starts(
         )  # fmt: skip
 
 
-def show_window(axes: Axes, shown: Window, x_name: str, y_name: str, style: FigureStyle = SCREEN, *, equal: bool = False) -> None:
-    """Set limits, ticks and names of axes that show a window. `equal` gives both axes the same scale."""
+def show_window(
+    axes: Axes, shown_window: Window, x_name: str, y_name: str, style: FigureStyle = SCREEN, *, equal: bool = False
+) -> None:
+    """Set limits, ticks and labels of axes that show a window. `equal` gives both axes the same scale."""
     style_axes(axes, style)
-    x = label_axis(x_name, shown.x_low, shown.x_high)
-    y = label_axis(y_name, shown.ordinate_low, shown.ordinate_high)
-    axes.set_xticks(*zip(*_spaced(x.ticks, size_in_points(axes)[0] / style.small_size), strict=True))
-    axes.set_yticks(*zip(*y.ticks, strict=True))
+    x_axis = label_axis(x_name, shown_window.x_low, shown_window.x_high)
+    y_axis = label_axis(y_name, shown_window.ordinate_low, shown_window.ordinate_high)
+    axes.set_xticks(*zip(*_thin_out(x_axis.ticks, size_in_points(axes)[0] / style.small_size), strict=True))
+    axes.set_yticks(*zip(*y_axis.ticks, strict=True))
     axes.set_xlim(0.0, 1.0)
     axes.set_ylim(0.0, 1.0)
     if equal:
-        axes.set_box_aspect(shown.height / shown.width)
-    label_axes(axes, x.name, y.name, style)
+        axes.set_box_aspect(shown_window.height / shown_window.width)
+    label_axes(axes, x_axis.name, y_axis.name, style)
 
 
-def _spaced(ticks: list[tuple[float, str]], width: float) -> list[tuple[float, str]]:
-    """Select every k-th tick so that the labels do not touch. `width` of the axis is in units of the font size of the labels."""
+def _thin_out(ticks: list[tuple[float, str]], width: float) -> list[tuple[float, str]]:
+    """Return every k-th tick so that labels do not touch. The width of the axis is in units of the font size of the labels."""
     needed_width = sum(_LETTER_WIDTH * len(label) + _BETWEEN_LABELS for _, label in ticks)
     return ticks[:: max(1, math.ceil(needed_width / width))]
 
 
-def _shares(shown: Window, points: np.ndarray) -> np.ndarray:
+def _to_shares(shown_window: Window, points: np.ndarray) -> np.ndarray:
     """Convert points of the plane, of shape (n, 2), to shares of a window's width and height."""
-    low, high = _corners(shown)
+    low, high = _corners(shown_window)
     shares: np.ndarray = (points - low) / (high - low)
     return shares
 

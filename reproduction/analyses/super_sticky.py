@@ -120,7 +120,7 @@ def find_super_sticky_orbits(
     states = spec.start_states(x, ordinate)
     mirror = MirrorPixels(spec, escape_map.x, escape_map.ordinate)
     # Of two mirror images, the first is integrated.
-    first_pixels = mirror.firsts_of(pixels)
+    first_pixels = mirror.find_first_images(pixels)
     is_integrated = np.isin(pixels, first_pixels)
     outcomes = classify_orbits(spec.potential, spec.common_energy, states[is_integrated], t_max, execution=execution)
     execution.raise_if_cancelled()

@@ -33,16 +33,16 @@ from reproduction.sample_orbits import find_lyapunov_r2
 LONGEST_DRAWN = 4e6
 """Latest escape time of a drawn orbit. Integration takes a second per 1e5 time units."""
 
-# Number of intervals of time in each panel. Minimum and maximum of R² in each interval are drawn.
+# Number of time intervals in each panel. The minimum and maximum of R² in each interval are drawn.
 _INTERVALS = 1000
 # Number of samples in each interval. R² oscillates with a period of about π, so the samples cover all phases.
 _SAMPLES = 1000
-# Share of the time before the escape that the second panel shows.
-_LAST = 0.01
-# Unit of the axis of time of the first panel.
+# Part of the orbit that the second panel shows, as a share of the escape time. It ends at the escape.
+_DEPARTURE_SHARE = 0.01
+# Unit of the time axis of the first panel, in units of time of the potential.
 _TIME_UNIT = 1e5
-# Upper end of the axis of R², in units of R² at the exits, with room for the legend.
-_ABOVE = 1.4
+# Upper end of the R² axis, in units of the largest R² on the Lyapunov orbits. The legend needs the room.
+_R2_AXIS_END = 1.4
 
 
 def draw_characters(cache: MapCache) -> Figure:
@@ -53,20 +53,22 @@ def draw_characters(cache: MapCache) -> Figure:
     figure = new_figure(replace(SCREEN, width=17.3), 18.3, title, equal=True)
     axes = figure.subplots()
     draw_map_panel(axes, frame, "characters", frame.spec.find_window(), analyses=MapAnalyses({REGULARITY.name: regularity}))
-    add_figure_legend(figure, [*legend_handles(entries(PAPER)[1:-1]), *axes.collections])
+    # The first code is of escaping orbits, and the last of orbits not judged yet.
+    _, *character_entries, _ = entries(PAPER)
+    add_figure_legend(figure, [*legend_handles(character_entries), *axes.collections])
     return figure
 
 
 def draw_super_sticky(cache: MapCache) -> Figure:
     """Draw R²(t) of an orbit that escapes long after the paper's 1e5 time units: over the whole orbit, and at its end."""
     search = cache.super_sticky()
-    index = find_shown(search)
+    index = find_displayed_orbit(search)
     figure = new_figure(SCREEN, 12.2, f"Case {STICKY_CASE}, $h = {STICKY_ENERGY}$: {_describe(search, index)}")
     panels = list(figure.subplots(1, 2, sharey=True, width_ratios=(2, 1)))
     if index is not None:
         end = float(search.escape_time[index])
         _draw_history(panels[0], _sample_r2(search, index, 0.0, cache), end, search.spec.t_max)
-        _draw_departure(panels[1], _sample_r2(search, index, (1.0 - _LAST) * end, cache), end)
+        _draw_departure(panels[1], _sample_r2(search, index, (1.0 - _DEPARTURE_SHARE) * end, cache), end)
     for axes in panels:
         _draw_exits(axes, search)
         style_axes(axes)
@@ -77,8 +79,8 @@ def draw_super_sticky(cache: MapCache) -> Figure:
     return figure
 
 
-def find_shown(search: SuperStickySearch) -> int | None:
-    """Return the index of the last orbit that escapes by `LONGEST_DRAWN`, else of the first to escape; None without escapes."""
+def find_displayed_orbit(search: SuperStickySearch) -> int | None:
+    """Return the index of the drawn orbit: the last to escape by `LONGEST_DRAWN`, else the first to escape; None without one."""
     escapers = search.escapers
     if not escapers.size:
         return None
@@ -87,7 +89,7 @@ def find_shown(search: SuperStickySearch) -> int | None:
 
 
 def _sample_r2(search: SuperStickySearch, index: int, begin: float, cache: MapCache) -> np.ndarray:
-    """Return R² of an orbit from a time until the escape, of shape (intervals, samples)."""
+    """Return R² of an orbit from time `begin` to the escape, of shape (intervals, samples)."""
     times = np.linspace(begin, search.escape_time[index], _INTERVALS * _SAMPLES)
     orbits = sample_orbits(search.spec.potential, search.states[index : index + 1], times, execution=cache.execution)
     r2: np.ndarray = (orbits.x**2 + orbits.y**2).reshape(_INTERVALS, _SAMPLES)
@@ -108,8 +110,8 @@ def _draw_history(axes: Axes, r2: np.ndarray, end: float, t_max: float) -> None:
 
 
 def _draw_departure(axes: Axes, r2: np.ndarray, end: float) -> None:
-    _draw_band(axes, r2, -_LAST * end, 0.0)
-    axes.set_xlim(-_LAST * end, 0.02 * _LAST * end)
+    _draw_band(axes, r2, -_DEPARTURE_SHARE * end, 0.0)
+    axes.set_xlim(-_DEPARTURE_SHARE * end, 0.02 * _DEPARTURE_SHARE * end)
 
 
 def _draw_band(axes: Axes, r2: np.ndarray, begin: float, end: float) -> None:
@@ -127,4 +129,4 @@ def _draw_exits(axes: Axes, search: SuperStickySearch) -> None:
     label = f"Lyapunov orbits, $R^2 = {low:.3f}$ to ${high:.3f}$"
     axes.axhspan(low, high, color=THRESHOLD, alpha=0.35, linewidth=0.0)
     axes.axhline(0.5 * (low + high), color=THRESHOLD, linestyle="--", linewidth=1.2, label=label)
-    axes.set_ylim(0.0, _ABOVE * high)
+    axes.set_ylim(0.0, _R2_AXIS_END * high)

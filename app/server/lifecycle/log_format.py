@@ -34,18 +34,18 @@ def short_session_id() -> str | None:
 
 
 def add_session_id(record: logging.LogRecord) -> bool:
-    """Add the current session to a record; as a filter, pass all records."""
+    """Filter that adds the current session to each record, and passes all records."""
     if session := short_session_id():
         record.session = session
     return True
 
 
 def shorten_message(record: logging.LogRecord) -> bool:
-    """Shorten a long message by omitting its middle; as a filter, pass all records."""
+    """Filter that shortens long messages by omitting their middle, and passes all records."""
     message = record.getMessage()
     if len(message) > LONGEST_MESSAGE:
-        first = message[: LONGEST_MESSAGE - _LAST_CHARACTERS - 3]
-        record.msg, record.args = f"{first} … {message[-_LAST_CHARACTERS:]}", None
+        beginning = message[: LONGEST_MESSAGE - _LAST_CHARACTERS - 3]
+        record.msg, record.args = f"{beginning} … {message[-_LAST_CHARACTERS:]}", None
     return True
 
 
@@ -65,7 +65,7 @@ def escape_control_characters(text: str) -> str:
 
 
 class TextFormatter(logging.Formatter):
-    """Writes time, level, logger, session and message on one line; traceback lines are indented."""
+    """Writes time, level, logger, session and message on one line. Lines of a traceback follow, indented."""
 
     def format(self, record: logging.LogRecord) -> str:
         """Format a record."""
@@ -73,8 +73,8 @@ class TextFormatter(logging.Formatter):
         logger = f"{record.name} [{session}]" if session else record.name
         line = f"{self.formatTime(record)} {record.levelname} {logger}: {escape_control_characters(record.getMessage())}"
         if record.exc_info:
-            traceback = self.formatException(record.exc_info).splitlines()
-            line = "\n".join([line, *(_TRACEBACK_INDENT + escape_control_characters(traced) for traced in traceback)])
+            traceback_lines = self.formatException(record.exc_info).splitlines()
+            line = "\n".join([line, *(_TRACEBACK_INDENT + escape_control_characters(text) for text in traceback_lines)])
         return line
 
 

@@ -17,10 +17,10 @@ from app.views.components.notice import show_lasting_notice
 
 RESTART_NOTICE = "The server is restarting. Reload this page in a minute: its address holds the view."
 
-# Time in which messages reach the pages, and a proxy notices that the server is not ready.
+# Time in which messages reach the pages and a proxy notices that the server is not ready, in seconds.
 _GRACE_SECONDS = 0.5
-# Longest time until the process ends. Computations check for cancellation about every 50 ms; compilations cannot be cancelled.
-_LAST_SECONDS = 4.0
+# Longest time until the process ends, in seconds. Computations check for cancellation every 50 ms or so.
+_EXIT_DELAY_SECONDS = 4.0
 
 _SIGNALS = (signal.SIGTERM, signal.SIGINT)
 
@@ -28,17 +28,17 @@ log = logging.getLogger(f"bokeh.{__name__}")
 
 
 def stop_on_signals(state: ProcessState, stop_loop: Callable[[], None]) -> None:
-    """Stop gracefully on SIGTERM and Ctrl-C, even while the event loop is busy; call on the thread of the loop.
+    """Stop gracefully on SIGTERM and Ctrl-C, even while the event loop is busy. Call this on the thread of the loop.
 
     This replaces the handlers of Bokeh and asyncio, which wait for the event loop. Python writes a signal's number to a socket
-    at once, and a thread waits there. Like all threads, it is delayed only while a C function keeps the interpreter lock.
+    at once, and a thread waits there. Only a C function that keeps the interpreter lock delays this thread, as all others.
     """
     loop = asyncio.get_running_loop()
     if os.name != "posix" or threading.current_thread() is not threading.main_thread():
         return
     loop.remove_signal_handler(signal.SIGTERM)
     for number in _SIGNALS:
-        # A shell starts background jobs with SIGINT ignored, which is respected.
+        # A shell starts background jobs with SIGINT ignored. They must continue to ignore it.
         if signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, _leave_to_thread)
     receiver, sender = socket.socketpair()
@@ -54,7 +54,7 @@ def stop_on_signals(state: ProcessState, stop_loop: Callable[[], None]) -> None:
 
 
 def begin_shutdown(state: ProcessState) -> None:
-    """Refuse new sessions, cancel all jobs and limit the time until the process ends; any thread may call this."""
+    """Refuse new sessions, cancel all jobs, and limit the time until the process ends. Any thread may call this."""
     _exit_later()
     state.stopping.set()
     log.info("stopping")
@@ -64,7 +64,7 @@ def begin_shutdown(state: ProcessState) -> None:
 
 
 def finish_shutdown(state: ProcessState) -> None:
-    """Exit at once if the server is stopping; a regular exit of the interpreter would take seconds."""
+    """Exit at once if the server is stopping. A regular exit of the interpreter would take seconds."""
     if state.stopping.is_set():
         logging.shutdown()
         sys.stdout.flush()
@@ -76,7 +76,7 @@ def _leave_to_thread(number: int, frame: Any) -> None:
 
 
 def _wait_for_signal(receiver: socket.socket, stop: Callable[[], None]) -> None:
-    """Call `stop` after the first signal of `_SIGNALS`; other signals keep their handlers."""
+    """Call `stop` after the first signal of `_SIGNALS`. Other signals keep their handlers."""
     while receiver.recv(1)[0] not in _SIGNALS:
         pass
     stop()
@@ -94,7 +94,7 @@ def _notify_pages(state: ProcessState) -> None:
 
 
 def _exit_later() -> None:
-    """End the process after `_LAST_SECONDS`. No file can be truncated, because none is written here."""
-    timer = threading.Timer(_LAST_SECONDS, os._exit, [0])
+    """End the process after `_EXIT_DELAY_SECONDS`. No file can be truncated, because the server writes no files."""
+    timer = threading.Timer(_EXIT_DELAY_SECONDS, os._exit, [0])
     timer.daemon = True
     timer.start()

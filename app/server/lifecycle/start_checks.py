@@ -26,7 +26,7 @@ def refuse_to_start(sentence: str) -> NoReturn:
 
 
 def asks_for_several_processes(arguments: Sequence[str]) -> bool:
-    """Whether the arguments of `panel serve` ask for more than one process; ``--num-procs=0`` means one for each core."""
+    """Whether the arguments of `panel serve` ask for more than one process. ``--num-procs=0`` asks for one per core."""
     parser = argparse.ArgumentParser(add_help=False, exit_on_error=False)
     parser.add_argument("--num-procs", type=int, default=1)
     # All arguments after this option belong to the application.

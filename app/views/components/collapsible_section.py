@@ -20,7 +20,7 @@ class Stack:
     Parameters
     ----------
     builds
-        Functions that make the contents, by name. Each is called when its content is first shown.
+        Functions that make the contents, by name. Each function is called when its content is first shown.
     css_class
         CSS class of the column.
     head
@@ -64,16 +64,16 @@ class Fold(Stack):
         super().__init__({"content": build}, "fold")
         self._title = title
         self.button = button("", lambda: self.toggle("content"), kind="light", margin=0, css_classes=["fold-title"])
-        self.open(is_open)
+        self.set_open(is_open)
 
     @property
     def is_open(self) -> bool:
         """Whether the content is on the page."""
         return self.shown is not None
 
-    def open(self, visible: bool) -> None:
+    def set_open(self, is_open: bool) -> None:
         """Show or hide the content."""
-        self.show("content" if visible else None)
+        self.show("content" if is_open else None)
 
     def parts(self) -> list[pn.viewable.Viewable]:
         """Return the button and the column."""
@@ -86,20 +86,20 @@ class Fold(Stack):
 
 
 class Drawers(Stack):
-    """Titled sections over the controls, of which at most one is open, and the buttons that open them.
+    """Titled sections over the controls, with the buttons that open them. At most one section is open.
 
     Parameters
     ----------
     drawers
         Label of the button, title and builder of each drawer, by name. The label is empty if the button is elsewhere.
-    on_show
-        Called when a drawer opens or closes, with whether a drawer is open now.
+    on_toggle
+        Called when a drawer opens or closes. The argument tells whether a drawer is open now.
     """
 
     def __init__(
-        self, drawers: Mapping[str, tuple[str, str, Build]], on_show: Callable[[bool], None] = lambda is_open: None
+        self, drawers: Mapping[str, tuple[str, str, Build]], on_toggle: Callable[[bool], None] = lambda is_open: None
     ) -> None:
-        self._on_show = on_show
+        self._on_toggle = on_toggle
         super().__init__({name: self._with_head(title, build) for name, (_, title, build) in drawers.items()}, "drawer")
         options = {label: name for name, (label, _, _) in drawers.items() if label}
         self.buttons = pn.widgets.CheckButtonGroup(
@@ -109,15 +109,16 @@ class Drawers(Stack):
 
     def show(self, name: str | None) -> None:
         """Open a drawer and close any other drawer; None closes all drawers."""
-        previous = self.shown
+        previous_name = self.shown
         # Send all changes in one message. Between two messages, the user could press a button while the old button is marked.
         with pn.io.hold():
             super().show(name)
             self.buttons.param.update(value=self._marked_buttons(), css_classes=self._classes(is_open=name is not None))
-            if name != previous:
-                self._on_show(name is not None)
+            if name != previous_name:
+                self._on_toggle(name is not None)
 
     def _press(self, event: Any) -> None:
+        """Open the drawer of a pressed button, or close it. Other changes of the marked buttons come from `show`."""
         pressed = [name for name in event.new if name != self.shown]
         if event.new != self._marked_buttons():
             self.show(pressed[-1] if pressed else None)

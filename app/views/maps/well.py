@@ -16,7 +16,7 @@ from app.views.maps.curve_layers import CurveLayers
 from engine import MapSpec, Potential, Window
 from engine.slices.axes import highest_energy
 from engine.slices.planes import SPACE
-from plots.pictures.orbit_curves import OrbitCurves, find_well_window, moment
+from plots.pictures.orbit_curves import OrbitCurves, find_trail, find_well_window
 from plots.pictures.palette import LIGHT, MARK_EDGE, Palette
 
 TITLE = "The well in (x, y)"
@@ -95,11 +95,11 @@ class WellView:
     def set_time(self, t: float | None) -> None:
         """Mark each orbit at a time, with its trail; None marks the starts."""
         self._time = t
-        moments = [(slot, moment(one.orbit, 0.0 if t is None else t)) for slot, one in self._orbits]
-        slots = [slot for slot, _ in moments]
-        self._points.data = {"x": [now.x[-1] for _, now in moments], "y": [now.y[-1] for _, now in moments], "slot": slots}
-        trails = {"xs": [now.x for _, now in moments], "ys": [now.y for _, now in moments]}
-        self._trails.data = {**trails, "slot": slots, "alpha": [1.0] * len(slots)}
+        trails = [(slot, find_trail(one.orbit, 0.0 if t is None else t)) for slot, one in self._orbits]
+        slots = [slot for slot, _ in trails]
+        self._points.data = {"x": [trail.x[-1] for _, trail in trails], "y": [trail.y[-1] for _, trail in trails], "slot": slots}
+        trail_lines = {"xs": [trail.x for _, trail in trails], "ys": [trail.y for _, trail in trails]}
+        self._trails.data = {**trail_lines, "slot": slots, "alpha": [1.0] * len(slots)}
 
     def describe(self) -> None:
         """Write title, legend and names of the axes around the frame."""

@@ -131,7 +131,7 @@ class Controls:
     def _begin_touch(self) -> None:
         """Adapt to touch input: close the sections, to leave more room for the maps."""
         for fold in self._folds:
-            fold.open(False)
+            fold.set_open(False)
 
     def _build_quality(self) -> list[pn.viewable.Viewable]:
         """Make the lists of t_max, resolution and colours, and the switch for the scale of escape times."""

@@ -25,7 +25,7 @@ from engine.systems.potential import Potential
 DEFAULT_DURATION = 10.0
 """Default τ in units of the well, about one and a half periods of the motion in the well."""
 
-# Number of parts into which the pixels are divided; the parts are computed one after the other.
+# Number of parts into which the pixels are divided. The parts are computed one after the other.
 _PARTS = 16
 
 
@@ -152,7 +152,7 @@ def compute_lagrangian_descriptor(
 
 
 def checked_choices(potential: Potential, duration: float | None, power: float, direction: TimeDirection | str) -> dict[str, Any]:
-    """Return the parameters of `compute_lagrangian_descriptor` by name, with defaults; ValueError if one is out of range."""
+    """Return the parameters of `compute_lagrangian_descriptor` by name, with defaults; ValueError for a value out of range."""
     if duration is None:
         duration = DEFAULT_DURATION * potential.units.time
     return {
@@ -193,12 +193,12 @@ class _DescriptorRun:
         self._given_spec, self._duration, self._power, self._direction = escape_map.spec, duration, power, direction
         self._map, self._specs = escape_map.in_well_units(), _specs(escape_map.spec, direction)
         self._mirror = MirrorPixels(self._map.spec, self._map.x, self._map.ordinate)
-        self._pixels = self._mirror.firsts_of(np.flatnonzero(self._map.interior))
+        self._pixels = self._mirror.find_first_images(np.flatnonzero(self._map.interior))
         self._values = np.full(self._map.fate.shape, np.nan)
         self._done_count = 0
 
     def stages(self, execution: Execution, _on_change: OnChange) -> Iterator[Stage]:
-        """Yield the stages, see `Staged`; each computes a part of the pixels."""
+        """Yield the stages, see `Staged`. Each stage computes a part of the pixels."""
         if not self._pixels.size:
             return
         for part in np.array_split(self._pixels, min(_PARTS, self._pixels.size)):
@@ -228,6 +228,6 @@ class _DescriptorRun:
         """Return the result so far."""
         units, power = self._given_spec.potential.units, self._power
         values = self._values * (units.length**power * units.time ** (1.0 - power))
-        self._mirror.copy_to_seconds(values)
+        self._mirror.copy_to_second_images(values)
         complete = self._done_count == self._pixels.size
         return DescriptorMap(self._given_spec, read_only(values), self._duration, power, self._direction, complete=complete)

@@ -132,7 +132,7 @@ class _RegularityClassification:
         self._time = 0.0
 
     def stages(self, execution: Execution, _on_change: OnChange) -> Iterator[Stage]:
-        """Yield the stages, see `Staged`; each judges orbits by one criterion, after the integration for this criterion."""
+        """Yield the stages, see `Staged`. Each stage integrates orbits and judges them by one criterion."""
         for time, window in zip(_SALI_TIMES, WINDOWS, strict=False):
             if 2.0 * time > self._spec.t_max:
                 break

@@ -16,7 +16,7 @@ SHIFT = 1e-11
 """Shift of a start along x and along the ordinate, in units of the well: far above rounding errors and far below a pixel."""
 
 LARGEST_SHARE_OF_PIXEL = 0.01
-"""Largest shift as a share of the pixel, which matters in deep zooms."""
+"""Largest shift, as a share of a pixel. It matters in deep zooms."""
 
 SECOND_TOLERANCE = 10.0 * TOLERANCE
 """Tolerance of the second rerun. Its steps are a sixth longer, so its errors are independent of the errors of the map."""
@@ -53,11 +53,11 @@ def shifted_starts(spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> tuple[
     free_axes = spec.plane.free_axes
     points = x, ordinate
     axes = zip(points, sides, free_axes, strict=True)
-    nearer = tuple(_shifted_towards_zero(values, side) if is_free else values for values, side, is_free in axes)
+    nearer_points = tuple(_shifted_towards_zero(values, side) if is_free else values for values, side, is_free in axes)
     if all(free_axes):
-        return (nearer[0], nearer[1]), (nearer[0], ordinate)
-    farther = tuple(values + (values - shifted) for values, shifted in zip(points, nearer, strict=True))
-    return (nearer[0], nearer[1]), (farther[0], farther[1])
+        return (nearer_points[0], nearer_points[1]), (nearer_points[0], ordinate)
+    farther_points = tuple(values + (values - shifted) for values, shifted in zip(points, nearer_points, strict=True))
+    return (nearer_points[0], nearer_points[1]), (farther_points[0], farther_points[1])
 
 
 def _shifted_towards_zero(coordinate: np.ndarray, pixel: float) -> np.ndarray:
@@ -83,12 +83,15 @@ class Perturbation:
 
 
 SHIFTED_STARTS = Perturbation(shifted_starts, (TOLERANCE, SECOND_TOLERANCE), LARGEST_DELAY)
+"""Two reruns from shifted starts, which test the outcomes of pixels."""
+
 SAME_STARTS = Perturbation(_same_starts, (SECOND_TOLERANCE,), np.inf)
+"""One rerun from the same starts, which shows only the errors of the integration."""
 
 
 @dataclass(frozen=True, eq=False)
 class Rerun:
-    """A second integration of the orbits (n,) of the tested pixels, with their outcomes on the map."""
+    """A second integration of the n orbits of the tested pixels, with their outcomes on the map, (n,) each."""
 
     batch: OrbitBatch
     tolerance: float

@@ -28,16 +28,16 @@ from engine.propagation.evidence import Evidence
 from engine.propagation.fates import CHAOS_THRESHOLD, Fate
 from engine.systems.compiled import kernels_of
 
-APART = SHIFT / CHAOS_THRESHOLD
-"""Largest distance of two reruns of a bounded orbit in phase space, in units of the well, with which it is not chaotic.
+CHAOTIC_DISTANCE = SHIFT / CHAOS_THRESHOLD
+"""Distance of two reruns in phase space, in units of the well, above which a bounded orbit is chaotic.
 
 Along a chaotic orbit SALI falls as exp(−λt) while a shift grows as exp(λt): the shift reaches this distance when SALI reaches its
 threshold. Along a regular orbit a shift grows like t, to about 1e-6 at t = 1e5.
 """
 
-# Horizon of the first stage, in units of the well; with the following factor, FIRST_TEST_TIME is one of the horizons.
+# Horizon of the first stage, in units of the well. With the following factor, FIRST_TEST_TIME is one of the horizons.
 _FIRST_HORIZON = FIRST_TEST_TIME / 8.0
-# Ratio of successive horizons; it is small, so that few orbits are integrated longer than needed.
+# Ratio of successive horizons. A small ratio integrates few orbits longer than needed.
 _HORIZON_FACTOR = 2.0
 # A grid index on the coarsest lattice of `BoundedOrbitSearch`. The bounded pixels to test are few and lie around islands, so one
 # round with all of these pixels fills the lanes of the kernels better than one round per lattice.
@@ -145,10 +145,10 @@ def compute_trust(
     (0.54, 0.03)
     """
     escape_map = as_complete_map("escape_map", escape_map)
-    unlike = find_unlike_neighbours(escape_map.fate, escape_map.crossings)
+    has_unlike_neighbour = find_unlike_neighbours(escape_map.fate, escape_map.crossings)
 
     def begin_test(pixels: EscapeMap, place: Place) -> TrustTest:
-        return TrustTest(pixels, unlike[place], SHIFTED_STARTS)
+        return TrustTest(pixels, has_unlike_neighbour[place], SHIFTED_STARTS)
 
     return analyse_map(escape_map, begin_test, TrustMap, on_frame, execution)
 
@@ -167,35 +167,35 @@ def find_unlike_neighbours(fate: np.ndarray, crossings: np.ndarray) -> np.ndarra
     -------
     (rows, columns) bool.
     """
-    # One number for each fate and, for escaping orbits, number of crossings.
+    # One number for each outcome: for escaping orbits, of the fate and the number of crossings.
     outcome = np.where(fate >= 1, crossings.astype(np.int64) * (int(fate.max(initial=0)) + 1) + fate, 0)
     interior = fate >= Fate.BOUNDED
     rows, columns = fate.shape
-    unlike = np.zeros(fate.shape, bool)
+    has_unlike_neighbour = np.zeros(fate.shape, bool)
     padded_outcome, padded_interior = np.pad(outcome, 1), np.pad(interior, 1)
     for down, right in np.ndindex(3, 3):
         neighbour = np.s_[down : down + rows, right : right + columns]
-        unlike |= padded_interior[neighbour] & (padded_outcome[neighbour] != outcome)
-    return unlike & interior
+        has_unlike_neighbour |= padded_interior[neighbour] & (padded_outcome[neighbour] != outcome)
+    return has_unlike_neighbour & interior
 
 
 def _find_without_evidence(escape_map: EscapeMap) -> np.ndarray:
     """Return whether each pixel is bounded, above the escape energy, without evidence, of shape (rows, columns)."""
     spec = escape_map.spec
     energy = spec.energies(*np.meshgrid(escape_map.x, escape_map.ordinate))
-    without_evidence: np.ndarray = (escape_map.evidence == Evidence.INTEGRATED) & ~spec.potential.well.is_closed_at(energy)
-    return without_evidence
+    lacks_evidence: np.ndarray = (escape_map.evidence == Evidence.INTEGRATED) & ~spec.potential.well.is_closed_at(energy)
+    return lacks_evidence
 
 
 class TrustTest:
-    """Tests pixels of a map by reruns, in units of the well; for `unlike` see `find_unlike_neighbours`."""
+    """Tests pixels of a map by reruns, in units of the well. `has_unlike_neighbour` is the result of `find_unlike_neighbours`."""
 
-    def __init__(self, escape_map: EscapeMap, unlike: np.ndarray, perturbation: Perturbation) -> None:
+    def __init__(self, escape_map: EscapeMap, has_unlike_neighbour: np.ndarray, perturbation: Perturbation) -> None:
         self._given_spec, scaled_map = escape_map.spec, escape_map.in_well_units()
         self.spec = scaled_map.spec
         codes = np.where(scaled_map.fate >= Fate.BOUNDED, Trust.LIKE_NEIGHBOURS, Trust.NOT_APPLICABLE)
         without_evidence = _find_without_evidence(scaled_map)
-        codes[without_evidence | unlike] = Trust.NOT_TESTED
+        codes[without_evidence | has_unlike_neighbour] = Trust.NOT_TESTED
         self._codes = PixelCodes(scaled_map, codes, Trust.NOT_TESTED)
         # Whether each tested pixel is bounded without evidence, so that its reruns must stay together.
         self._without_evidence = without_evidence.ravel()[self._codes.pixels]
@@ -227,7 +227,7 @@ class TrustTest:
         return curves, reruns
 
     def stages(self, execution: Execution, on_change: OnChange) -> Iterator[Stage]:
-        """Yield the stages, see `Staged`; each integrates the undecided reruns to a horizon, or looks for evidence there."""
+        """Yield the stages, see `Staged`. Each stage integrates undecided reruns to a horizon, or looks for evidence there."""
         reached = 0.0
         for horizon in rising_horizons(_FIRST_HORIZON, _HORIZON_FACTOR, self.spec.t_max):
             if not self._undecided.size:
@@ -239,7 +239,7 @@ class TrustTest:
 
     def _propagate(self, horizon: float, execution: Execution) -> None:
         """Integrate the reruns of all undecided pixels to the horizon."""
-        # The reruns are concurrent, because one alone may not keep all workers busy; their threads mostly wait for tiles.
+        # The reruns are concurrent, because one alone may not keep all workers busy. Their threads mostly wait for tiles.
         with ThreadPoolExecutor(len(self._reruns)) as threads:
             list(threads.map(partial(self._propagate_rerun, horizon, execution), self._reruns))
         self._update_codes()
@@ -254,12 +254,12 @@ class TrustTest:
         )  # fmt: skip
 
     def _find_chaotic(self, time: float) -> None:
-        """Find pixels bounded without evidence whose reruns, all integrated to `time`, are farther apart than `APART`."""
+        """Find pixels bounded without evidence whose reruns are farther apart than `CHAOTIC_DISTANCE` at t = `time`."""
         tested = self._undecided[self._without_evidence[self._undecided]]
         kernels = kernels_of(self.spec.potential)
         batches = [rerun.batch for rerun in self._reruns]
         states = np.array([advance_states(kernels, batch.state[tested], time - batch.t[tested]) for batch in batches])
-        self._chaotic[tested] = np.linalg.norm(states[0] - states[-1], axis=1) > APART
+        self._chaotic[tested] = np.linalg.norm(states[0] - states[-1], axis=1) > CHAOTIC_DISTANCE
         self._compared_time = time
 
     def _find_evidence(self, reached: float, execution: Execution, on_round: Callable[[], None]) -> None:

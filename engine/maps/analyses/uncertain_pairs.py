@@ -25,7 +25,7 @@ t = 1000 made the exponent of I at h = 0.15 too large by 0.02, because a slowly 
 """
 
 MIN_SEPARATION = 1e-10
-"""Smallest distance of two starts, in units of the well; in deep zooms, with small pixels, it can be smaller."""
+"""Smallest distance of two starts, in units of the well. In deep zooms, with small pixels, it can be smaller."""
 
 WORK = 1.5e8
 """Default limit of the total integration time of all orbits, in units of the well: a few seconds of computation."""
@@ -38,10 +38,10 @@ _MIN_ZOOM_SEPARATION = 1e-13
 _MAX_SEPARATIONS = 100
 # Largest initial number of pairs at each separation.
 _MAX_PAIRS = 100_000
-# Number of uncertain pairs, expected from the law fitted to the initial pairs, for which each separation gets more pairs; it
-# determines a share to 7 %.
+# Number of uncertain pairs wanted at each separation, which determines a share to 7 %. The law fitted to the initial pairs tells
+# how many pairs this takes.
 _WANTED_UNCERTAIN = 200
-# Largest ratio of the final and the initial number of pairs; the total integration time also limits the number of pairs.
+# Largest ratio of the final to the initial number of pairs. The total integration time also limits the number of pairs.
 _MAX_GROWTH = 2000
 # Cost of a pair besides its integration, in time units of integration.
 _PAIR_COST = 20.0
@@ -49,7 +49,7 @@ _PAIR_COST = 20.0
 _CHUNK = 2**17
 # Times at which the integration stops, to regroup the few remaining orbits, in units of the well.
 _STAGES = (30.0, 300.0)
-# Smallest share of interior points among the points drawn in the window; drawing stops if there are fewer.
+# Smallest share of interior points among the points drawn in the window. Drawing stops if there are fewer.
 _MIN_YIELD = 1e-3
 
 
@@ -125,7 +125,7 @@ def compute_uncertainty_exponent(
     if not isinstance(given_work, numbers.Real) or not work > 0.0:
         raise ValueError(f"work={short_repr(work)}: must be above 0")
     units = spec.potential.units
-    sampler = _PairSampler(spec.in_well_units(), _spaced_separations(spec, separations), seed, execution)
+    sampler = _PairSampler(spec.in_well_units(), _space_separations(spec, separations), seed, execution)
     sampler.sample(np.full(separations, pairs), execution.part(0, 2))
     sampler.sample(sampler.plan_more_pairs(work), execution.part(1, 2))
     execution.report(lambda: 1.0)
@@ -134,7 +134,7 @@ def compute_uncertainty_exponent(
     return replace(units.restore(fit), amplitude=amplitude, made_by=spec.provenance())
 
 
-def _spaced_separations(spec: MapSpec, count: int) -> np.ndarray:
+def _space_separations(spec: MapSpec, count: int) -> np.ndarray:
     """Return `count` separations ε in units of the well, decreasing from the side of a pixel."""
     scaled_spec = spec.in_well_units()
     window, (columns, rows) = scaled_spec.find_window(), spec.resolution
@@ -202,13 +202,13 @@ class _PairSampler:
 
     def _draw_chunk(self, counts: np.ndarray) -> tuple[OrbitBatch, np.ndarray]:
         """Return the orbits of `counts` (m,) pairs, all first before all second starts, and the separation index of each pair."""
-        present = np.flatnonzero(counts)
-        samples = [self._draw_pairs(index, int(counts[index])) for index in present.tolist()]
+        present_indices = np.flatnonzero(counts)
+        samples = [self._draw_pairs(index, int(counts[index])) for index in present_indices.tolist()]
         states = np.concatenate([states for states, _ in samples], axis=1).reshape(-1, 4)
         rows = np.concatenate([rows for _, rows in samples])
         batch = OrbitBatch.from_starts(states, np.tile(rows, 2))
         batch.mark_bounded(np.flatnonzero(~self.is_open[batch.curve_row]), Evidence.CLOSED)
-        return batch, np.repeat(present, [rows.size for _, rows in samples])
+        return batch, np.repeat(present_indices, [rows.size for _, rows in samples])
 
     def _integrate(self, batch: OrbitBatch, execution: Execution) -> None:
         """Integrate all orbits in stages, so that the few long orbits are grouped into full tiles."""
@@ -224,13 +224,13 @@ class _PairSampler:
             )  # fmt: skip
             execution.raise_if_cancelled()
 
-    def _count_outcomes(self, index: np.ndarray, first: np.ndarray, second: np.ndarray) -> None:
+    def _count_outcomes(self, index: np.ndarray, first_fate: np.ndarray, second_fate: np.ndarray) -> None:
         """Count pairs, given their separation index and the fates of their first and second orbits, (n,) each."""
-        inside_count = (first == Fate.BOUNDED).astype(int) + (second == Fate.BOUNDED)
-        is_decided = (first >= Fate.BOUNDED) & (second >= Fate.BOUNDED)
+        inside_count = (first_fate == Fate.BOUNDED).astype(int) + (second_fate == Fate.BOUNDED)
+        is_decided = (first_fate >= Fate.BOUNDED) & (second_fate >= Fate.BOUNDED)
         for counts, mask in (
             (self.pairs, is_decided),
-            (self.uncertain, is_decided & (first != second)),
+            (self.uncertain, is_decided & (first_fate != second_fate)),
             (self.one_inside, is_decided & (inside_count == 1)),
             (self.both_inside, is_decided & (inside_count == 2)),
         ):
@@ -243,36 +243,36 @@ class _PairSampler:
         drawn_count = 0
         while rows.size < count and drawn_count * _MIN_YIELD < rows.size + 10:
             self.execution.raise_if_cancelled()
-            size = 2 * (count - rows.size) + 100
-            more_states, more_rows = self._draw_interior_pairs(index, size)
+            candidate_count = 2 * (count - rows.size) + 100
+            more_states, more_rows = self._draw_interior_pairs(index, candidate_count)
             states, rows = np.concatenate([states, more_states], axis=1), np.concatenate([rows, more_rows])
-            drawn_count += size
+            drawn_count += candidate_count
         return states[:, :count], rows[:count]
 
-    def _draw_interior_pairs(self, index: int, size: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return states and energy rows of the interior pairs among `size` random pairs in the window."""
-        points, rows = self._draw_points(index, size)
+    def _draw_interior_pairs(self, index: int, pair_count: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return states and energy rows of the interior pairs among `pair_count` random pairs in the window."""
+        points, rows = self._draw_points(index, pair_count)
         batch = OrbitBatch.from_starts(self.spec.start_states(*points), np.tile(rows, 2))
-        batch.mark_outside(self.spec.potential, np.arange(2 * size), self.curves)
+        batch.mark_outside(self.spec.potential, np.arange(2 * pair_count), self.curves)
         is_interior = (batch.fate == Fate.NOT_COMPUTED).reshape(2, -1).all(axis=0)
         return batch.state.reshape(2, -1, 4)[:, is_interior], rows[is_interior]
 
-    def _draw_points(self, index: int, size: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return x and ordinate of all first, then all second starts, (2, 2 size), and the energy rows of the pairs, (size,)."""
+    def _draw_points(self, index: int, pair_count: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return x and ordinate of all first, then all second starts, (2, 2n), and the energy rows of the n pairs, (n,)."""
         window, random, axis = self.spec.find_window(), self.random[index], self.spec.plane.energy_axis
         edges = window.ranges
-        rows = np.zeros(size, np.int64)
+        rows = np.zeros(pair_count, np.int64)
         if axis is None:
-            points = np.array([random.uniform(*range_, size) for range_ in edges])
-            angle = random.uniform(0.0, 2.0 * np.pi, size)
+            points = np.array([random.uniform(*range_, pair_count) for range_ in edges])
+            angle = random.uniform(0.0, 2.0 * np.pi, pair_count)
             shift = self.separations[index] * np.array([np.cos(angle), np.sin(angle)])
             return np.concatenate([points, points + shift], axis=1), rows
         # Along an axis h, points have the energies of pixels, and only the other axis is displaced.
-        points, shift = np.zeros((2, size)), np.zeros((2, size))
-        points[1 - axis] = random.uniform(*edges[1 - axis], size)
-        rows = random.integers(0, self.row_energy.size, size)
+        points, shift = np.zeros((2, pair_count)), np.zeros((2, pair_count))
+        points[1 - axis] = random.uniform(*edges[1 - axis], pair_count)
+        rows = random.integers(0, self.row_energy.size, pair_count)
         points[axis] = self.row_energy[rows]
-        shift[1 - axis] = self.separations[index] * np.cos(np.pi * random.integers(0, 2, size))
+        shift[1 - axis] = self.separations[index] * np.cos(np.pi * random.integers(0, 2, pair_count))
         return np.concatenate([points, points + shift], axis=1), rows
 
     def fit(self) -> UncertaintyExponent:

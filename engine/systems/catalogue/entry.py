@@ -14,7 +14,7 @@ _WELL_DEFAULTS = MappingProxyType({name: parameter.default for name, parameter i
 
 @dataclass(frozen=True)
 class EnergyRange:
-    """Energies at which a potential is explored, dimensionless.
+    """The energies at which a potential is explored, dimensionless.
 
     Attributes
     ----------
@@ -52,7 +52,8 @@ class CatalogueEntry:
     reference
         Source in the literature.
     parameters
-        Values by name: letters of the formula, the rotation and, for wells, the parameters of `Potential.with_parameters`.
+        Default values by name, of the letters of the formula, the rotation and, for wells, the parameters of
+        `Potential.with_parameters`.
     adjustable
         The names of the parameters that users can choose.
     energies
@@ -70,5 +71,5 @@ class CatalogueEntry:
 
     @property
     def is_well(self) -> bool:
-        """Whether the entry has the parameters ω1, ω2 and ε."""
+        """Whether `Potential.with_parameters` sets the parameters ω1, ω2 and ε of the potential."""
         return "epsilon" in self.parameters

@@ -19,8 +19,8 @@ ROTATING_ENTRIES = (
         "centre body 1 (−m, 0) 0.001; centre body 2 (1 − m, 0) 0.001; escape 10",
         "The restricted three-body problem of two equal masses m = ½: a light body collides with one of them or escapes beyond "
         "r = 10.",
-        "E. Strömgren, Copenhagen Observatory; J. Nagler, Physical Review E 69, 066218 (2004), for collisions and escapes; the "
-        "radii of collision and escape are chosen here",
+        "E. Strömgren, Copenhagen Observatory; J. Nagler, Physical Review E 69, 066218 (2004), for collisions and escapes; this "
+        "project chose the radii of collision and escape",
         {"m": 0.5} | _UNIT_ROTATION,
         ("m",),
         EnergyRange(-2.6, -1.0, (), -1.6),
@@ -51,8 +51,8 @@ ROTATING_ENTRIES = (
         "Star cluster in a tide",
         "−1/√(r² + c²) − ½(3 − k²)x² + ½y²; exits L2, L1",
         "A Plummer sphere of radius c on a circular orbit in a galaxy whose epicyclic frequency is k: stars leave at L1 and L2.",
-        "A. Ernst, A. Just, R. Spurzem & O. Porth, MNRAS 383, 1619 (2008), for the form of the potential; the values are chosen "
-        "here",
+        "A. Ernst, A. Just, R. Spurzem & O. Porth, MNRAS 383, 1619 (2008), for the form of the potential; this project "
+        "chose the values",
         {"c": 0.15, "k": 1.4} | _UNIT_ROTATION,
         ("c", "k"),
         EnergyRange(-3.0, -0.9, (), -1.6),
@@ -73,7 +73,7 @@ ROTATING_ENTRIES = (
         "Rotating logarithmic bar",
         "½ log(x² + y²/q² + c²)",
         "Flat rotation curve, axis ratio q: stars leave over the ends of the long axis.",
-        "J. Binney & S. Tremaine, Galactic Dynamics, section 3.3.2; the values are chosen here",
+        "J. Binney & S. Tremaine, Galactic Dynamics, section 3.3.2; this project chose the values",
         {"q": 0.8, "c": 0.1} | _UNIT_ROTATION,
         ("q", "c", ROTATION),
         EnergyRange(-1.5, -0.35, (), -0.44),
@@ -84,8 +84,8 @@ ROTATING_ENTRIES = (
         "−exp(−k√((x + 1)² + y²))/√((x + 1)² + y²) − exp(−k√((x − 1)² + y²))/√((x − 1)² + y²); "
         "centre body 1 (−1, 0) 0.001; centre body 2 (1, 0) 0.001; escape 10",
         "Two screened charges at x = ±1, at rest: collision with one of them, or escape beyond r = 10.",
-        "two potentials of H. Yukawa, Proceedings of the Physico-Mathematical Society of Japan 17, 48 (1935); the values are "
-        "chosen here",
+        "two potentials of H. Yukawa, Proceedings of the Physico-Mathematical Society of Japan 17, 48 (1935); this project "
+        "chose the values",
         {"k": 0.5, ROTATION: 0.0},
         ("k", ROTATION),
         EnergyRange(-1.5, 1.0, (), 0.02),

@@ -11,9 +11,9 @@ from engine.systems.catalogue.names import ByName
 from engine.systems.catalogue.rotating_systems import ROTATING_ENTRIES
 
 PAPER_ENERGIES = {
-    "I": EnergyRange(0.1, 0.5, (0.13, 0.15, 0.17, 0.19, 0.21, 0.23, 0.25, 0.27, 0.30), 0.19),
-    "II": EnergyRange(0.14, 0.5, (0.17, 0.18, 0.19, 0.20, 0.22, 0.24, 0.26, 0.28, 0.30), 0.20),
-    "III": EnergyRange(0.2, 1.0, (0.26, 0.28, 0.30, 0.35, 0.40, 0.45, 0.50, 0.55, 0.60), 0.35),
+    "I": EnergyRange(low=0.1, high=0.5, marked=(0.13, 0.15, 0.17, 0.19, 0.21, 0.23, 0.25, 0.27, 0.30), first=0.19),
+    "II": EnergyRange(low=0.14, high=0.5, marked=(0.17, 0.18, 0.19, 0.20, 0.22, 0.24, 0.26, 0.28, 0.30), first=0.20),
+    "III": EnergyRange(low=0.2, high=1.0, marked=(0.26, 0.28, 0.30, 0.35, 0.40, 0.45, 0.50, 0.55, 0.60), first=0.35),
 }
 """Energy ranges of the cases of Zotos (2014)."""
 
@@ -36,9 +36,11 @@ def _family_entry(n: int) -> CatalogueEntry:
 
 
 def _signed_term(n: int, j: int) -> str:
-    """Return the term with x^(n − j) y^j of the real part of (x + iy)ⁿ as text."""
+    """Return the term with x^(n − j) y^j of the real part of (x + iy)ⁿ as text, for an even j."""
     letters = "".join(f"{name}^{power}" if power > 1 else name for name, power in (("x", n - j), ("y", j)) if power)
-    return f"{'−' if j % 4 else '+'} {comb(n, j) if comb(n, j) > 1 else ''}{letters}"
+    # The sign is that of i^j.
+    sign = "−" if j % 4 else "+"
+    return f"{sign} {comb(n, j) if comb(n, j) > 1 else ''}{letters}"
 
 
 _ENTRIES = (
@@ -60,7 +62,7 @@ _ENTRIES = (
         "Barbanis, unequal frequencies",
         "½(x² + 1.1² y²) − 0.11xy²",
         "Two channels far from the origin, as in case I, with frequencies 1 and 1.1 and a weak coupling.",
-        "S. Naik & S. Wiggins, arXiv:1904.10018 (2019), for the form of the potential; the coefficients are chosen here",
+        "S. Naik & S. Wiggins, arXiv:1904.10018 (2019), for the form of the potential; this project chose the coefficients",
     ),
     CatalogueEntry(
         "Separable",

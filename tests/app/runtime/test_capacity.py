@@ -38,7 +38,7 @@ class Machine:
         return self.times
 
     def capacity(self, processes: int = 1) -> Capacity:
-        return Capacity(CORES_PER_PAGE, processes, self.measure, self.clock.monotonic, cores=2)
+        return Capacity(CORES_PER_PAGE, processes, self.measure, self.clock.monotonic, usable_cores=2)
 
     def run(self, capacity: Capacity, seconds: int, siblings: float = 0.0) -> None:
         for _ in range(seconds):
@@ -136,5 +136,5 @@ def test_an_idle_page_counts_less_and_an_abandoned_page_nothing() -> None:
     assert count_page(share, connected=True) == 1.0
     clock.now += ACTING_SECONDS
     assert count_page(share, connected=True) == IDLE_WEIGHT
-    share.take(0.01)
+    share.charge(0.01)
     assert count_page(share, connected=True) == 1.0

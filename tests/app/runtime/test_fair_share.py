@@ -15,7 +15,7 @@ def test_a_drag_with_thirty_messages_per_second_never_waits() -> None:
     clock = Clock()
     share = FairShare(clock.monotonic)
     for _ in range(30 * 600):
-        share.take(0.01)
+        share.charge(0.01)
         clock.now += 1.0 / 30.0
         assert share.wait_seconds() == 0.0
 
@@ -25,14 +25,14 @@ def test_a_greedy_page_gets_its_share_after_the_burst() -> None:
     share, begin = FairShare(clock.monotonic), clock.now
     while clock.now < begin + 100.0:
         clock.now += share.wait_seconds() + 0.02
-        share.take(0.02)
+        share.charge(0.02)
         taken += 0.02
     assert taken == pytest.approx(BURST_SECONDS + SHARE * 100.0, rel=0.01)
 
 
 def test_the_longest_wait_is_limited() -> None:
     share = FairShare(Clock().monotonic)
-    share.take(1000.0)
+    share.charge(1000.0)
     assert share.wait_seconds() == BURST_SECONDS / SHARE
 
 
@@ -56,9 +56,9 @@ def test_only_the_steps_of_a_coroutine_count() -> None:
         assert await task == "done"
         # In two seconds the page may use its share of them; it has used one second.
         assert share.wait_seconds() == 0.0
-        share.take(2.0 * SHARE - 1.0)
+        share.charge(2.0 * SHARE - 1.0)
         assert share.wait_seconds() == 0.0
-        share.take(0.1)
+        share.charge(0.1)
         assert share.wait_seconds() == pytest.approx(0.1 / SHARE)
 
     run_on_new_loop(scenario)

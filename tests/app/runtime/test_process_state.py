@@ -18,24 +18,24 @@ def test_settings_reach_the_jobs_of_the_process(start_state: Callable[..., Proce
     assert (stats.cache_limit, stats.orbits_limit, stats.threads) == (1000, 2000, 3)
 
 
-class SparedJobs(Jobs):
+class PreferenceJobs(Jobs):
     """Jobs that record whether first frames have priority."""
 
     def __init__(self) -> None:
         super().__init__()
-        self.spared = list[bool]()
+        self.preferences = list[bool]()
 
-    def spare_first_frames(self, spared: bool) -> None:
-        self.spared.append(spared)
+    def prefer_first_frames(self, preferred: bool) -> None:
+        self.preferences.append(preferred)
 
 
 def test_work_is_postponed_while_pages_may_take_more_processor_time_than_there_is() -> None:
     clock, loop = Clock(), iter((0.0, 0.9, 0.9))
     state = ProcessState(Settings())
-    state.jobs = jobs = SparedJobs()
-    state.capacity = Capacity(0.02, 1, lambda: ProcessorTimes(clock.now, 0.0, 0.0, next(loop)), clock.monotonic, cores=2)
+    state.jobs = jobs = PreferenceJobs()
+    state.capacity = Capacity(0.02, 1, lambda: ProcessorTimes(clock.now, 0.0, 0.0, next(loop)), clock.monotonic, usable_cores=2)
     for seconds in (0.0, 1.0, 1.0):
         clock.now += seconds
         state.adapt_to_load()
-    assert jobs.spared == [False, True, False]
+    assert jobs.preferences == [False, True, False]
     assert not state.is_crowded()

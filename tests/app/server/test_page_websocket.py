@@ -103,7 +103,7 @@ async def move_slider(channel: Channel, document: Document) -> None:
 def test_messages_of_a_page_beyond_its_share_wait(state: ProcessState) -> None:
     async def scenario(channel: Channel, document: Document) -> None:
         # The excess that must be waited for is half a second.
-        state.fair_share(document).take(BURST_SECONDS + 0.5 * SHARE)
+        state.fair_share(document).charge(BURST_SECONDS + 0.5 * SHARE)
         channel.set(slider_of(document).id, value=5)
         assert DELAYED_NOTICE in await receive(channel, "PATCH-DOC")
         assert slider_of(document).value == 0
@@ -117,7 +117,7 @@ def test_messages_of_a_page_beyond_its_share_wait(state: ProcessState) -> None:
 @pytest.mark.parametrize(("count", "debt"), [(2, 0.0), (1, 10.0)], ids=["within its share", "the only page"])
 def test_other_messages_do_not_wait(count: int, debt: float, state: ProcessState) -> None:
     async def scenario(channel: Channel, document: Document) -> None:
-        state.fair_share(document).take(debt)
+        state.fair_share(document).charge(debt)
         await move_slider(channel, document)
         assert slider_of(document).value == 5
 

@@ -105,7 +105,7 @@ def test_potentials_along_a_parameter_of_a_typed_formula_are_found_within_limits
             raise ValueError("it takes too long.")
         return call()
 
-    session, system = Session(Jobs(limited=limit)), System(TYPED, "½(x² + y²) − a x²y + y³/3")
+    session, system = Session(Jobs(run_limited=limit)), System(TYPED, "½(x² + y²) − a x²y + y³/3")
     session.state.compared = View(system, read_slice("x,a=0.5:1.5", "", system), 0.1)
     session.show(frame)
     session.wait_for("There is no other view to compare with: it takes too long.")

@@ -243,12 +243,12 @@ def show_two_frames(clock: Clock, shown: threading.Event, *, execution: Executio
 def test_all_but_the_first_frame_is_put_off_while_the_process_is_crowded() -> None:
     clock, shown, inbox = Clock(), threading.Event(), Inbox()
     jobs = Jobs(threads=1, clock=clock)
-    jobs.spare_first_frames(True)
+    jobs.prefer_first_frames(True)
     jobs.request(Job(show_two_frames, (clock, shown), queue=Queue.FIRST_FRAME), inbox.result, inbox.error)
     assert shown.wait(SECONDS)
     assert (jobs.stats().calls_waiting, jobs.stats().computed) == (1, 0.0)
     clock.now += CROWDED_REST_SECONDS
-    jobs.spare_first_frames(True)
+    jobs.prefer_first_frames(True)
     assert inbox.done.wait(SECONDS)
     wait_until(lambda: jobs.stats().computed == 2.0)
 

@@ -147,31 +147,31 @@ def test_paused_background_calls_wait_and_others_run() -> None:
 
 def test_one_thread_is_kept_for_first_frames() -> None:
     recorder, ended = Recorder(threads=2), threading.Event()
-    recorder.scheduler.spare_first_frames(True)
+    recorder.scheduler.prefer_first_frames(True)
     first = recorder.executor("b", long_call).submit(ended.wait, SECONDS)
     others = recorder.submit(recorder.executor("a"), "a1")
     assert recorder.run(*recorder.submit(recorder.executor("c", first_frame), "c1")) == ["c1"]
-    recorder.scheduler.spare_first_frames(False)
+    recorder.scheduler.prefer_first_frames(False)
     assert not wait(others, SECONDS).not_done
     assert not first.done()
     ended.set()
 
 
-def test_unsettled_calls_wait_while_first_frames_are_spared() -> None:
+def test_unsettled_calls_wait_while_first_frames_are_preferred() -> None:
     recorder, settled = Recorder(), threading.Event()
-    recorder.scheduler.spare_first_frames(True)
+    recorder.scheduler.prefer_first_frames(True)
     executor = recorder.executor("a", lambda: Priority.BACKGROUND if settled.is_set() else Priority.UNSETTLED)
     unsettled = recorder.submit(executor, "a1")
     assert recorder.run(*recorder.submit(recorder.executor("b"), "b1")) == ["b1"]
     assert recorder.scheduler.pending_calls == len(unsettled)
     settled.set()
-    recorder.scheduler.spare_first_frames(True)
+    recorder.scheduler.prefer_first_frames(True)
     assert recorder.run(*unsettled) == ["b1", "a1"]
 
 
 def test_a_single_thread_runs_all_calls_in_turn() -> None:
     recorder = Recorder()
-    recorder.scheduler.spare_first_frames(True)
+    recorder.scheduler.prefer_first_frames(True)
     calls = [*recorder.submit(recorder.executor("a"), "a1"), *recorder.submit(recorder.executor("b", first_frame), "b1")]
     assert recorder.run(*calls) == ["b1", "a1"]
 

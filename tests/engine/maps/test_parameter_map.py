@@ -63,7 +63,7 @@ def test_rows_are_maps_of_their_potentials(along_epsilon: EscapeMap) -> None:
         assert line is not None
         row = line.place[0].start
         expected = ordinary_map(SPEC, EPSILON, float(along_epsilon.ordinate[row]))
-        assert_equal_outcomes(line.of(along_epsilon), expected)
+        assert_equal_outcomes(line.extract(along_epsilon), expected)
 
 
 def test_columns_are_maps_of_their_potentials() -> None:
@@ -71,7 +71,7 @@ def test_columns_are_maps_of_their_potentials() -> None:
     for column, line in enumerate(find_lines(TURNED)):
         assert line is not None
         # Lines with different units of time, because the frequency changes by more than a factor of 2.
-        assert_equal_outcomes(line.of(found), ordinary_map(TURNED, FREQUENCY, float(found.x[column])))
+        assert_equal_outcomes(line.extract(found), ordinary_map(TURNED, FREQUENCY, float(found.x[column])))
 
 
 def test_channels_keep_their_numbers_along_the_parameter() -> None:
@@ -105,8 +105,8 @@ def test_trust_and_character_are_those_of_the_lines(along_epsilon: EscapeMap) ->
     assert character.complete
     for line in find_lines(SPEC):
         assert line is not None
-        np.testing.assert_array_equal(character.character[line.place], compute_regularity(line.of(along_epsilon)).character)
-        alone = compute_trust(line.of(along_epsilon)).trust
+        np.testing.assert_array_equal(character.character[line.place], compute_regularity(line.extract(along_epsilon)).character)
+        alone = compute_trust(line.extract(along_epsilon)).trust
         tested = alone != Trust.LIKE_NEIGHBOURS
         # More pixels are tested because of neighbours in other lines.
         np.testing.assert_array_equal(trust.trust[line.place][tested], alone[tested])

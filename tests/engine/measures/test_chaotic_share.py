@@ -18,4 +18,4 @@ def test_orbits_that_escape_or_are_not_judged_do_not_count() -> None:
 def test_without_bounded_orbits_there_is_no_share() -> None:
     found = compute_chaotic_share(np.array([[Regularity.NOT_APPLICABLE]]))
     assert np.isnan([found.share, found.low, found.high]).all()
-    assert found.describe() == "No orbit is bounded."
+    assert found.describe() == "No bounded orbit was judged."

@@ -33,7 +33,7 @@ def test_a_sweep_along_a_parameter_of_a_typed_formula_first_finds_the_potentials
     system: System, name: str, limited: bool
 ) -> None:
     inbox = Inbox()
-    Jobs(limited=refuse).request(sweep_job(sweep_along(system, name)), inbox.result, inbox.error)
+    Jobs(run_limited=refuse).request(sweep_job(sweep_along(system, name)), inbox.result, inbox.error)
     assert inbox.done.wait(SECONDS)
     assert [str(error) for error in inbox.errors] == (["beyond its limits"] if limited else [])
     assert bool(inbox.results) is not limited

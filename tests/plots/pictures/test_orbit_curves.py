@@ -8,10 +8,10 @@ import pytest
 from engine import CASES, Plane, integrate_orbit, parse_formula, start_states
 from engine.slices.default_window import default_window
 from plots.pictures.orbit_curves import (
-    TRAIL,
+    TRAIL_DURATION,
     OrbitCurves,
     compute_orbit_curves,
-    moment,
+    find_trail,
     restrict_curves,
 )
 
@@ -59,10 +59,10 @@ def test_an_interval_of_a_long_orbit_has_every_sample(long: OrbitCurves) -> None
 
 @pytest.mark.parametrize("t", [-1.0, 0.0, 3.3, 150.0, 1e9])
 def test_a_trail_ends_at_the_current_position(short: OrbitCurves, t: float) -> None:
-    now, orbit = moment(short.orbit, t), short.orbit
-    here = int(np.clip(np.searchsorted(orbit.t, t, side="right") - 1, 0, orbit.t.size - 1))
-    assert (now.x[-1], now.y[-1]) == (orbit.x[here], orbit.y[here])
-    assert (now.x.size - 1) * orbit.t[1] <= TRAIL + 1e-9
+    trail, orbit = find_trail(short.orbit, t), short.orbit
+    index = int(np.clip(np.searchsorted(orbit.t, t, side="right") - 1, 0, orbit.t.size - 1))
+    assert (trail.x[-1], trail.y[-1]) == (orbit.x[index], orbit.y[index])
+    assert (trail.x.size - 1) * orbit.t[1] <= TRAIL_DURATION + 1e-9
 
 
 def test_an_orbit_outside_with_less_energy_than_the_well_is_shown_with_the_whole_well() -> None:

@@ -18,7 +18,7 @@ from plots.layers.regularity import CODES
 from plots.pictures.palette import PAPER
 from reproduction.analyses.super_sticky import SuperStickySearch
 from reproduction.figures.all_figures import FIGURES
-from reproduction.figures.sticky_figures import LONGEST_DRAWN, find_shown
+from reproduction.figures.sticky_figures import LONGEST_DRAWN, find_displayed_orbit
 from reproduction.map_cache import MapCache
 from reproduction.paper_ranges import curve_energies, nine_energies, plane_energies
 from reproduction.quality import FULL, QUICK, Quality
@@ -187,9 +187,9 @@ def search_with(times: list[float], cache: MapCache) -> SuperStickySearch:
 
 
 def test_the_last_escape_within_the_axis_is_shown(cache: MapCache) -> None:
-    assert find_shown(search_with([2e5, np.nan, 0.9 * LONGEST_DRAWN, 2.0 * LONGEST_DRAWN, 4e5], cache)) == 2
-    assert find_shown(search_with([3.0 * LONGEST_DRAWN, np.nan, 2.0 * LONGEST_DRAWN], cache)) == 2
-    assert find_shown(search_with([np.nan, np.nan], cache)) is None
+    assert find_displayed_orbit(search_with([2e5, np.nan, 0.9 * LONGEST_DRAWN, 2.0 * LONGEST_DRAWN, 4e5], cache)) == 2
+    assert find_displayed_orbit(search_with([3.0 * LONGEST_DRAWN, np.nan, 2.0 * LONGEST_DRAWN], cache)) == 2
+    assert find_displayed_orbit(search_with([np.nan, np.nan], cache)) is None
 
 
 def test_the_band_of_a_late_escape_ends_at_its_exit(cache: MapCache) -> None:

@@ -13,7 +13,7 @@ from engine.exits.exit_rows import exit_curves
 from engine.integrator.kernels.dense_output import advance_states
 from engine.integrator.source.recurrence import TOLERANCE
 from engine.maps.analyses.reruns import LARGEST_DELAY, SECOND_TOLERANCE, SHIFT, shifted_starts
-from engine.maps.analyses.trust import APART, Trust, TrustMap, compute_trust
+from engine.maps.analyses.trust import CHAOTIC_DISTANCE, Trust, TrustMap, compute_trust
 from engine.maps.spec import FINEST_PIXEL
 from engine.propagation.batch import OrbitBatch, propagate_batch
 from engine.slices.default_window import default_window
@@ -73,7 +73,7 @@ def test_doubtful_pixels_are_those_that_change_or_end_apart_in_direct_reruns(
         other = (batch.crossings != whole.crossings[rows, columns]) | (delay > LARGEST_DELAY)
         changes.append((batch.fate != fate) | ((fate >= 1) & other))
         ends.append(end)
-    changed = np.any(changes, axis=0) | (fate == Fate.BOUNDED) & (np.linalg.norm(ends[1] - ends[0], axis=1) > APART)
+    changed = np.any(changes, axis=0) | (fate == Fate.BOUNDED) & (np.linalg.norm(ends[1] - ends[0], axis=1) > CHAOTIC_DISTANCE)
     np.testing.assert_array_equal(trust.trust[rows, columns] == Trust.DOUBTFUL, changed)
     assert all(np.any(change) for change in changes)
     assert not changed.all()
