@@ -24,6 +24,7 @@ class ImageCopier(JSComponent):
     """
 
     label = param.String(default="Copy image")
+    disabled = param.Boolean(default=False)
 
     _esm = Path(__file__).with_suffix(".js")
 
