@@ -38,6 +38,7 @@ class ImageCopier(JSComponent):
     """
 
     label = param.String(default="Copy image")
+    disabled = param.Boolean(default=False)
 
     _esm = Path(__file__).with_name("image_copier.js")
 

@@ -49,7 +49,7 @@ def make_events(report: Report) -> JSComponent:
         return lambda *values: report(name, *values)
 
     state = ViewState()
-    for name in ("dark", "touch", "narrow", "focus"):
+    for name in ("touch", "narrow", "focus"):
         state.param.watch(lambda event: report(event.name, event.new), name)
     return BrowserEvents(state, KEYS, lambda call: call, *map(named, ("key", "navigate", "copied")))
 
@@ -125,13 +125,12 @@ EXAMPLES = {
         [
             ({"key": "h"}, ("key", "h")),
             ({"link": "?case=II", "entry": 3, "steps": 1}, ("navigate", "?case=II", 3, 1)),
-            ({"dark": True}, ("dark", True)),
             ({"touch": True}, ("touch", True)),
             ({"narrow": True}, ("narrow", True)),
             ({"copied": False}, ("copied", False)),
             ({"enlarge": "times"}, ("focus", "times")),
         ],
-        [{"key": "x"}, {"key": 7}, {"dark": "yes"}, {"touch": False}, {"link": 7, "entry": 1, "steps": 1}],
+        [{"key": "x"}, {"key": 7}, {"touch": False}, {"link": 7, "entry": 1, "steps": 1}],
     ),
 }
 
