@@ -9,6 +9,7 @@ from typing import Any
 
 import panel as pn
 
+from app.browser.engine_component import BrowserEngine
 from app.job_clients.shown_results import ShownResults
 from app.runtime.disconnects import on_disconnect
 from app.runtime.process_state import process_state
@@ -17,7 +18,6 @@ from app.runtime.visitors import account_of
 from app.session.analysis_presenter import AnalysisPresenter
 from app.session.comparison_presenter import ComparisonPresenter
 from app.session.context import SessionContext
-from app.session.engine_component import BrowserEngine
 from app.session.link_presenter import LinkPresenter
 from app.session.map_presenter import MapPresenter
 from app.session.orbit_presenter import OrbitPresenter

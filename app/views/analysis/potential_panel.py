@@ -9,8 +9,7 @@ from typing import Protocol
 
 import panel as pn
 
-from app.browser.inputs.formula_box import FormulaBox
-from app.browser.inputs.parameter_slider import ParameterSlider
+from app.browser.inputs.counted_inputs import FormulaBox, ParameterSlider
 from app.views.components.texts import StatusPane, TextPane, plain_symbol
 from app.views.components.widgets import button, flex_row
 from engine import System

@@ -94,7 +94,6 @@ class BrowserEvents(JSComponent):
         self._update, self._enlarge = locked(state.param.update), locked(state.enlarge)
         self._numbers = count()
         self._steps = 0
-        self.on_msg(lambda event: self._receive(event.data))
 
     def copy(self, text: str | None) -> None:
         """Copy a text; None copies the address of the page. Browsers allow copying only soon after a click or a key."""
@@ -123,7 +122,7 @@ class BrowserEvents(JSComponent):
     def _command(self, name: str, **details: Any) -> None:
         self.command = {"name": name, **details, "number": next(self._numbers)}
 
-    def _receive(self, message: Any) -> None:
+    def _handle_msg(self, message: Any) -> None:
         # A browser can send anything: unexpected messages are ignored.
         match message:
             case {"key": str(key)} if key in self.keys:

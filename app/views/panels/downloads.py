@@ -8,7 +8,7 @@ from functools import partial
 
 import panel as pn
 
-from app.browser.components.file_saver import FileSaver
+from app.browser.components.file_components import FileSaver
 from app.job_clients.shown_results import ShownResults
 from app.runtime.process_state import process_state
 from app.state.view_state import ViewState

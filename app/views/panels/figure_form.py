@@ -10,9 +10,8 @@ from html import escape
 
 import panel as pn
 
-from app.browser.components.file_saver import FileSaver
-from app.browser.components.image_copier import ImageCopier
-from app.browser.inputs.number_box import NumberBox
+from app.browser.components.file_components import FileSaver, ImageCopier
+from app.browser.inputs.counted_inputs import NumberBox
 from app.job_clients.shown_results import ShownResults
 from app.state.view_state import ViewState
 from app.views.components.texts import StatusPane

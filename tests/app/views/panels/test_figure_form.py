@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from app.browser.components.file_saver import FileSaver
+from app.browser.components.file_components import FileSaver
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.job_clients.shown_results import ShownResults
 from app.state.view_state import ViewState
