@@ -132,7 +132,7 @@ def test_everything_is_inside_the_figure_and_nothing_overlaps(style: FigureStyle
 def three_maps() -> Figure:
     """A figure as wide as a page, with many entries in its legends."""
     whole = compute_map(MapSpec(CASES["III"], Plane.X_Y, 0.3, (30, 30), t_max=1000.0))
-    trust = MapAnalyses({"trust": compute_trust(whole)})
+    trust = {"trust": compute_trust(whole)}
     figure = draw_map_figure(whole, ["basins", "times", "crossings"], PAPER, FigureStyle(), analyses=trust)
     figure.draw_without_rendering()
     return figure
