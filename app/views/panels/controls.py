@@ -9,8 +9,7 @@ from typing import Any
 
 import panel as pn
 
-from app.browser.inputs.energy_slider import SHOWN, EnergySlider
-from app.browser.inputs.number_box import NumberBox
+from app.browser.inputs.counted_inputs import SHOWN, EnergySlider, NumberBox
 from app.state.system_review import review_catalogue_entry
 from app.state.view import allowed_resolutions, allowed_t_max
 from app.state.view_state import ViewState

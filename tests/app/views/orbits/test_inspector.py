@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import panel as pn
 
-from app.browser.components.orbit_player import OrbitPlayer
+from app.browser.components.orbit_components import OrbitPlayer
 from app.state.view_state import ViewState
 from app.views.orbits.inspector import Inspector
 from app.views.orbits.orbit_controls import OrbitActions, OrbitControls
