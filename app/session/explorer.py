@@ -23,7 +23,7 @@ from app.session.map_presenter import MapPresenter
 from app.session.orbit_presenter import OrbitPresenter
 from app.session.potential_presenter import PotentialPresenter
 from app.state.help_texts import title_with_help
-from app.state.navigation import window_moves
+from app.state.navigation import WINDOW_MOVES
 from app.state.presets import Preset
 from app.state.view import Analysis
 from app.views.analysis.statistics import StatisticsView
@@ -32,7 +32,7 @@ from app.views.components.notice import Notice
 from app.views.components.texts import TextPane
 from app.views.orbits.ensemble_player import EnsemblePlayer
 from app.views.panels.analysis_choice import analysis_tabs
-from app.views.panels.browser_events import KEYS, PICTURE_KEYS, WINDOW_KEYS, BrowserEvents
+from app.views.panels.browser_events import KEYS, PICTURE_KEYS, BrowserEvents
 from app.views.panels.controls import ControlActions, Controls
 from app.views.panels.downloads import Downloads
 from app.views.panels.embedding import embed_code, page_address
@@ -88,7 +88,7 @@ class Explorer:
         self.statistics = StatisticsView(state, results, self._copy)
         self.downloads = Downloads(state, results, partial(self._copy, None), self._copy_embed_code, locked(self._copied))
         self.gallery = Gallery(state, locked(self._show_preset))
-        keys = WINDOW_KEYS if self.links.embedded else KEYS
+        keys = WINDOW_MOVES if self.links.embedded else KEYS
         self.browser = BrowserEvents(state, keys, locked, self._press, self.links.navigate, self._copied)
         self.controls = self._make_controls()
         self.drawers = Drawers(
@@ -163,8 +163,8 @@ class Explorer:
 
     def _press(self, key: str) -> None:
         """Handle a key of `KEYS`."""
-        moves: dict[str, Callable[[], Any]] = {
-            **window_moves(self.maps.show_window, self.state.find_window),
+        actions: dict[str, Callable[[], Any]] = {
+            **{key: partial(self.maps.move, move.change) for key, move in WINDOW_MOVES.items()},
             "b": self.browser.go_back,
             "f": self.browser.go_forward,
             "p": self.engine.play,
@@ -174,7 +174,7 @@ class Explorer:
             **{key: partial(self.state.enlarge, name) for key, name in PICTURE_KEYS.items()},
         }
         try:
-            moves[key]()
+            actions[key]()
         except ValueError as error:
             self.notice.warn(str(error))
 

@@ -14,7 +14,7 @@ from matplotlib.colors import ListedColormap, LogNorm, Normalize
 from matplotlib.figure import Figure
 
 from engine import EscapeMap
-from plots.layers.map_analyses import NO_ANALYSES, MapAnalyses
+from plots.layers.layer import NO_ANALYSES, Analyses
 from plots.layers.map_images import picture_pixels
 from plots.layers.picture import ColourScale, Legend, ShownMap
 from plots.layers.table import LAYERS, TITLES, map_legend
@@ -64,7 +64,7 @@ def draw_map_figure(
     palette: Palette,
     style: FigureStyle,
     *,
-    analyses: MapAnalyses = NO_ANALYSES,
+    analyses: Analyses = NO_ANALYSES,
     starts: Sequence[tuple[float, float]] = (),
     times: TimeScale | None = None,
 ) -> Figure:
@@ -126,7 +126,7 @@ def draw_picture(
     frame: EscapeMap,
     picture: str,
     palette: Palette,
-    analyses: MapAnalyses = NO_ANALYSES,
+    analyses: Analyses = NO_ANALYSES,
     times: TimeScale | None = None,
     style: FigureStyle = SCREEN,
 ) -> None:

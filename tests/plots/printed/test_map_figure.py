@@ -28,7 +28,6 @@ from engine import (
     compute_trust,
     find_stable_manifolds,
 )
-from plots.layers.map_analyses import MapAnalyses
 from plots.layers.map_images import picture_pixels
 from plots.layers.regularity import entries as entries_of_regularity
 from plots.layers.table import TITLES
@@ -133,7 +132,7 @@ def test_everything_is_inside_the_figure_and_nothing_overlaps(style: FigureStyle
 def three_maps() -> Figure:
     """A figure as wide as a page, with many entries in its legends."""
     whole = compute_map(MapSpec(CASES["III"], Plane.X_Y, 0.3, (30, 30), t_max=1000.0))
-    trust = MapAnalyses({"trust": compute_trust(whole)})
+    trust = {"trust": compute_trust(whole)}
     figure = draw_map_figure(whole, ["basins", "times", "crossings"], PAPER, FigureStyle(), analyses=trust)
     figure.draw_without_rendering()
     return figure
@@ -230,18 +229,18 @@ def test_the_fonts_have_every_character_of_the_texts(escape_map: EscapeMap) -> N
 def test_doubtful_pixels_are_marked_and_have_an_entry() -> None:
     whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.2, (60, 60), t_max=500.0))
     trust = compute_trust(whole)
-    pixels = picture_pixels(whole, "basins", PAPER, MapAnalyses({"trust": trust}))[::-1]
+    pixels = picture_pixels(whole, "basins", PAPER, {"trust": trust})[::-1]
     marked = [np.all(pixels == rgba(tone), axis=-1) for tone in TONES]
     np.testing.assert_array_equal(marked[0] | marked[1], trust.trust == Trust.DOUBTFUL)
     assert all(tone.any() for tone in marked)
-    legend = draw_map_figure(whole, ["basins"], PAPER, STYLE, analyses=MapAnalyses({"trust": trust})).axes[0].get_legend()
+    legend = draw_map_figure(whole, ["basins"], PAPER, STYLE, analyses={"trust": trust}).axes[0].get_legend()
     assert legend is not None
     assert "doubtful pixels" in [text.get_text() for text in legend.get_texts()]
 
 
 def draw_with_manifolds(picture: str) -> Axes:
     whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.3, (60, 60), t_max=100.0))
-    found = MapAnalyses({"manifolds": find_stable_manifolds(CASES["II"], 0.3, images=1)})
+    found = {"manifolds": find_stable_manifolds(CASES["II"], 0.3, images=1)}
     return draw_map_figure(whole, [picture], PAPER, STYLE, analyses=found).axes[0]
 
 
