@@ -13,10 +13,11 @@ from tornado.websocket import WebSocketClosedError
 from tests.app.other_loop import run_on_new_loop
 from tests.app.server.mounted_routes import mounted_routes
 from tests.browser.served_app import RunningApp
-from tests.fuzz.attacked_server import ANSWER_SECONDS, fetch_page, open_page, resting_memory, tracebacks
+from tests.fuzz.attacked_server import fetch_page, open_page, resting_memory, tracebacks
 from tests.fuzz.random_messages import RandomMessages
 from tests.fuzz.random_requests import RandomRequests
 from tests.page_channel import Channel
+from tests.waiting import SECONDS
 
 log = logging.getLogger(__name__)
 
@@ -77,7 +78,7 @@ class Visitor:
     async def _wait(self, event: asyncio.Event, reader: asyncio.Task[None]) -> None:
         """Wait for an event or the end of the connection; TimeoutError if the server hangs."""
         waiting = asyncio.create_task(event.wait())
-        done, _ = await asyncio.wait([waiting, reader], timeout=ANSWER_SECONDS, return_when=asyncio.FIRST_COMPLETED)
+        done, _ = await asyncio.wait([waiting, reader], timeout=SECONDS, return_when=asyncio.FIRST_COMPLETED)
         waiting.cancel()
         if not done:
             raise TimeoutError("the server does not answer")
@@ -105,7 +106,7 @@ def send_messages(app: RunningApp, count: int, seed: int) -> int:
     async def run() -> int:
         visitors = [Visitor(app.address, seed + number) for number in range(VISITORS)]
         await asyncio.gather(*(visitor.run(count // VISITORS) for visitor in visitors))
-        await asyncio.wait_for(open_page(app.address), ANSWER_SECONDS)
+        await asyncio.wait_for(open_page(app.address), SECONDS)
         return sum(visitor.sent for visitor in visitors)
 
     return run_on_new_loop(run)
@@ -118,8 +119,8 @@ async def send(port: int, request: bytes) -> bytes:
         writer.write(request)
         # Otherwise the server waits for the rest of an incomplete request.
         writer.write_eof()
-        first = (await asyncio.wait_for(reader.read(), ANSWER_SECONDS)).partition(b"\r\n")[0]
-        await asyncio.wait_for(writer.drain(), ANSWER_SECONDS)
+        first = (await asyncio.wait_for(reader.read(), SECONDS)).partition(b"\r\n")[0]
+        await asyncio.wait_for(writer.drain(), SECONDS)
     except ConnectionError:
         return b""
     finally:
@@ -156,7 +157,7 @@ def test_many_random_messages_and_requests_leave_no_memory_behind(count: int, se
     late = resting_memory(app)
     answers |= send_requests(app, requests, count // 2)
     latest = resting_memory(app)
-    run_on_new_loop(lambda: asyncio.wait_for(open_page(app.address), ANSWER_SECONDS))
+    run_on_new_loop(lambda: asyncio.wait_for(open_page(app.address), SECONDS))
     sizes = [round(each / 2**20) for each in (early, late, latest)]
     log.info("%d messages, answers %s, resident memory of %s MB", count, answers, sizes)
     assert tracebacks(output) == []
