@@ -16,6 +16,7 @@ import numpy as np
 
 from engine import (
     CASES,
+    POTENTIALS,
     Fate,
     MapSpec,
     Orbit,
@@ -30,10 +31,9 @@ from engine import (
     sample_starts,
 )
 from engine.propagation.fates import CHAOS_THRESHOLD
-from engine.systems.known_potentials import channel_family
 from engine.trajectories.chaos_indicators import Verdict
 
-FIVE = channel_family(5)
+FIVE = POTENTIALS["C5"]
 SEAS = (
     (CASES["I"], 0.125), (CASES["I"], 0.13), (CASES["I"], 0.136), (CASES["II"], 0.16), (CASES["II"], 0.168), (CASES["II"], 0.172),
     (CASES["III"], 0.25), (CASES["III"], 0.26), (CASES["III"], 0.28), (FIVE, 1.03 * FIVE.escape_energy),

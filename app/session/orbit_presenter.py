@@ -10,7 +10,7 @@ from typing import Any
 import panel as pn
 from param.parameterized import Event
 
-from app.browser.components.orbit_player import OrbitPlayer
+from app.browser.components.orbit_components import OrbitPlayer
 from app.job_clients.divergent_start_requests import DivergentStartRequests
 from app.job_clients.orbit_requests import ChosenOrbit, OrbitRequests
 from app.job_clients.separation_requests import SeparationRequests

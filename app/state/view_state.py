@@ -31,7 +31,7 @@ from engine.systems.catalogue.table import PAPER_ENERGIES
 from engine.systems.review.potential_review import SystemReview
 from engine.systems.system import TYPED
 from plots.layers.table import LAYERS, SETTINGS
-from plots.pictures.palette import DARK, LIGHT, MOST_ORBITS, PALETTES, LineColours, Palette
+from plots.pictures.palette import MOST_ORBITS, PALETTES, Palette
 from plots.pictures.time_scale import TimeScale
 
 WINDOW_UNKNOWN = "The window is not known before the integrator is compiled."
@@ -107,7 +107,6 @@ class ViewState(param.Parameterized):
     )
     focus = param.Selector(default="", objects=["", *PICTURES], doc="picture that is shown large; empty for none")
     palette = param.Selector(default="paper", objects=list(PALETTES), doc="name of the palette")
-    dark = param.Boolean(default=False, doc="whether the browser uses the dark theme")
     touch = param.Boolean(default=False, doc="whether the visitor has touched the page with a finger")
     narrow = param.Boolean(default=False, doc="whether the page has had the layout of a phone")
     lock_times = param.ClassSelector(
@@ -159,11 +158,6 @@ class ViewState(param.Parameterized):
     def colours(self) -> Palette:
         """The chosen palette."""
         return PALETTES[self.palette]
-
-    @property
-    def line_colours(self) -> LineColours:
-        """Colours of lines for the theme of the browser."""
-        return DARK if self.dark else LIGHT
 
     @property
     def chosen_start(self) -> Start | None:

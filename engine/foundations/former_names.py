@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import functools
+import sys
 import warnings
 from collections.abc import Callable, Mapping
-from dataclasses import fields
+from dataclasses import fields, replace
 from importlib import import_module
 from types import MappingProxyType
 from typing import Any
@@ -14,31 +15,25 @@ from engine.foundations.stored_fields import FORMER_FIELDS
 
 FORMER_NAMES: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
-        "CHAOS_THRESHOLD": ("its value, 1e-7", "..propagation.fates:CHAOS_THRESHOLD"),
-        "Certificate": ("Evidence", "..propagation.evidence:Evidence"),
-        "Curves": ("escape_explorer.results.Sweep", "..sweeps.sweep:Sweep"),
-        "CurvesSpec": ("SweepSpec", "..sweeps.former_calls:make_curves_spec"),
-        "IndicatorVerdict": ("OrbitVerdict.findings", "..trajectories.chaos_indicators:IndicatorVerdict"),
-        "SweepPlan": ("plan_sweep", "..sweeps.plan:SweepPlan"),
-        "Verdict": ("the words of OrbitVerdict.character", "..trajectories.chaos_indicators:Verdict"),
-        "channel_family": ('POTENTIALS["C3"] to POTENTIALS["C8"]', "..systems.known_potentials:channel_family"),
-        "compute_birkhoff_digits": (
-            "Orbit.compute_birkhoff_digits",
-            "..trajectories.birkhoff_digits:compute_birkhoff_digits",
-        ),
-        "compute_curves": ("compute_sweep", "..sweeps.sweep:compute_sweep"),
-        "default_window": ("MapSpec.find_window", "..slices.default_window:default_window"),
-        "evaluate_indicators": ("OrbitVerdict.findings", "..trajectories.chaos_indicators:evaluate_indicators"),
-        "find_multipliers": ("LyapunovOrbit.find_multipliers", "..sweeps.former_calls:find_multipliers"),
-        "find_section_crossings": ("Orbit.find_section_crossings", "..sweeps.former_calls:find_section_crossings"),
-        "run_sweep": ("compute_sweep", "..sweeps.former_calls:run_sweep"),
-        "trace_zero_velocity_curve": (
-            "MapSpec.trace_zero_velocity_curve",
-            "..slices.limiting_curves:trace_zero_velocity_curve",
-        ),
+        "CHAOS_THRESHOLD": ("its value, 1e-7", "propagation.fates:CHAOS_THRESHOLD"),
+        "Certificate": ("Evidence", "propagation.evidence:Evidence"),
+        "Curves": ("escape_explorer.results.Sweep", "sweeps.sweep:Sweep"),
+        "CurvesSpec": ("SweepSpec", ""),
+        "IndicatorVerdict": ("OrbitVerdict.findings", "trajectories.chaos_indicators:IndicatorVerdict"),
+        "SweepPlan": ("plan_sweep", "sweeps.plan:SweepPlan"),
+        "Verdict": ("the words of OrbitVerdict.character", "trajectories.chaos_indicators:Verdict"),
+        "channel_family": ('POTENTIALS["C3"] to POTENTIALS["C8"]', ""),
+        "compute_birkhoff_digits": ("Orbit.compute_birkhoff_digits", "trajectories.birkhoff_digits:compute_birkhoff_digits"),
+        "compute_curves": ("compute_sweep", "sweeps.sweep:compute_sweep"),
+        "default_window": ("MapSpec.find_window", "slices.default_window:default_window"),
+        "evaluate_indicators": ("OrbitVerdict.findings", "trajectories.chaos_indicators:evaluate_indicators"),
+        "find_multipliers": ("LyapunovOrbit.find_multipliers", ""),
+        "find_section_crossings": ("Orbit.find_section_crossings", ""),
+        "run_sweep": ("compute_sweep", ""),
+        "trace_zero_velocity_curve": ("MapSpec.trace_zero_velocity_curve", "slices.limiting_curves:trace_zero_velocity_curve"),
     }
 )
-"""Former public names, each with its replacement in words and the "module:object" to return, relative to this package."""
+"""Former public names, each with its replacement in words and the "module:object" for which it still stands, if any."""
 
 
 def find_former_name(name: str, stacklevel: int = 2) -> Any:
@@ -47,16 +42,16 @@ def find_former_name(name: str, stacklevel: int = 2) -> Any:
     Former names are the keys of `FORMER_NAMES`, and names that have moved to `escape_explorer.results`. `stacklevel` has the
     meaning of `warnings.warn`; by default the warning refers to the caller.
     """
-    results = import_module("..results", __package__)
-    if name in results.__all__:
-        _warn(name, f"escape_explorer.results.{name}", stacklevel + 1)
-        return getattr(results, name)
-    if name not in FORMER_NAMES:
-        raise AttributeError(f"module 'escape_explorer' has no attribute {name!r}")
-    replacement, location = FORMER_NAMES[name]
+    if name in import_module("..results", __package__).__all__:
+        replacement, location = f"escape_explorer.results.{name}", f"results:{name}"
+    else:
+        replacement, location = FORMER_NAMES.get(name, ("", ""))
+    if not location:
+        hint = f": use {replacement}" if replacement else ""
+        raise AttributeError(f"module 'escape_explorer' has no attribute {name!r}{hint}")
     _warn(name, replacement, stacklevel + 1)
     module_name, _, attribute = location.partition(":")
-    return getattr(import_module(module_name, __package__), attribute)
+    return getattr(import_module(f"..{module_name}", __package__), attribute)
 
 
 def with_former_fields[T](cls: type[T]) -> type[T]:
@@ -66,7 +61,6 @@ def with_former_fields[T](cls: type[T]) -> type[T]:
         if hasattr(cls, new) or new in names:
             setattr(cls, old, _former_attribute(old, new))
     former = {old: new for old, new in FORMER_FIELDS.items() if new in names}
-    # `dataclasses.replace` also passes the current value under its new name, which the given value replaces.
     cls.__init__ = with_former_parameters(**former)(cls.__init__)  # type: ignore[method-assign]
     return cls
 
@@ -84,20 +78,29 @@ def _former_attribute(old: str, new: str) -> property:
 def with_former_parameters[**P, T](**new_names: str) -> Callable[[Callable[P, T]], Callable[P, T]]:
     """Decorate a function to accept former names of parameters, given as ``former="new"``; each use gives a warning.
 
-    If both names are given, the value of the former name is used.
+    Both names in one call are a TypeError. Only `dataclasses.replace` may pass both, because it adds the present value of each
+    field that it is not given.
     """
 
     def decorate(function: Callable[P, T]) -> Callable[P, T]:
         @functools.wraps(function)
         def call(*args: P.args, **kwargs: P.kwargs) -> T:
             for old in new_names.keys() & kwargs.keys():
-                _warn(old, new_names[old])
-                kwargs[new_names[old]] = kwargs.pop(old)
+                new = new_names[old]
+                if new in kwargs and not _is_called_by_replace():
+                    raise TypeError(f"{old}: is the former name of {new}; must not be given with it")
+                _warn(old, new)
+                kwargs[new] = kwargs.pop(old)
             return function(*args, **kwargs)
 
         return call
 
     return decorate
+
+
+def _is_called_by_replace() -> bool:
+    """Return whether `dataclasses.replace` has called the function that calls this one."""
+    return sys._getframe(2).f_globals.get("__name__") == replace.__module__
 
 
 def _warn(old: str, new: str, stacklevel: int = 3) -> None:

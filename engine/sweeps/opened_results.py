@@ -30,10 +30,6 @@ _READERS: dict[Any, Callable[[xr.Dataset], Result]] = {
     Sweep: Sweep,
     Potential: lambda dataset: read_potential(dataset.attrs),
 }
-# Variable that marks finished energies in stores of earlier versions, which are opened as plain datasets.
-_FORMER_FLAGS = "done"
-# Kind of a result of earlier versions, whose files are opened as plain datasets.
-_FORMER_CURVES = "Curves"
 # Name of a file that every Zarr store contains.
 _ZARR_FILE = "zarr.json"
 # First bytes of HDF5 files, and thus of NetCDF 4 files.
@@ -60,7 +56,7 @@ def open_result(path: str | os.PathLike[str], kind: type[Any] = Result) -> Any:
     -------
     A result equal to the written result. A map has no integration state and cannot be resumed. `compute_sweep` accepts a
     `Sweep` as `earlier`. The dataset of a sweep in a store is read on access; measures and analyses accept a map of the sweep,
-    ``sweep.dataset.sel(h=0.3)``. Sweeps and curves of earlier versions are opened as datasets.
+    ``sweep.dataset.sel(h=0.3)``.
 
     Raises
     ------
@@ -94,10 +90,7 @@ def _open(path: str | os.PathLike[str]) -> Any:
         raise FileNotFoundError(f"path={os.fspath(path)}: there is no such file or folder")
     if (Path(path) / _ZARR_FILE).exists():
         require_package("zarr", "files")
-        stored: xr.Dataset = xr.open_zarr(path, chunks=None, consolidated=False)
-        if _FORMER_FLAGS in stored:
-            return stored.drop_vars(_FORMER_FLAGS)
-        return _read(path, stored)
+        return _read(path, xr.open_zarr(path, chunks=None, consolidated=False))
     if Path(path).is_dir():
         raise ValueError(
             f"path={os.fspath(path)}: is a folder without {_ZARR_FILE}; must be a NetCDF file or a Zarr store of format 3"
@@ -118,8 +111,6 @@ def _open(path: str | os.PathLike[str]) -> Any:
 
 def _read(path: str | os.PathLike[str], dataset: xr.Dataset) -> Any:
     """Return the result of a dataset; a ValueError names the path."""
-    if dataset.attrs.get("result") == _FORMER_CURVES:
-        return dataset
     kind = Result.kinds().get(str(dataset.attrs.get("result")))
     if kind is None:
         content = dataset.attrs.get("result", "no result")

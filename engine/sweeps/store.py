@@ -95,8 +95,6 @@ class SweepStore:
         if not (self._path / "zarr.json").exists():
             raise ValueError(f"store={self._path}: holds other files; must be new, empty, or the store of this sweep")
         group = zarr.open_group(self._path, mode="r+", use_consolidated=False)
-        if "result" not in group.attrs:
-            raise ValueError(f"store={self._path}: is of an earlier version, which `open_result` reads; must be a new folder")
         check_same_sweep(f"store={self._path}", group.attrs, self._attributes)
         self._finished = int(group.attrs[_COUNT_ATTRIBUTE])  # type: ignore[arg-type]
         if self._finished == self._attributes["count"]:

@@ -13,8 +13,9 @@ from app.views.panels.browser_events import KEYS
 from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 
-LIGHT_LINES = """() => Bokeh.documents[0].get_model_by_name('basins').renderers
-    .some(r => r.data_source.name == 'zero_velocity_curve' && r.glyph.line_color.value == '#e6e6e6')"""
+LIGHT_LINES = """() => [...Bokeh.index.all_views()]
+    .filter(view => view.model.data_source?.name == 'zero_velocity_curve')
+    .every(view => view.glyph.line_color.value >>> 24 > 200)"""
 TITLE_COLOUR = """() => {
     const view = [...Bokeh.index.all_views()].find(view => view.model.name == 'basins')
     return getComputedStyle(view.el).getPropertyValue('--bk-text-color').trim()
@@ -31,8 +32,12 @@ def luminance(explorer: ExplorerPage) -> float:
 def test_the_dark_theme_has_light_lines_and_titles_and_is_stored(open_explorer: Callable[..., ExplorerPage]) -> None:
     explorer = open_explorer(link=QUICK)
     assert luminance(explorer) > 200
-    explorer.press("Dark theme")
-    explorer.page.wait_for_function(LIGHT_LINES)
+    # The colours need no answer of the server, which can take seconds.
+    assert explorer.page.evaluate(f"""async () => {{
+        document.getElementById('theme').click()
+        await new Promise(requestAnimationFrame)
+        return ({LIGHT_LINES})()
+    }}""")
     assert luminance(explorer) < 50
     assert explorer.page.evaluate(TITLE_COLOUR) == "#eceff3"
     explorer.page.reload()

@@ -8,6 +8,9 @@
 export function render({model, el}) {
   const button = document.createElement("button")
   Object.assign(button, {type: "button", className: "bk-btn bk-btn-default", textContent: model.label})
+  const follow = () => (button.disabled = model.disabled)
+  model.on("disabled", follow)
+  follow()
   el.append(button)
   /** @type {((image: ArrayBuffer | null) => void) | null} */
   let deliver = null

@@ -6,13 +6,19 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from bokeh.core.property.vectorization import Value
 from bokeh.document import Document
-from bokeh.models import InlineStyleSheet
+from bokeh.models import CustomJSTransform, InlineStyleSheet
 from panel.theme.base import Design, Inherit, Theme
 from panel.viewable import Viewable
 
+from plots.pictures.palette import DARK, LIGHT
+
 THEME_KEY = "escape-explorer-theme"
 """Key of the chosen theme, "light" or "dark", in the browser's local storage."""
+
+# JavaScript that replaces `x`, the colour on a light page, on a dark page.
+_THEME_COLOUR = "return document.documentElement.dataset.theme === 'dark' ? dark : x"
 
 _STYLESHEET = Path(__file__).parents[2] / "static" / "theme.css"
 
@@ -21,6 +27,17 @@ _STYLESHEET = Path(__file__).parents[2] / "static" / "theme.css"
 def theme_css() -> str:
     """Return the text of the stylesheet."""
     return _STYLESHEET.read_text(encoding="utf-8")
+
+
+def theme_colour(name: str) -> str:
+    """Return a colour of `LineColours` as a CSS colour, which follows the theme."""
+    return f"light-dark({getattr(LIGHT, name)}, {getattr(DARK, name)})"
+
+
+def theme_line(name: str) -> Value:
+    """Return a colour of `LineColours` for the lines of a glyph. The browser chooses it, and page.html renews it."""
+    colours = CustomJSTransform(args={"dark": getattr(DARK, name)}, func=_THEME_COLOUR)
+    return Value(getattr(LIGHT, name), transform=colours)
 
 
 class PlainTheme(Theme):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Iterable, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from bokeh.models import ColumnDataSource, MultiLine, Text
@@ -13,11 +13,12 @@ from bokeh.plotting import figure
 from app.browser.browser_system import EXIT_NUMBER_DISTANCE
 from app.state.view_state import ViewState
 from app.views.components.plots import LaterGlyphs
+from app.views.components.theme import theme_colour, theme_line
 from engine import LyapunovOrbit, MapSpec, find_lyapunov_orbits
 from engine.slices.limiting_curves import trace_equipotentials, trace_zero_velocity_curve
 from engine.systems.review.energy_ranges import depth_levels
 from engine.systems.review.potential_review import critical_energies
-from plots.pictures.palette import MOST_CHANNELS, Entry
+from plots.pictures.palette import LIGHT, MOST_CHANNELS, Entry
 
 # Number of maps whose curves are cached.
 _CACHED_MAPS = 64
@@ -62,38 +63,25 @@ class CurveLayers:
         self._exit_source = ColumnDataSource({"xs": [], "ys": [], "colour": []}, name="lyapunov_orbits")
         self._label_source = ColumnDataSource({"x": [], "y": [], "text": [], "colour": []}, name="channel_numbers")
         self._exit_lines, self._exit_numbers = LaterGlyphs(self._add_exit_lines), LaterGlyphs(self._add_exit_numbers)
-        # Glyphs whose colour depends on the theme, by the name of the colour in `LineColours`.
-        self._themed_glyphs: dict[str, list[Any]] = {"limiting_curve": [], "critical_equipotential": [], "equipotential": []}
-        state.param.watch(lambda event: self._follow_theme(), "dark")
 
     def draw(self, plot: figure, *, full: bool) -> None:
         """Add the curves to a figure. Only a `full` figure gets equipotentials and exit numbers."""
         if full:
-            self._draw_themed(plot, self._level_source, "equipotential", 1.0)
-            self._draw_themed(plot, self._critical_source, "critical_equipotential", 1.5)
-        self._draw_themed(plot, self._limit_source, "limiting_curve", 2.0 if full else 1.0)
+            _draw_lines(plot, self._level_source, "equipotential", 1.0)
+            _draw_lines(plot, self._critical_source, "critical_equipotential", 1.5)
+        _draw_lines(plot, self._limit_source, "limiting_curve", 2.0 if full else 1.0)
         self._exit_lines.expect(plot)
         if full:
             self._exit_numbers.expect(plot)
 
     def _add_exit_lines(self, plot: figure) -> None:
-        plot.add_glyph(self._exit_source, MultiLine(line_color=self._state.line_colours.halo, line_width=5))
+        plot.add_glyph(self._exit_source, MultiLine(line_color=LIGHT.halo, line_width=5))
         plot.add_glyph(self._exit_source, MultiLine(line_color="colour", line_width=3))
 
     def _add_exit_numbers(self, plot: figure) -> None:
         label = Text(text_color="colour", text_align="center", text_baseline="middle", text_font_size="16px")
         label.text_font_style = "bold"
         plot.add_glyph(self._label_source, label)
-
-    def _draw_themed(self, plot: figure, source: ColumnDataSource, name: str, width: float) -> None:
-        line = MultiLine(line_color=getattr(self._state.line_colours, name), line_width=width)
-        plot.add_glyph(source, line)
-        self._themed_glyphs[name].append(line)
-
-    def _follow_theme(self) -> None:
-        for name, glyphs in self._themed_glyphs.items():
-            for glyph in glyphs:
-                glyph.line_color = getattr(self._state.line_colours, name)
 
     def show(self, spec: MapSpec) -> None:
         """Draw the curves of a map."""
@@ -127,14 +115,18 @@ class CurveLayers:
 
     def entries(self, spec: MapSpec) -> list[Entry]:
         """Return the legend entries of the curves of a map."""
-        lines = self._state.line_colours
-        entries = [Entry(spec.plane.limiting_curve(spec.potential.mass), lines.limiting_curve)]
+        entries = [Entry(spec.plane.limiting_curve(spec.potential.mass), theme_colour("limiting_curve"))]
         if spec.common_energy is not None:
             has_exits = spec.potential.escape_radius is None
-            entries.append(Entry("escape energy" if has_exits else "through saddles", lines.critical_equipotential))
+            entries.append(Entry("escape energy" if has_exits else "through saddles", theme_colour("critical_equipotential")))
             if has_exits:
-                entries.append(Entry("others", lines.equipotential))
+                entries.append(Entry("others", theme_colour("equipotential")))
         return entries
+
+
+def _draw_lines(plot: figure, source: ColumnDataSource, colour: str, width: float) -> None:
+    """Draw lines in a colour of `LineColours`."""
+    plot.add_glyph(source, MultiLine(line_color=theme_line(colour), line_width=width))
 
 
 def _line_columns(lines: list[np.ndarray]) -> dict[str, list[np.ndarray]]:

@@ -125,7 +125,6 @@ class MapsView:
         state.follow(self._set_colours, "palette")
         state.follow(lambda times: self._scale_times(), "lock_times")
         state.follow(lambda *values: self._show_pictures(), "layers", "compared")
-        state.param.watch(lambda event: self.describe(), "dark")
         state.param.watch(lambda event: self._begin_touch(), "touch")
 
     def _show_pictures(self) -> None:

@@ -83,7 +83,6 @@ class EnsemblePlayer(JSComponent):
         self._state = state
         self._choose = locked(lambda starts: state.param.update(watched=starts))
         self._flux = LatestRequest(jobs, self._show_flux, lambda sentence: None, locked)
-        self.on_msg(lambda event: self._receive(event.data))
         state.follow(lambda *values: self._show_choice(), "system", "watched", "starts", "chosen", "box")
         results.param.watch(lambda event: self._request_rate() if results.whole_map else None, "frame")
         state.follow(lambda *values: self._request_rate(), "system", "plane", "energy", "analysis")
@@ -97,7 +96,7 @@ class EnsemblePlayer(JSComponent):
         shown = {"places": {str(where): words for where, words in places.items()}, **asdict(watched)}
         self.param.update(**shown, point=[] if start is None else list(start), box=edges)
 
-    def _receive(self, message: Any) -> None:
+    def _handle_msg(self, message: Any) -> None:
         # A browser can send anything: unexpected messages are ignored.
         match message:
             case {"where": str(where), "count": int(count), "seed": int(seed), "radius": int() | float() as radius}:

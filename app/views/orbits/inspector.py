@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import panel as pn
 
-from app.browser.components.orbit_player import OrbitPlayer
+from app.browser.components.orbit_components import OrbitPlayer
 from app.views.components.in_turns import InTurns, Later
 from app.views.components.widgets import FULL_HEIGHT
 from app.views.orbits.orbit_controls import OrbitControls

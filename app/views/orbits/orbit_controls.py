@@ -9,7 +9,7 @@ from html import escape
 
 import panel as pn
 
-from app.browser.components.orbit_list import OrbitList
+from app.browser.components.orbit_components import OrbitList
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.state.glossary import with_terms
 from app.state.view_state import ViewState

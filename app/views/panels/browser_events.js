@@ -1,5 +1,5 @@
 // @ts-check
-/** Events and services of the browser: history, width, keys pressed anywhere on the page, theme, touch and the clipboard. */
+/** Events and services of the browser: history, width, keys pressed anywhere on the page, touch and the clipboard. */
 
 /** Elements that use letters. */
 const TYPING = `textarea, select, [contenteditable]:not([contenteditable=false]), [role=textbox], [role=searchbox],
@@ -119,8 +119,6 @@ export function render({model, el}) {
   el.setAttribute("aria-hidden", "true")
   document.addEventListener("keydown", sendKey)
   for (const name of ["focusin", "keydown"]) document.addEventListener(name, updateFocusFrame)
-  const sendTheme = () => model.send_msg({dark: document.documentElement.dataset.theme === "dark"})
-  document.addEventListener("themechange", sendTheme)
   // Entries of the history are numbered. An address with a higher number makes a new entry; otherwise, it replaces the address.
   const page = crypto.getRandomValues(new Uint32Array(1))[0]
   let entry = 0
@@ -165,9 +163,7 @@ export function render({model, el}) {
     window.removeEventListener("resize", sendIfNarrow)
     document.removeEventListener("keydown", sendKey)
     for (const name of ["focusin", "keydown"]) document.removeEventListener(name, updateFocusFrame)
-    document.removeEventListener("themechange", sendTheme)
   })
-  if (document.documentElement.dataset.theme === "dark") sendTheme()
   model.on("command", async () => {
     const {name, text} = model.command
     if (name === "copy") model.send_msg({copied: await copy(text ?? window.location.href)})

@@ -1,4 +1,4 @@
-"""Events and services of the browser: history, width, keys, theme, touch and the clipboard."""
+"""Events and services of the browser: history, width, keys, touch and the clipboard."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import param
 from panel.custom import JSComponent
 
 from app.job_clients.latest_request import Locked
+from app.state.navigation import WINDOW_MOVES
 from app.state.view import PICTURES
 from app.state.view_state import ViewState
 from plots.layers import table
@@ -21,22 +22,9 @@ _TITLES = {"well": "the well"} | {name: picture.title for name, picture in table
 PICTURE_KEYS: Mapping[str, str] = MappingProxyType({str(number): name for number, name in enumerate(PICTURES, 1)})
 """The picture that each key enlarges. A second press shows the picture at its usual size again."""
 
-WINDOW_KEYS: Mapping[str, str] = MappingProxyType(
-    {
-        "ArrowLeft": "move left",
-        "ArrowRight": "move right",
-        "ArrowUp": "move up",
-        "ArrowDown": "move down",
-        "+": "zoom in",
-        "-": "zoom out",
-        "h": "whole plane",
-    }
-)
-"""The action of each key that moves the window, by the key's name in `KeyboardEvent.key`."""
-
 KEYS: Mapping[str, str] = MappingProxyType(
     {
-        **WINDOW_KEYS,
+        **{key: move.words for key, move in WINDOW_MOVES.items()},
         "b": "back",
         "f": "forward",
         "p": "play or stop the energy",
@@ -55,12 +43,12 @@ _KEY_LABELS = {"ArrowLeft": "←", "ArrowRight": "→", "ArrowUp": "↑", "Arrow
 class BrowserEvents(JSComponent):
     """An invisible component that passes events of the browser to the view state or to callbacks, and commands to the browser.
 
-    The browser sends {key}, {link, entry, steps}, {dark}, {touch}, {narrow}, {enlarge} or {copied}.
+    The browser sends {key}, {link, entry, steps}, {touch}, {narrow}, {enlarge} or {copied}.
 
     Parameters
     ----------
     state
-        View state, which gets theme, touch, width and the enlarged picture.
+        View state, which gets touch, width and the enlarged picture.
     keys
         Some of `KEYS`, which the page uses unless a field, slider or menu uses them.
     locked
@@ -94,7 +82,6 @@ class BrowserEvents(JSComponent):
         self._update, self._enlarge = locked(state.param.update), locked(state.enlarge)
         self._numbers = count()
         self._steps = 0
-        self.on_msg(lambda event: self._receive(event.data))
 
     def copy(self, text: str | None) -> None:
         """Copy a text; None copies the address of the page. Browsers allow copying only soon after a click or a key."""
@@ -123,15 +110,13 @@ class BrowserEvents(JSComponent):
     def _command(self, name: str, **details: Any) -> None:
         self.command = {"name": name, **details, "number": next(self._numbers)}
 
-    def _receive(self, message: Any) -> None:
+    def _handle_msg(self, message: Any) -> None:
         # A browser can send anything: unexpected messages are ignored.
         match message:
             case {"key": str(key)} if key in self.keys:
                 self._on_key(key)
             case {"link": str(link), "entry": int(entry), "steps": int(steps)}:
                 self._on_navigate(link, entry, steps)
-            case {"dark": bool(dark)}:
-                self._update(dark=dark)
             case {"touch": True}:
                 self._update(touch=True)
             case {"narrow": True}:

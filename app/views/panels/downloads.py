@@ -8,7 +8,7 @@ from functools import partial
 
 import panel as pn
 
-from app.browser.components.file_saver import FileSaver
+from app.browser.components.file_components import FileSaver
 from app.job_clients.shown_results import ShownResults
 from app.runtime.process_state import process_state
 from app.state.view_state import ViewState
@@ -16,14 +16,13 @@ from app.views.components.texts import TextPane
 from app.views.components.widgets import button
 from app.views.panels.embedding import NOT_ALLOWED
 from app.views.panels.figure_form import FigureForm
-from engine import EscapeMap
 from plots.texts.exports import curves_csv, file_stem, netcdf_bytes, orbits_csv, python_lines
 
 File = tuple[str, Callable[[], bytes]]
 """Name of a file, and the function that makes its content. Calling the function may take seconds."""
 
-_NO_MAP = "The map is not complete yet."
-_NO_CURVES = "There are no curves against energy yet."
+# Labels of the buttons that save data.
+MAPS, ORBITS, CURVES, SCRIPT = "Maps (NetCDF)", "Orbits (CSV)", "Curves (CSV)", "Python script"
 
 
 class Downloads:
@@ -42,67 +41,57 @@ class Downloads:
         self.link = button("Copy link", copy_link)
         self.embed = button("Copy embed code", copy_embed_code, disabled=not process_state().settings.frame_ancestors)
         self.figure = FigureForm(state, results, self.saver, self._figure_name, on_copied)
-        self.maps = button("Maps (NetCDF)", self._save_on_click(self.netcdf_file))
-        self.orbits = button("Orbits (CSV)", self._save_on_click(self.csv_file))
-        self.curves = button("Curves (CSV)", self._save_on_click(self.curves_file))
-        self.script = button("Python script", self._save_on_click(self.python_file))
+        self.data = {label: button(label, partial(self._save, label)) for label in (MAPS, ORBITS, CURVES, SCRIPT)}
         results.param.watch(lambda *events: self._enable(), ["frame", "orbits", "curves"])
         self._enable()
 
     def build(self) -> list[pn.viewable.Viewable]:
         """Return the parts of a column: the buttons under their titles."""
         hint = TextPane(f"<span class='quiet'>{NOT_ALLOWED}</span>", visible=self.embed.disabled)
-        files = [self.maps, self.orbits, self.curves, self.script]
         titles = [TextPane(f"<h3>{title}</h3>", margin=(6, 10, 0, 10)) for title in ("Figure", "Data")]
-        return [self.link, self.embed, hint, titles[0], *self.figure.build(), titles[1], *files, self.saver]
+        return [self.link, self.embed, hint, titles[0], *self.figure.build(), titles[1], *self.data.values(), self.saver]
 
     async def save(self, file: File) -> None:
         """Make a file in a thread, because making it would delay the event loop, and send the file to the browser."""
         name, make = file
         self.saver.save(name, await asyncio.to_thread(make))
 
-    def netcdf_file(self) -> File:
-        """Return the file of the map with its analyses."""
-        return self._file_name(".nc"), partial(netcdf_bytes, self._map(), self._results.analyses)
-
-    def csv_file(self) -> File:
-        """Return the file with a table of the orbits."""
-        orbits = [one.orbit for one in self._results.orbits if one.orbit is not None]
-        verdicts = [one.verdict for one in self._results.orbits if one.verdict is not None]
-        name = "orbits.csv" if self._results.whole_map is None else self._file_name("-orbits.csv")
-        return name, lambda: orbits_csv(orbits, verdicts=verdicts).encode()
-
-    def curves_file(self) -> File:
-        """Return the file with a table of the curves against energy or a parameter."""
-        curves = self._results.curves
-        if curves is None:
-            raise ValueError(_NO_CURVES)
-        return f"escapes-{self._state.system.case}-curves.csv", lambda: curves_csv(curves).encode()
-
-    def python_file(self) -> File:
-        """Return the script that computes the map and the orbits."""
-        jobs = [self._state.orbit_job(one.start) for one in self._results.orbits]
-        states = [job.arguments[1] for job in jobs if job is not None]
-        return self._file_name(".py"), python_lines(self._map().spec, self._state.system, states).encode
-
-    def _save_on_click(self, file: Callable[[], File]) -> Callable[[], None]:
-        # `file()` uses the results at the time of the click.
-        return lambda: pn.state.execute(partial(self.save, file()))
+    def _save(self, label: str) -> None:
+        file = file_choices(self._results, self._state).get(label)
+        if file is not None:
+            pn.state.execute(partial(self.save, file))
 
     def _enable(self) -> None:
-        for map_button in (self.maps, self.script):
-            map_button.disabled = self._results.whole_map is None
-        self.curves.disabled = self._results.curves is None
-        self.orbits.disabled = not any(one.orbit is not None for one in self._results.orbits)
+        """Enable the buttons whose files the results allow."""
+        choices = file_choices(self._results, self._state)
+        for label, save in self.data.items():
+            save.disabled = label not in choices
 
     def _figure_name(self, ending: str) -> str:
-        return f"escapes-{self._state.system.case}{ending}" if self._results.whole_map is None else self._file_name(ending)
+        return _file_name(self._results, self._state, ending)
 
-    def _file_name(self, ending: str) -> str:
-        return f"{file_stem(self._map().spec, self._state.system.case)}{ending}"
 
-    def _map(self) -> EscapeMap:
-        frame = self._results.whole_map
-        if frame is None:
-            raise ValueError(_NO_MAP)
-        return frame
+def file_choices(shown: ShownResults, state: ViewState) -> dict[str, File]:
+    """Return the files of data that the results allow, by label. They use the present results, even if the page changes later."""
+    choices: dict[str, File] = {}
+    name = partial(_file_name, shown, state)
+    system, frame, curves = state.system, shown.whole_map, shown.curves
+    if frame is not None:
+        jobs = [state.orbit_job(one.start) for one in shown.orbits]
+        states = [job.arguments[1] for job in jobs if job is not None]
+        choices[MAPS] = name(".nc"), partial(netcdf_bytes, frame, shown.analyses)
+        choices[SCRIPT] = name(".py"), lambda: python_lines(frame.spec, system, states).encode()
+    orbits = [one.orbit for one in shown.orbits if one.orbit is not None]
+    if orbits:
+        verdicts = [one.verdict for one in shown.orbits if one.verdict is not None]
+        choices[ORBITS] = name("-orbits.csv"), lambda: orbits_csv(orbits, verdicts=verdicts).encode()
+    if curves is not None:
+        choices[CURVES] = f"escapes-{system.case}-curves.csv", lambda: curves_csv(curves).encode()
+    return choices
+
+
+def _file_name(shown: ShownResults, state: ViewState, ending: str) -> str:
+    """Return the name of a file about the map, or about the system while the map is computed."""
+    frame = shown.whole_map
+    stem = f"escapes-{state.system.case}" if frame is None else file_stem(frame.spec, state.system.case)
+    return f"{stem}{ending}"

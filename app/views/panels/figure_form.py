@@ -10,9 +10,8 @@ from html import escape
 
 import panel as pn
 
-from app.browser.components.file_saver import FileSaver
-from app.browser.components.image_copier import ImageCopier
-from app.browser.inputs.number_box import NumberBox
+from app.browser.components.file_components import FileSaver, ImageCopier
+from app.browser.inputs.counted_inputs import NumberBox
 from app.job_clients.shown_results import ShownResults
 from app.state.view_state import ViewState
 from app.views.components.texts import StatusPane
@@ -81,6 +80,7 @@ class FigureForm:
         self.copy = ImageCopier(self._on_copy, on_copied, margin=(5, 0))
         self.text = StatusPane("", margin=(0, 10), css_classes=["quiet"])
         results.param.watch(lambda *events: self._offer(), ["frame", "analyses", "orbits", "curves"])
+        self.what.param.watch(lambda event: self._enable(), "value")
         self._offer()
 
     def build(self) -> list[pn.viewable.Viewable]:
@@ -99,24 +99,32 @@ class FigureForm:
         """Offer the figures that the results allow. Keep the chosen figure, because the next map may allow it again."""
         offered = {ALL_MAPS, self.what.value, *figure_choices(self._results, self._state)}
         self.what.options = [title for title in FIGURES if title in offered]
+        self._enable()
 
-    @property
-    def style(self) -> FigureStyle:
-        """The style; ValueError if a number is not in its range."""
-        return FigureStyle(**self._style, titles=bool(self.titles.value))
+    def _enable(self) -> None:
+        """Enable the buttons if the results allow the chosen figure; otherwise say why they are disabled."""
+        name = self.what.value
+        disabled = name not in figure_choices(self._results, self._state)
+        if disabled or self.save.disabled:
+            self._say(f"{name}: this is not computed yet." if disabled else "")
+        self.save.disabled = self.copy.disabled = disabled
 
-    def figure(self) -> tuple[str, Make]:
-        """Return a part of the file name (empty for all maps), and the function that makes the chosen figure.
+    def style(self) -> FigureStyle | None:
+        """Return the style. If a number is not in its range, show the error and return None."""
+        try:
+            return FigureStyle(**self._style, titles=bool(self.titles.value))
+        except ValueError as error:
+            self._say(str(error))
+            return None
 
-        Raises
-        ------
-        ValueError
-            If there is nothing to draw.
-        """
-        choices, name = figure_choices(self._results, self._state), self.what.value
-        if name not in choices:
-            raise ValueError(f"{name}: this is not computed yet.")
-        return "" if name == ALL_MAPS else "-" + re.sub(r"\W+", "-", name.lower()).strip("-"), choices[name]
+    def figure(self) -> tuple[str, Make] | None:
+        """Return the file name and the function that makes the chosen figure; None if the results do not allow it."""
+        title = self.what.value
+        make = figure_choices(self._results, self._state).get(title)
+        if make is None:
+            return None
+        ending = "" if title == ALL_MAPS else "-" + re.sub(r"\W+", "-", title.lower()).strip("-")
+        return self._name(ending), make
 
     def type(self, name: str, number: float) -> None:
         """Set one of the numbers of the style."""
@@ -131,14 +139,12 @@ class FigureForm:
 
     def _begin(self, format: FigureFormat, send: Send) -> None:
         """Make the figure from the present results, and send it, or show an error."""
-        try:
-            name, make = self.figure()
-            style = self.style
-        except ValueError as error:
-            self._say(str(error))
+        figure, style = self.figure(), self.style()
+        if figure is None or style is None:
             send("", None)
-        else:
-            pn.state.execute(partial(self.make, partial(make, format, style), partial(send, self._name(f"{name}.{format}"))))
+            return
+        name, make = figure
+        pn.state.execute(partial(self.make, partial(make, format, style), partial(send, f"{name}.{format}")))
 
     async def make(self, make: Callable[[], bytes], send: Callable[[bytes | None], None]) -> None:
         """Make a file in a thread, to keep the event loop free, and send it. After an error, show the error and send None."""

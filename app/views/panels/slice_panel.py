@@ -10,7 +10,7 @@ from typing import Any
 
 import panel as pn
 
-from app.browser.inputs.number_box import NumberBox
+from app.browser.inputs.counted_inputs import NumberBox
 from app.state.view_state import ViewState
 from app.views.components.texts import StatusPane, TextPane
 from app.views.components.widgets import flex_row

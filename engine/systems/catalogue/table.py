@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from fractions import Fraction
-from math import comb
 
 from engine.systems.catalogue.entry import CatalogueEntry, EnergyRange
 from engine.systems.catalogue.names import ByName
@@ -23,24 +21,11 @@ def _paper_entry(name: str, formula: str, description: str) -> CatalogueEntry:
     return CatalogueEntry(name, f"Case {name}", formula, description, reference, energies=PAPER_ENERGIES[name])
 
 
-def _family_entry(n: int) -> CatalogueEntry:
-    count = {3: "Three", 4: "Four", 5: "Five", 6: "Six", 7: "Seven", 8: "Eight"}[n]
-    remark = ": identical to case II" if n == 3 else ""
-    return CatalogueEntry(
-        f"C{n}",
-        f"C{n} family",
-        f"r²/2 − ({' '.join(_signed_term(n, j) for j in range(0, n + 1, 2)).removeprefix('+ ')})/{n}",
-        f"{count} equal channels at θ = 2πk/{n}, open above {Fraction(1, 2) - Fraction(1, n)}{remark}.",
-        "V = r²/2 − (1/n) rⁿ cos nθ, a family of potentials of this project",
-    )
-
-
-def _signed_term(n: int, j: int) -> str:
-    """Return the term with x^(n − j) y^j of the real part of (x + iy)ⁿ as text, for an even j."""
-    letters = "".join(f"{name}^{power}" if power > 1 else name for name, power in (("x", n - j), ("y", j)) if power)
-    # The sign is that of i^j.
-    sign = "−" if j % 4 else "+"
-    return f"{sign} {comb(n, j) if comb(n, j) > 1 else ''}{letters}"
+def _family_entry(n: int, count: str, polynomial: str, escape_energy: str) -> CatalogueEntry:
+    """Return the entry of V = r²/2 − (1/n) rⁿ cos nθ, given rⁿ cos nθ, the real part of (x + iy)ⁿ, as a polynomial."""
+    description = f"{count} equal channels at θ = 2πk/{n}, open above {escape_energy}."
+    reference = "V = r²/2 − (1/n) rⁿ cos nθ, a family of potentials of this project"
+    return CatalogueEntry(f"C{n}", f"C{n} family", f"r²/2 − ({polynomial})/{n}", description, reference)
 
 
 _ENTRIES = (
@@ -49,7 +34,12 @@ _ENTRIES = (
         "II", "½(x² + y²) − x(x²/3 − y²)", "Three channels at angles of 120° to each other: the Hénon–Heiles potential, rotated."
     ),
     _paper_entry("III", "½(x² + y²) − x²y²", "Four channels along the diagonals."),
-    *(_family_entry(n) for n in range(3, 9)),
+    _family_entry(3, "Three", "x^3 − 3xy^2", "1/6: identical to case II"),
+    _family_entry(4, "Four", "x^4 − 6x^2y^2 + y^4", "1/4"),
+    _family_entry(5, "Five", "x^5 − 10x^3y^2 + 5xy^4", "3/10"),
+    _family_entry(6, "Six", "x^6 − 15x^4y^2 + 15x^2y^4 − y^6", "1/3"),
+    _family_entry(7, "Seven", "x^7 − 21x^5y^2 + 35x^3y^4 − 7xy^6", "5/14"),
+    _family_entry(8, "Eight", "x^8 − 28x^6y^2 + 70x^4y^4 − 28x^2y^6 + y^8", "3/8"),
     CatalogueEntry(
         "HH",
         "Hénon–Heiles",

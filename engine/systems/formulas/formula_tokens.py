@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import unicodedata
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -13,17 +14,6 @@ _MOST_NUMBER_BITS = 700
 
 FROM_SUPERSCRIPT = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
 _FROM_SUBSCRIPT = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789")
-_FRACTIONS = {
-    "½": (1, 2),
-    "⅓": (1, 3),
-    "⅔": (2, 3),
-    "¼": (1, 4),
-    "¾": (3, 4),
-    "⅕": (1, 5),
-    "⅙": (1, 6),
-    "⅛": (1, 8),
-    "⅒": (1, 10),
-}
 SIGNS = {"+": "+", "-": "-", "−": "-", "–": "-"}
 OPERATORS = {"*": "*", "·": "*", "×": "*", "⋅": "*", "∗": "*", "/": "/", "÷": "/", "∕": "/", "⁄": "/"}
 BASE_KINDS = ("number", "fraction", "name", "letter", "open", "function", "root")
@@ -86,7 +76,8 @@ def tokenize(text: str) -> list[Token]:
 def read_number(token: Token) -> Fraction:
     """Return the exact value of a number or a fraction; FormulaError if it is too large."""
     if token.kind == "fraction":
-        return Fraction(*_FRACTIONS[token.text])
+        # The denominators of these characters are 2 to 10.
+        return Fraction(unicodedata.numeric(token.text)).limit_denominator(10)
     exponent = re.search("[eE]([+-]?[0-9]+)$", token.text)
     if exponent and (len(exponent[1]) > 4 or abs(int(exponent[1])) > _LARGEST_DECIMAL_EXPONENT):
         raise FormulaError(token.position, f"a decimal exponent must be at most {_LARGEST_DECIMAL_EXPONENT} in magnitude")

@@ -9,15 +9,11 @@ from typing import Any
 import pytest
 from panel.custom import JSComponent
 
-from app.browser.components.image_copier import ImageCopier
-from app.browser.components.orbit_list import OrbitList
-from app.browser.components.orbit_player import OrbitPlayer
-from app.browser.inputs.energy_slider import EnergySlider
-from app.browser.inputs.formula_box import LONGEST_TYPED, FormulaBox
-from app.browser.inputs.number_box import NumberBox
-from app.browser.inputs.parameter_slider import ParameterSlider
+from app.browser.components.file_components import ImageCopier
+from app.browser.components.orbit_components import OrbitList, OrbitPlayer
+from app.browser.engine_component import BrowserEngine
+from app.browser.inputs.counted_inputs import LONGEST_TYPED, EnergySlider, FormulaBox, NumberBox, ParameterSlider
 from app.job_clients.shown_results import ShownResults
-from app.session.engine_component import BrowserEngine
 from app.state.presets import PRESETS
 from app.state.view_state import ViewState
 from app.views.panels.browser_events import KEYS, BrowserEvents
@@ -53,7 +49,7 @@ def make_events(report: Report) -> JSComponent:
         return lambda *values: report(name, *values)
 
     state = ViewState()
-    for name in ("dark", "touch", "narrow", "focus"):
+    for name in ("touch", "narrow", "focus"):
         state.param.watch(lambda event: report(event.name, event.new), name)
     return BrowserEvents(state, KEYS, lambda call: call, *map(named, ("key", "navigate", "copied")))
 
@@ -129,13 +125,12 @@ EXAMPLES = {
         [
             ({"key": "h"}, ("key", "h")),
             ({"link": "?case=II", "entry": 3, "steps": 1}, ("navigate", "?case=II", 3, 1)),
-            ({"dark": True}, ("dark", True)),
             ({"touch": True}, ("touch", True)),
             ({"narrow": True}, ("narrow", True)),
             ({"copied": False}, ("copied", False)),
             ({"enlarge": "times"}, ("focus", "times")),
         ],
-        [{"key": "x"}, {"key": 7}, {"dark": "yes"}, {"touch": False}, {"link": 7, "entry": 1, "steps": 1}],
+        [{"key": "x"}, {"key": 7}, {"touch": False}, {"link": 7, "entry": 1, "steps": 1}],
     ),
 }
 

@@ -49,7 +49,6 @@ CHANGES: list[Callable[[Explorer], Any]] = [
     *(update(analysis=analysis) for analysis in Analysis),
     *(lambda explorer, drag=drag: explorer.maps.toolbar.drag.param.update(value=drag) for drag in (Drag.ZOOM, Drag.COUNT)),
     *(lambda explorer, name=name: explorer.drawers.buttons.param.update(value=[name]) for name in ("gallery", "share", "help")),
-    update(dark=True),
 ]
 
 

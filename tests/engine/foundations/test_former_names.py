@@ -16,15 +16,12 @@ from engine import (
     Evidence,
     MapSpec,
     Plane,
-    SweepSpec,
     compute_map,
     compute_separation,
-    find_lyapunov_orbits,
     integrate_orbit,
     results,
 )
 from engine.foundations.former_names import FORMER_NAMES
-from engine.sweeps.measures import QUICK_CURVES
 
 SPEC = MapSpec(CASES["III"], Plane.X_PX, 0.36, (12, 10), t_max=200.0, use_evidence=False)
 
@@ -40,21 +37,11 @@ def test_former_public_names_stand_for_the_present_ones(old: str, new: str, pack
     assert caught[0].filename == __file__
 
 
-@pytest.mark.parametrize("name", [*FORMER_NAMES, *results.__all__])
+@pytest.mark.parametrize("name", [*(name for name, (_, location) in FORMER_NAMES.items() if location), *results.__all__])
 def test_a_former_public_name_works_for_a_release_with_a_warning(name: str) -> None:
     assert name not in engine.__all__
     with pytest.warns(DeprecationWarning, match=f"^{name} is deprecated: use "):
         assert getattr(engine, name) is not None
-
-
-def test_the_former_functions_of_orbits_are_their_methods() -> None:
-    orbit, exit_orbit = integrate_orbit(CASES["II"], (0.1, 0.0, 0.0, 0.3), t_max=20.0), find_lyapunov_orbits(CASES["I"], 0.19)[0]
-    with pytest.warns(DeprecationWarning, match="use Orbit.find_section_crossings"):
-        crossings = engine.find_section_crossings(CASES["II"], orbit)  # type: ignore[attr-defined]
-    np.testing.assert_array_equal(crossings, orbit.find_section_crossings())
-    with pytest.warns(DeprecationWarning, match="use LyapunovOrbit.find_multipliers"):
-        multipliers = engine.find_multipliers(CASES["I"], exit_orbit)  # type: ignore[attr-defined]
-    np.testing.assert_array_equal(multipliers, exit_orbit.find_multipliers())
 
 
 def test_the_former_name_of_the_time_of_a_separation_works() -> None:
@@ -65,22 +52,16 @@ def test_the_former_name_of_the_time_of_a_separation_works() -> None:
     np.testing.assert_array_equal(former.distance, compute_separation(CASES["I"], *states, t_max=5.0).distance)
 
 
-def test_the_former_functions_of_orbits_refuse_another_potential() -> None:
-    exit_orbit = find_lyapunov_orbits(CASES["III"], 0.45)[0]
-    with pytest.warns(DeprecationWarning, match="find_multipliers"):
-        find_multipliers = engine.find_multipliers  # type: ignore[attr-defined]
-    with pytest.raises(ValueError, match="potential=I: must be that of the orbit, III"):
-        find_multipliers(CASES["I"], exit_orbit)
-
-
-def test_the_former_request_of_curves_is_a_request_of_a_sweep() -> None:
-    with pytest.warns(DeprecationWarning, match="^CurvesSpec is deprecated: use SweepSpec$"):
-        spec = engine.CurvesSpec(CASES["II"], Plane.X_PX, (0.1, 0.2), (40, 40), 500.0, exponent=False)  # type: ignore[attr-defined]
-    assert spec == SweepSpec(CASES["II"], Plane.X_PX, (0.1, 0.2), (40, 40), t_max=500.0, measures=QUICK_CURVES)
+@pytest.mark.parametrize(
+    ("name", "present"), [("CurvesSpec", "SweepSpec"), ("find_multipliers", "LyapunovOrbit.find_multipliers")]
+)
+def test_a_name_that_is_gone_tells_what_to_use(name: str, present: str) -> None:
+    with pytest.raises(AttributeError, match=f"no attribute '{name}': use {present}$"):
+        getattr(engine, name)
 
 
 def test_an_unknown_name_is_not_taken_for_a_former_name() -> None:
-    with pytest.raises(AttributeError, match="no attribute 'Certificates'"):
+    with pytest.raises(AttributeError, match=r"no attribute 'Certificates'$"):
         engine.Certificates  # type: ignore[attr-defined]  # noqa: B018
 
 
@@ -94,6 +75,14 @@ def test_an_unknown_name_is_not_taken_for_a_former_name() -> None:
 def test_former_parameters_are_taken(make: Callable[[], MapSpec]) -> None:
     with pytest.warns(DeprecationWarning, match="^certify is deprecated: use use_evidence$"):
         assert make() == SPEC
+
+
+def test_both_names_of_a_parameter_are_refused() -> None:
+    states = (0.1, 0.0, 0.05, 0.6), (0.1 + 1e-9, 0.0, 0.05, 0.6)
+    with pytest.raises(TypeError, match=r"^t_end: is the former name of t_max; must not be given with it$"):
+        compute_separation(CASES["I"], *states, t_max=5.0, t_end=6.0)  # type: ignore[call-arg]
+    with pytest.raises(TypeError, match=r"^certify: is the former name of use_evidence"):
+        MapSpec(SPEC.potential, SPEC.plane, 0.36, use_evidence=True, certify=False)  # type: ignore[call-arg]
 
 
 def test_former_attributes_are_those_of_the_present_names() -> None:

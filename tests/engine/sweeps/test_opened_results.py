@@ -253,15 +253,6 @@ def test_measures_and_analyses_take_a_map_of_a_sweep(h: float, store: Path) -> N
     assert_equal(compute_trust(one), compute_trust(wanted))
 
 
-def test_files_of_earlier_versions_are_opened_as_datasets(tmp_path: Path) -> None:
-    curves = xr.Dataset({"share": (("h", "fate"), [[0.5, 0.5]])}, {"h": [0.3]}, {"result": "Curves"})
-    curves.to_netcdf(tmp_path / "curves.nc", engine="h5netcdf")
-    xr.testing.assert_identical(open_result(tmp_path / "curves.nc"), curves)
-    maps = xr.Dataset({"crossings": ("h", [3]), "done": ("h", [True])}, {"h": [0.3]})
-    maps.to_zarr(tmp_path / "maps.zarr", consolidated=False, zarr_format=3)
-    xr.testing.assert_identical(open_result(tmp_path / "maps.zarr").load(), maps.drop_vars("done"))
-
-
 def test_analyses_refuse_a_map_of_a_sweep_along_a_parameter_whose_fates_have_other_numbers() -> None:
     along = ParameterAxis("epsilon", 0.5, 2.0, System("I"))
     window = (-0.4, 0.4, -0.4, 0.4)

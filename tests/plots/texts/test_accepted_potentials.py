@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from engine import POTENTIALS, parse_formula, review_potential
-from engine.systems.known_potentials import channel_family
 from plots.pictures.palette import MOST_CHANNELS
 from plots.texts.accepted_potentials import refusal
+from tests.channel_family import channel_family
 
 HENON_HEILES = "½(x² + y²) + x²y − y³/3"
 

@@ -134,7 +134,10 @@ function strokeLines(context, plot, window, box, lines) {
 }
 
 /** A property of a glyph that is the same for all its lines. @type {(property: any) => any} */
-const valueOf = property => property?.value ?? property
+const valueOf = property => {
+  const value = property?.value ?? property
+  return property?.transform ? property.transform.compute(value) : value
+}
 
 /** Colours of palettes as 32-bit numbers for canvases. @type {WeakMap<any[], Uint32Array>} */
 const tables = new WeakMap()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import threading
 from collections.abc import Callable
+from dataclasses import replace
 from io import BytesIO
 
 import numpy as np
@@ -15,8 +16,8 @@ from app.job_clients.orbit_requests import ChosenOrbit
 from app.job_clients.shown_results import ShownResults
 from app.runtime.process_state import ProcessState
 from app.state.view_state import ViewState
-from app.views.panels.downloads import Downloads
-from engine import CASES, EscapeMap, MapSpec, Plane, System, compute_map, integrate_orbit
+from app.views.panels.downloads import CURVES, MAPS, ORBITS, SCRIPT, Downloads, file_choices
+from engine import CASES, EscapeMap, MapSpec, Plane, SweepSpec, System, compute_map, compute_sweep, integrate_orbit
 from plots.pictures.orbit_curves import compute_orbit_curves
 from tests.app.other_loop import run_on_new_loop
 from tests.waiting import SECONDS
@@ -65,10 +66,20 @@ def test_the_event_loop_runs_while_a_file_is_made(downloads_view: Downloads) -> 
     run_on_new_loop(save)
 
 
-def test_a_file_holds_what_is_shown_at_the_moment_of_the_click(
-    downloads_view: Downloads, results: ShownResults, escape_map: EscapeMap
-) -> None:
-    (name, make), (_, make_table) = downloads_view.netcdf_file(), downloads_view.csv_file()
+def test_only_files_that_the_results_allow_can_be_saved(downloads_view: Downloads, results: ShownResults) -> None:
+    def enabled() -> set[str]:
+        return {label for label, save in downloads_view.data.items() if not save.disabled}
+
+    assert enabled() == {MAPS, ORBITS, SCRIPT}
+    results.frame = replace(results.frame, complete=False)
+    assert enabled() == {ORBITS}
+    results.param.update(orbits=(), curves=compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.2, 0.3), (12, 12), t_max=10.0)))
+    assert enabled() == {CURVES}
+
+
+def test_a_file_holds_what_is_shown_at_the_moment_of_the_click(results: ShownResults, escape_map: EscapeMap) -> None:
+    choices = file_choices(results, ViewState(system=System("I"), energy=0.19))
+    (name, make), (_, make_table) = choices[MAPS], choices[ORBITS]
     results.param.update(frame=compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.3, (3, 3), t_max=10.0)), orbits=())
     assert name == "escapes-I-x_px-h0.19-t100.nc"
     with xr.open_dataset(BytesIO(make()), engine="h5netcdf") as dataset:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import asyncio
 import threading
+from dataclasses import replace
 from typing import Any
 
 import pytest
 
-from app.browser.components.file_saver import FileSaver
+from app.browser.components.file_components import FileSaver
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.job_clients.shown_results import ShownResults
 from app.state.view_state import ViewState
@@ -25,7 +26,6 @@ from engine import (
     compute_sweep,
     integrate_orbit,
 )
-from plots.layers.map_analyses import MapAnalyses
 from plots.pictures.orbit_curves import compute_orbit_curves
 from plots.printed.figure_style import FigureFormat, FigureStyle
 from tests.app.browser_messages import send
@@ -43,7 +43,7 @@ def shown(escape_map: EscapeMap) -> ShownResults:
     """Results of every kind that can be drawn."""
     curves = compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.2, 0.3), (12, 12), t_max=100.0, measures="shares"))
     orbit = compute_orbit_curves(CASES["I"], integrate_orbit(CASES["I"], (0.1, 0.0, 0.05, 0.6), 50.0))
-    analyses = MapAnalyses({"judge": compute_regularity(escape_map)})
+    analyses = {"judge": compute_regularity(escape_map)}
     return ShownResults(frame=escape_map, analyses=analyses, orbits=(ChosenOrbit((0.1, 0.05), orbit),), curves=curves)
 
 
@@ -106,20 +106,26 @@ def test_the_event_loop_runs_while_a_figure_is_made(form: FigureForm) -> None:
     assert sent == [b"figure"]
 
 
-def test_a_choice_stays_while_the_next_map_is_computed(
-    form: FigureForm, results: ShownResults, shown: ShownResults, saved: KeptFiles
-) -> None:
-    assert form.figure()[0] == ""
+def test_a_choice_stays_while_the_next_map_is_computed(form: FigureForm, results: ShownResults, shown: ShownResults) -> None:
     form.what.value = "Regular or chaotic"
-    assert form.figure()[0] == "-regular-or-chaotic"
     results.param.update(frame=None, orbits=(), curves=None)
     assert (form.what.options, form.what.value) == ([ALL_MAPS, "Regular or chaotic"], "Regular or chaotic")
-    form.save.clicks += 1
-    assert form.text.object == "Regular or chaotic: this is not computed yet."
-    assert not saved.names
     results.param.update(frame=shown.frame, orbits=shown.orbits, curves=shown.curves)
     assert {"Basins of escape", "Regular or chaotic"} < set(form.what.options)
     assert "Origin and exit" not in form.what.options
+
+
+def test_a_figure_of_an_incomplete_map_is_refused_with_the_reason(
+    form: FigureForm, results: ShownResults, shown: ShownResults, saved: KeptFiles
+) -> None:
+    results.frame = replace(shown.frame, complete=False)
+    assert (form.save.disabled, form.copy.disabled) == (True, True)
+    assert form.text.object == "All maps: this is not computed yet."
+    form.save.clicks += 1
+    assert send(form.copy, {"wanted": True}) == [{"image": None}]
+    assert saved.names == []
+    form.what.value = "Orbits"
+    assert (form.save.disabled, form.copy.disabled, form.text.object) == (False, False, "")
 
 
 @pytest.mark.parametrize(("name", "number"), [("width", 1.0), ("dpi", 5000.0), ("font_size", 0.0)])
@@ -133,8 +139,8 @@ def test_an_illegal_number_is_named_and_nothing_is_saved_or_copied(
     assert saved.names == []
 
 
-def test_too_many_pixels_are_named(form: FigureForm) -> None:
-    _, make = form.figure()
+def test_too_many_pixels_are_named(form: FigureForm, shown: ShownResults) -> None:
+    make = figure_choices(shown, ViewState(system=System("I"), energy=0.19))[ALL_MAPS]
     style = FigureStyle(100.0, 1200.0)
 
     def draw() -> Any:

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from app.browser.inputs.number_box import NumberBox
+from app.browser.inputs.counted_inputs import NumberBox
 from app.state.view_state import ViewState
 from app.views.panels.slice_panel import SlicePanel
 from engine import Coordinate, ParameterAxis, Plane, Slice, System

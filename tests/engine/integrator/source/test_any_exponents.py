@@ -14,7 +14,7 @@ from engine.integrator.source.polynomial_recurrence import Terms
 from engine.integrator.source.recurrence import generate_code
 from engine.integrator.source.series import ORDER, Setting
 from engine.integrator.source.straight_line import StraightLine
-from engine.systems.known_potentials import channel_family
+from tests.channel_family import channel_family
 
 # Derivatives of V with respect to x and y, as numbers of differentiations.
 GRADIENT, HESSIAN = ((1, 0), (0, 1)), ((2, 0), (1, 1), (0, 2))

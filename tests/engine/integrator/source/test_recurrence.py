@@ -15,7 +15,7 @@ from engine.integrator.jit.function_pointers import SIGNATURES
 from engine.integrator.source.recurrence import LANES, ROWS, TOLERANCE
 from engine.integrator.source.series import ORDER
 from engine.slices.planes import Plane
-from engine.systems.known_potentials import channel_family
+from tests.channel_family import channel_family
 from tests.peers import taylor_heyoka
 
 # A potential that is not in the paper: odd in both coordinates and of degree 5.

@@ -10,7 +10,7 @@ from engine import Potential, parse_formula, review_potential
 from engine.expressions.polynomials import Terms
 from engine.systems.forms.critical_points import find_critical_points
 from engine.systems.forms.form import NotIsolatedError
-from engine.systems.known_potentials import channel_family
+from tests.channel_family import channel_family
 from tests.peers.random_systems import random_well
 
 X, Y = sympy.symbols("x y")

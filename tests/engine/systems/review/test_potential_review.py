@@ -7,9 +7,10 @@ import time
 import pytest
 
 from engine.systems.formulas.formula_parser import parse_formula
-from engine.systems.known_potentials import POTENTIALS, channel_family
+from engine.systems.known_potentials import POTENTIALS
 from engine.systems.potential import Potential
 from engine.systems.review.potential_review import review_potential
+from tests.channel_family import channel_family
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.browser.components.orbit_player import OrbitPlayer
+from app.browser.components.orbit_components import OrbitPlayer
 from tests.app.browser_messages import send
 
 

@@ -1,4 +1,4 @@
-"""A button that copies an image to the clipboard, which browsers allow only during the click."""
+"""Files that the browser saves or copies."""
 
 from __future__ import annotations
 
@@ -10,8 +10,22 @@ import param
 from panel.custom import JSComponent
 
 
+# Bokeh does not register classes whose name starts with an underscore in the browser.
+class FileSaver(JSComponent):
+    """Sends files to the browser, which saves them in its download folder. The component has no size, but must be on the page."""
+
+    _esm = Path(__file__).with_name("file_saver.js")
+
+    def __init__(self) -> None:
+        super().__init__(width=0, height=0, margin=0, styles={"position": "absolute"})
+
+    def save(self, name: str, content: bytes) -> None:
+        """Send a file, which the browser saves."""
+        self._send_msg({"name": name, "content": content})
+
+
 class ImageCopier(JSComponent):
-    """A button that copies an image.
+    """A button that copies an image to the clipboard, which browsers allow only during the click.
 
     Parameters
     ----------
@@ -24,19 +38,19 @@ class ImageCopier(JSComponent):
     """
 
     label = param.String(default="Copy image")
+    disabled = param.Boolean(default=False)
 
-    _esm = Path(__file__).with_suffix(".js")
+    _esm = Path(__file__).with_name("image_copier.js")
 
     def __init__(self, on_wanted: Callable[[], None], on_copied: Callable[[bool], None], **options: Any) -> None:
         super().__init__(**options)
         self._on_wanted, self._on_copied = on_wanted, on_copied
-        self.on_msg(lambda event: self._receive(event.data))
 
     def send(self, image: bytes | None) -> None:
         """Send the image as a PNG file; None if it could not be made."""
         self._send_msg({"image": image})
 
-    def _receive(self, message: Any) -> None:
+    def _handle_msg(self, message: Any) -> None:
         # A browser can send anything: unexpected messages are ignored.
         match message:
             case {"wanted": True}:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.browser.views import describe_view
+from app.browser.engine_component import describe_view
 from app.state.view_state import ViewState
 from engine import Coordinate, ParameterAxis, Plane, Slice, System
 

@@ -10,15 +10,17 @@ from typing import Any
 import param
 from panel.custom import JSComponent
 
-from app.browser.browser_system import BrowserSystem, make_browser_system
+from app.browser.browser_system import BrowserSystem, make_browser_system, system_key
 from app.browser.module_files import ADDRESS
-from app.browser.views import describe_view
 from app.job_clients.latest_request import LatestRequest, Locked
 from app.job_clients.shown_results import ShownResults
 from app.state.view_state import ViewState
 from engine import EscapeMap
 from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job, Queue
+from engine.slices.slice_text import write_slice
+from plots.layers.map_images import LAYER_COLUMNS
+from plots.pictures.image_columns import pixel_coding
 
 
 class BrowserEngine(JSComponent):
@@ -48,7 +50,6 @@ class BrowserEngine(JSComponent):
         self._numbers = count()
         self._end = locked(self._on_end)
         self._systems = LatestRequest(jobs, self._show_system, lambda sentence: None, locked)
-        self.on_msg(lambda event: self._receive(event.data))
         results.param.watch(lambda event: self._request_system(event.new), "frame")
         shown = ["system", "plane", "energy", "resolution", "window", "palette"]
         state.param.watch(lambda *events: self.show_view(), shown)
@@ -74,7 +75,7 @@ class BrowserEngine(JSComponent):
     def _command(self, name: str, **details: float) -> None:
         self.command = {"name": name, **details, "number": next(self._numbers)}
 
-    def _receive(self, message: Any) -> None:
+    def _handle_msg(self, message: Any) -> None:
         # A browser can send anything: unexpected messages are ignored.
         match message:
             case {"energy": float() | int() as energy} if self.playing and isfinite(energy):
@@ -93,3 +94,20 @@ class BrowserEngine(JSComponent):
 
     def _show_system(self, system: BrowserSystem) -> None:
         self.system = system.to_dict()
+
+
+def describe_view(state: ViewState) -> dict[str, Any]:
+    """Return the view in the form of `ServerView` in modules/gestures/preview.js."""
+    outcomes = state.potential.outcomes_at(state.energy)
+    return {
+        "system": system_key(state.potential),
+        "plane": ";".join(filter(None, write_slice(state.plane))),
+        # Only the server knows the potentials along a parameter.
+        "slice": state.plane.to_dict(state.potential.units) if state.plane.parameter is None else None,
+        "energy": state.energy,
+        "home": state.window is None,
+        "resolution": state.resolution,
+        "colours": [entry.colour for entry in state.colours.end_entries(outcomes)],
+        "labels": [end.label for end in outcomes],
+        "coding": {**pixel_coding(outcomes), "layers": list(LAYER_COLUMNS)},
+    }

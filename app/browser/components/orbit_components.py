@@ -1,4 +1,4 @@
-"""The player of the time along the orbits. The browser drags or plays the time in steps, and reports it."""
+"""The list of orbits, and the player of the time along the orbits."""
 
 from __future__ import annotations
 
@@ -12,8 +12,38 @@ from panel.custom import JSComponent
 from app.browser.javascript import component_code
 
 
+class OrbitList(JSComponent):
+    """Radio buttons in a line, in the colours of the orbits. The CSS variables --orbit-1, --orbit-2, … define these colours.
+
+    Bokeh's radio buttons fail if the chosen button changes while their view is being built, as when a click opens the tab.
+
+    Parameters
+    ----------
+    on_choose
+        Takes the place of the chosen orbit, without the session's lock.
+    **options
+        Parameters of the component.
+    """
+
+    label = param.String(default="Orbits")
+    rows = param.List(item_type=str, doc="text that describes each orbit, as a tooltip and for screen readers")
+    chosen = param.Integer(default=0, bounds=(0, None), doc="place of the chosen orbit")
+
+    _esm = Path(__file__).with_name("orbit_list.js")
+
+    def __init__(self, on_choose: Callable[[int], None], **options: Any) -> None:
+        super().__init__(margin=0, css_classes=["orbit-list"], **options)
+        self._on_choose = on_choose
+
+    def _handle_msg(self, message: Any) -> None:
+        # A browser can send anything: unexpected messages are ignored.
+        match message:
+            case {"chosen": int(place)} if not isinstance(place, bool) and 0 <= place < len(self.rows):
+                self._on_choose(place)
+
+
 class OrbitPlayer(JSComponent):
-    """A button to play and pause, and a slider.
+    """A button to play and pause, and a slider. The browser drags or plays the time in steps, and reports it.
 
     Parameters
     ----------
@@ -29,12 +59,11 @@ class OrbitPlayer(JSComponent):
     begin = param.Number(default=0.0, doc="start of the interval of time")
     end = param.Number(default=0.0, doc="end of the interval of time; an empty interval disables the player")
 
-    _esm = component_code(Path(__file__).with_suffix(".js"))
+    _esm = component_code(Path(__file__).with_name("orbit_player.js"))
 
     def __init__(self, on_time: Callable[[float | None], None], **options: Any) -> None:
         super().__init__(**options)
         self._on_time = on_time
-        self.on_msg(lambda event: self._receive(event.data))
 
     def follow(self, interval: tuple[float, float] | None) -> None:
         """Set the interval of time to play; None without an orbit."""
@@ -44,7 +73,7 @@ class OrbitPlayer(JSComponent):
             # At the beginning, a cross marks the start. The moving point appears later.
             self._on_time(None)
 
-    def _receive(self, message: Any) -> None:
+    def _handle_msg(self, message: Any) -> None:
         # A browser can send anything: unexpected messages, and steps of an earlier interval, are ignored.
         match message:
             case {"step": int(step), "begin": self.begin, "end": self.end} if 0 <= step <= self.steps and self.begin < self.end:

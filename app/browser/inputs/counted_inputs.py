@@ -1,0 +1,161 @@
+"""Inputs that count their values, so the browser ignores older values from the server."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+import param
+from panel.custom import JSComponent
+
+from app.browser.javascript import component_code
+
+SHOWN = "energyshown"
+"""Browser event with the energy that the pictures show before the server has received it."""
+
+LONGEST_TYPED = 4000
+"""Largest length of a typed formula, in characters: above the limit for formulas, because the box cuts without a message."""
+
+
+def _code(name: str) -> str:
+    """Return the JavaScript of an input."""
+    return component_code(Path(__file__).with_name(f"{name}.js"))
+
+
+class CountedInput(JSComponent):
+    """An input whose browser part uses `CountedValue` in counted_value.js.
+
+    Bokeh's widgets would show each value of the server at once, even over a value that is being typed. Panel would drop a typed
+    value while an earlier action that sets another value is waiting.
+
+    Parameters
+    ----------
+    on_value
+        Takes each legal value of the visitor, and whether the value is final, without the session's lock.
+    value
+        The initial value.
+    **options
+        Parameters of the component.
+    """
+
+    label = param.String()
+    disabled = param.Boolean()
+    shown = param.Dict(default={}, doc="value, and number of the visitor's values that the server knew when it set the value")
+
+    def __init__(self, on_value: Callable[[Any, bool], None], value: Any, **options: Any) -> None:
+        super().__init__(shown={"value": value, "count": 0}, **options)
+        self._on_value = on_value
+
+    @property
+    def value(self) -> Any:
+        """The last value that the server has shown or received."""
+        return self.shown["value"]
+
+    def show(self, value: Any) -> None:
+        """Show a value."""
+        self.shown = self.shown | {"value": value}
+
+    def _checked(self, value: Any) -> Any:
+        """Return the value in a message; None for an illegal value."""
+        raise NotImplementedError
+
+    def _handle_msg(self, message: Any) -> None:
+        # A browser can send anything: unexpected messages are ignored.
+        match message:
+            case {"value": sent, "count": int(count), "done": bool(done)}:
+                value = self._checked(sent)
+                # The browser shows the last legal value in place of an illegal value.
+                self.shown = {"value": self.value if value is None else value, "count": count}
+                if value is not None:
+                    self._on_value(value, done)
+
+
+class NumberBox(CountedInput):
+    """A box for a number with a label.
+
+    Parameters
+    ----------
+    on_number
+        Takes each final number, without the session's lock.
+    number
+        The initial number.
+    **options
+        Parameters of the component.
+    """
+
+    step = param.Number(default=0.1, doc="step of the arrow keys and buttons")
+    shown_event = param.String(doc="browser event with a number to show that the server has not received")
+
+    _esm = _code("number_box")
+
+    def __init__(self, on_number: Callable[[float], None], number: float, **options: Any) -> None:
+        super().__init__(lambda value, done: on_number(value), number, **options)
+
+    def _checked(self, value: Any) -> float | None:
+        return _finite_number(value)
+
+
+class EnergySlider(CountedInput):
+    """A slider for the energy. For an energy beyond an end of the slider, the thumb is at that end.
+
+    Parameters
+    ----------
+    on_release
+        Takes each energy that the visitor chooses, without the session's lock.
+    energy
+        The initial energy.
+    **options
+        Parameters of the component.
+    """
+
+    note = param.String(doc="text in place of name and number")
+    low = param.Number(default=0.0, doc="left end")
+    high = param.Number(default=1.0, doc="right end")
+    decimals = param.Integer(default=3, doc="decimals of the energies that can be chosen")
+
+    _esm = _code("energy_slider")
+
+    def __init__(self, on_release: Callable[[float], None], energy: float, **options: Any) -> None:
+        super().__init__(lambda value, done: on_release(value), energy, label="Energy h", **options)
+
+    def _checked(self, value: Any) -> float | None:
+        number = _finite_number(value)
+        return None if number is None or self.disabled else min(max(number, self.low), self.high)
+
+
+class ParameterSlider(CountedInput):
+    """A slider with a box for its number. The number is final when the slider is released or left, or Enter is pressed.
+
+    For a number beyond an end of the slider, the thumb is at that end.
+    """
+
+    low = param.Number(doc="left end of the slider")
+    high = param.Number(doc="right end of the slider")
+    lowest = param.Number(doc="smallest number of the box")
+    highest = param.Number(doc="largest number of the box")
+    step = param.Number(default=0.01)
+
+    _esm = _code("parameter_slider")
+
+    def _checked(self, value: Any) -> float | None:
+        number = _finite_number(value)
+        return number if number is not None and self.lowest <= number <= self.highest else None
+
+
+class FormulaBox(CountedInput):
+    """A box for a formula. The text is final when Enter is pressed or the box is left."""
+
+    placeholder = param.String(doc="text in an empty box")
+    longest = param.Integer(default=LONGEST_TYPED, doc="largest length of the text, in characters")
+
+    _esm = _code("formula_box")
+
+    def _checked(self, value: Any) -> str | None:
+        return value if isinstance(value, str) and len(value) <= self.longest else None
+
+
+def _finite_number(value: Any) -> float | None:
+    """Return a number from a message; None for anything but a finite number."""
+    return float(value) if isinstance(value, int | float) and isfinite(value) else None
