@@ -12,7 +12,6 @@ from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 
 HEADINGS = {"Gallery": "Gallery", "Share": "Share and download", "Help": "Help"}
-ZOOMED = next(preset for preset in PRESETS if preset.view.window is not None and preset.view.system.case == "III")
 
 
 def heading(explorer: ExplorerPage, drawer: str) -> Locator:
@@ -63,20 +62,6 @@ def test_every_preset_has_a_card_and_pictures_are_loaded(explorer: ExplorerPage)
         expect(card(explorer, preset)).to_contain_text(preset.title)
     picture = card(explorer, PRESETS[0]).locator("img")
     explorer.page.wait_for_function("picture => picture.naturalWidth == 160", arg=picture.element_handle())
-    close(explorer, "Gallery")
-
-
-@pytest.mark.slow
-def test_a_card_opens_its_view(explorer: ExplorerPage) -> None:
-    view = ZOOMED.view
-    window = view.window
-    assert window is not None
-    explorer.press("Gallery")
-    card(explorer, ZOOMED).click()
-    explorer.wait_for_view(f"case=III&plane={view.plane.key}&h={view.energy!r}", "window=")
-    assert explorer.ranges("basins")[0] == window.x_low
-    expect(explorer.radio("III")).to_be_checked()
-    expect(explorer.page.locator("p").filter(has_text=ZOOMED.caption)).to_be_visible()
     close(explorer, "Gallery")
 
 

@@ -162,7 +162,7 @@ _SHIFTS = """() => new Promise(done => {
 })"""
 
 
-@pytest.mark.parametrize(("width", "touch"), [(420, True), pytest.param(768, True, marks=pytest.mark.slow), (1280, False)])
+@pytest.mark.parametrize(("width", "touch"), [(420, True), (1280, False)])
 def test_the_parts_of_the_page_stay_in_their_places_while_it_opens(open_explorer: OpenExplorer, width: int, touch: bool) -> None:
     # Below this, browsers call the layout of a page stable.
     assert open_explorer(width, 900, QUICK, touch=touch).page.evaluate(_SHIFTS) < 0.1
