@@ -50,6 +50,8 @@ _FIRST_DECADES = 1.0, 100.0
 _SHARES_TEXT = "<b>$snap_y{percent}</b> of the interior starts @fate<br>at $snap_x{number}"
 _NAMES = tuple(name for panel in CURVE_PANELS for name in panel.labels)
 _NO_POINTS: dict[str, list[float]] = {"value": [], **{f"{name}{end}": [] for name in _NAMES for end in ("", "_low", "_high")}}
+# Width of a chart over its height.
+_ASPECT = 1.7
 
 
 class CurvesView:
@@ -208,17 +210,18 @@ class CurvesView:
             for plot in self._figures:
                 plot.xaxis.axis_label = self.shown.symbol
 
+    def _chart(self, name: str, title: str, **options: Any) -> figure:
+        return square_figure(name, title, aspect_ratio=_ASPECT, x_axis_label=" ", x_range=self._x_range, **options)
+
     def _draw_shares(self) -> figure:
-        plot = square_figure(SHARES.name, SHARES.title, x_axis_label=" ", x_range=self._x_range, y_range=Range1d(0.0, 1.0))
+        plot = self._chart(SHARES.name, SHARES.title, y_range=Range1d(0.0, 1.0))
         shares = plot.add_glyph(self._shares, MultiLine(line_color="colour", line_width=2, line_dash="dash"))
         plot.add_tools(chart_hover(_SHARES_TEXT, [shares], line_policy="nearest"))
         return plot
 
     def _draw_panel(self, panel: Measure) -> figure:
         scale = {"y_axis_type": "log"} if panel.curve.logarithmic else {}
-        plot = square_figure(
-            panel.name, panel.title, x_axis_label=" ", x_range=self._x_range, y_range=self._y_ranges[panel.name], **scale
-        )
+        plot = self._chart(panel.name, panel.title, y_range=self._y_ranges[panel.name], **scale)
         for (name, label), colour in zip(panel.labels.items(), NUMBER_COLOURS, strict=False):
             low, high = f"{name}_low", f"{name}_high"
             plot.add_glyph(self.points, Line(x="value", y=name, line_color=colour, line_width=2))
