@@ -99,12 +99,32 @@ def test_the_energy_and_the_maps_stay_in_view_beside_a_drawer(open_explorer: Cal
         assert_beside_a_drawer(explorer)
 
 
+_SHIFTS = """() => {
+    window.shifts = 0
+    const add = list => list.getEntries().forEach(entry => (window.shifts += entry.value))
+    new PerformanceObserver(add).observe({type: "layout-shift"})
+}"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("size", [(420, 850), (768, 1024)])
+def test_nothing_moves_when_a_drawer_opens_or_closes(open_explorer: Callable[..., ExplorerPage], size: tuple[int, int]) -> None:
+    explorer = open_explorer(*size, QUICK)
+    explorer.page.evaluate(_SHIFTS)
+    explorer.press("Share")
+    expect(heading(explorer, "Share")).to_be_visible()
+    explorer.press("Close")
+    expect_open(explorer, None)
+    assert explorer.page.evaluate("shifts") == 0
+
+
 def assert_beside_a_drawer(explorer: ExplorerPage) -> None:
     drawer = explorer.page.locator(".drawer").bounding_box()
     slider = explorer.page.get_by_role("slider", name="Energy h", exact=True).bounding_box()
     assert drawer is not None
     assert slider is not None
-    assert slider["y"] + slider["height"] <= drawer["y"] or slider["x"] + slider["width"] <= drawer["x"]
+    is_above, is_below = slider["y"] + slider["height"] <= drawer["y"], slider["y"] >= drawer["y"] + drawer["height"]
+    assert is_above or is_below or slider["x"] + slider["width"] <= drawer["x"]
     centre = explorer.point("basins", 0.0, 0.0)
     in_drawer = "([x, y]) => Boolean(document.elementFromPoint(x, y).closest('.drawer'))"
     assert centre[1] < drawer["y"] or not explorer.page.evaluate(in_drawer, centre)
