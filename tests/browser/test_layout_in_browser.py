@@ -179,13 +179,6 @@ def test_on_a_phone_the_rest_scrolls_over_the_map(phone: ExplorerPage) -> None:
     phone.page.evaluate("window.scrollTo(0, 0)")
 
 
-def test_on_a_phone_one_map_is_shown_and_can_be_chosen(phone: ExplorerPage) -> None:
-    for name in ("times", "basins"):
-        phone.pick(SHORT_TITLES[name])
-        phone.page.wait_for_function(f"name => {{ const shown = ({_FIGURES})(); return shown[name] }}", arg=name)
-        assert set(figures(phone)) == {name}
-
-
 def test_a_window_that_is_made_narrow_has_the_layout_of_a_phone(open_explorer: OpenExplorer) -> None:
     explorer = open_explorer(1280, 900, QUICK)
     explorer.page.set_viewport_size({"width": 420, "height": 900})

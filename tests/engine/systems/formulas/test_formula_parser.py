@@ -63,6 +63,8 @@ def test_expansion_is_exact_before_rounding() -> None:
         ("(x+y)³", ((3, 0, 1.0), (2, 1, 3.0), (1, 2, 3.0), (0, 3, 1.0))),
         ("y + 1/4", ((0, 0, 0.25), (0, 1, 1.0))),
         ("x^0 y", ((0, 1, 1.0),)),
+        # Brackets side by side are not nested.
+        ("+".join(["(x)"] * 60), ((1, 0, 60.0),)),
     ],
 )
 def test_operator_precedence(text: str, terms: tuple[tuple[int, int, float], ...]) -> None:
