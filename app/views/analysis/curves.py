@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable, Sequence
 from functools import partial
 from html import escape
+from typing import Any
 
 import numpy as np
 import panel as pn
@@ -41,6 +42,8 @@ HINT = f"The shares and each measure at {_VALUES} values, closer together where 
 """Text while there are no curves."""
 
 _SHARES_TEXT = "<b>$snap_y{number} %</b> of the interior starts: @label<br>at $snap_x{number}"
+# Width of a chart over its height.
+_ASPECT = 1.7
 
 
 class CurvesView:
@@ -73,9 +76,10 @@ class CurvesView:
         self.against = pn.widgets.Select(label="Against", options={"h": "h"}, value="h", width=80)
         self.text = TextPane(HINT, name="sweep", margin=(4, 10), sizing_mode="stretch_width", css_classes=["whole-row"])
         self._x_range = Range1d(0.0, 1.0)
+        options: dict[str, Any] = {"x_range": self._x_range, "aspect_ratio": _ASPECT}
         self._charts = {
-            SHARES.name: ChartView(measure_frame(SHARES), _SHARES_TEXT, Shape.LINE, self._x_range),
-            **{each.name: ChartView(measure_frame(each), _panel_text(each), x_range=self._x_range) for each in CURVE_PANELS},
+            SHARES.name: ChartView(measure_frame(SHARES), _SHARES_TEXT, Shape.LINE, **options),
+            **{each.name: ChartView(measure_frame(each), _panel_text(each), **options) for each in CURVE_PANELS},
         }
         self._mark_line = Span(location=0.0, dimension="height", line_color=MARK_EDGE, line_dash="dotted")
         self._charts_in_turns = InTurns([partial(self._build_chart, chart) for chart in self._charts.values()], self._add, later)

@@ -131,20 +131,6 @@ def test_all_images_of_manifolds_or_one_are_drawn_over_their_section(begin: Call
     assert 0 < numbers[0] < numbers[1] < numbers[2]
 
 
-def test_origins_and_regularity_have_pictures_while_they_are_switched_on(begin: Callable[..., Session], frame: EscapeMap) -> None:
-    session = begin(layers=frozenset({"origins", "judge"}))
-    session.maps.show(frame, {**session.maps.source.data})
-    session.show(frame)
-    session.wait_for(lambda: {*session.analyses} == {"origins", "judge"})
-    assert session.maps.source.data["passage"][0].shape == frame.fate.shape
-    grid = session.maps.grid.layout()
-    pictures = len(grid.objects)
-    session.state.layers = frozenset({"judge"})
-    assert len(grid.objects) == pictures - 1
-    session.state.layers = frozenset()
-    assert session.analyses == {}
-
-
 def test_a_picture_says_that_its_layer_is_being_computed_until_it_is(begin: Callable[..., Session]) -> None:
     session = begin(layers=frozenset({"origins", "trust"}))
     # No other test has the results of this map.
