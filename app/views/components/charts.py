@@ -54,8 +54,8 @@ class ChartView:
         self.frame, self._text, self._described, self._options = frame, text, described, options
         self.x_range = x_range or _first_range("x" in frame.logarithmic)
         self.y_range = _first_range("y" in frame.logarithmic)
-        self._lines = ColumnDataSource({name: [] for name in _LINE_COLUMNS}, name=f"{frame.name}_lines")
-        self._points = ColumnDataSource({name: [] for name in _POINT_COLUMNS}, name=f"{frame.name}_points")
+        self.lines = ColumnDataSource({name: [] for name in _LINE_COLUMNS}, name=f"{frame.name}_lines")
+        self.points = ColumnDataSource({name: [] for name in _POINT_COLUMNS}, name=f"{frame.name}_points")
         self._ticker = FixedTicker(ticks=[])
         self._key = TextPane(margin=(0, 10))
         self._labels = frame.labels
@@ -67,7 +67,7 @@ class ChartView:
         self.view.visible = chart is not None
         if chart is None:
             return
-        self._lines.data, self._points.data = _line_columns(chart.series), _point_columns(chart.series)
+        self.lines.data, self.points.data = _line_columns(chart.series), _point_columns(chart.series)
         for edges, limits in zip((self.x_range, self.y_range), chart.limits, strict=True):
             if limits is not None:
                 set_range(edges, *limits)
@@ -89,16 +89,16 @@ class ChartView:
         scales = {f"{axis}_axis_type": "log" for axis in frame.logarithmic}
         ranges = {"x_range": self.x_range, "y_range": self.y_range}
         plot = square_figure(frame.name, frame.title, x_axis_label=" ", **ranges, **scales, **self._options)
-        lines = plot.add_glyph(self._lines, MultiLine(line_color="colour", line_dash="dash", line_width=2))
+        lines = plot.add_glyph(self.lines, MultiLine(line_color="colour", line_dash="dash", line_width=2))
         if self._described is Shape.BARS:
             bars = Quad(left="low", right="high", bottom=0.0, top="y", fill_color="colour", line_color=None)
-            points = plot.add_glyph(self._points, bars)
+            points = plot.add_glyph(self.points, bars)
             if "x" in frame.logarithmic:
                 plot.xaxis.update(ticker=self._ticker, formatter=CustomJSTickFormatter(code=_TICK))
         else:
             ends = {"x0": "x", "x1": "x", "y0": "low", "y1": "high"}
-            plot.add_glyph(self._points, Segment(**ends, line_color="colour", line_alpha=0.6))
-            points = plot.add_glyph(self._points, Scatter(x="x", y="y", size=6, fill_color="colour", line_color="colour"))
+            plot.add_glyph(self.points, Segment(**ends, line_color="colour", line_alpha=0.6))
+            points = plot.add_glyph(self.points, Scatter(x="x", y="y", size=6, fill_color="colour", line_color="colour"))
         if self._described is Shape.LINE:
             plot.add_tools(chart_hover(self._text, [lines], line_policy="nearest"))
         else:
