@@ -17,7 +17,6 @@ from engine.exits.continuation import Steps, follow
 from engine.foundations.root_finding import find_root
 from engine.integrator.source.recurrence import TOLERANCE
 from engine.integrator.source.series import ORDER
-from engine.systems.compiled import kernels_of
 from engine.systems.potential import Potential
 
 # Lengths of the search from the saddle along the channel, in units of the distance of the saddle from the origin.
@@ -255,7 +254,7 @@ class _Trials:
     """Shoots orbits from rest on the wall at q < 0 in some axes, and follows them along the channel as far as `reach`."""
 
     def __init__(self, potential: Potential, energy: float, axes: Axes, reach: float) -> None:
-        self._kernels, self._steps = kernels_of(potential), np.empty((_MOST_STEPS, 5))
+        self._kernels, self._steps = potential.well.kernels, np.empty((_MOST_STEPS, 5))
         self._arguments = (*axes.origin, *axes.outward, energy, reach, TOLERANCE, self._steps)
 
     def outward_velocity(self, u: float) -> float:

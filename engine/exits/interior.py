@@ -15,7 +15,6 @@ import numpy as np
 from engine.exits.exit_rows import exit_curves
 from engine.foundations.arrays import read_only
 from engine.integrator.kernels import interior
-from engine.systems.compiled import kernels_of
 from engine.systems.forms.expression_form import ExpressionForm
 from engine.systems.forms.polynomial_form import PolynomialForm
 from engine.systems.potential import Potential
@@ -77,7 +76,7 @@ def _finder(form: Any, potential: Potential) -> Callable[..., None]:
 
 @_finder.register
 def _finder_of_expression(_form: ExpressionForm, potential: Potential) -> Callable[..., None]:
-    return functools.partial(kernels_of(potential).find_outside, find_inner_radius(potential))
+    return functools.partial(potential.well.kernels.find_outside, find_inner_radius(potential))
 
 
 @_finder.register

@@ -31,7 +31,6 @@ from engine.foundations.validation import checked_number, checks_types
 from engine.integrator.kernels import exit_geometry as geometry
 from engine.systems.merged_channels import MergedExit, name_channels
 from engine.systems.potential import Potential
-from engine.systems.provenance import describe_run
 from engine.systems.well_units import ENERGY, LENGTH, MOMENTUM, TIME, WellUnits
 
 # Reasons why an exit of several channels is not defined; the search reports the largest.
@@ -118,7 +117,7 @@ class LyapunovOrbit(Result):
 
     def provenance(self) -> dict[str, Any]:
         """Return the potential, the energy, the integrator and the version."""
-        return describe_run(self.potential, energy=self.energy)
+        return self.potential.describe_run(energy=self.energy)
 
     def columns(self) -> Mapping[str, np.ndarray]:
         """Return the path and its times."""

@@ -19,7 +19,6 @@ from engine.exits.brake_orbits import Axes, saddle_axes
 from engine.exits.continuation import Steps, follow
 from engine.exits.exit_shapes import ridge_bend
 from engine.integrator.kernels.dense_output import advance_states, sample_path, trace_pieces, trace_steps, transition_matrices
-from engine.systems.compiled import kernels_of
 from engine.systems.potential import Potential
 
 # Number of nodes: states of one period that are corrected together.
@@ -127,7 +126,7 @@ def multipliers_of(matrix: np.ndarray) -> np.ndarray:
 
 def monodromy_matrix(potential: Potential, start: np.ndarray, period: float) -> np.ndarray:
     """Return the flow linearised along one period from a state (4,), of shape (4, 4), in units of the well."""
-    kernels = kernels_of(potential)
+    kernels = potential.well.kernels
     steps = trace_steps(kernels, start, period, len(potential.outcomes))
     durations = np.diff(steps[:, 4], append=period)
     matrix = np.eye(4)
@@ -245,7 +244,7 @@ def _trace(potential: Potential, states: np.ndarray, period: float) -> _Parts | 
     """Return the parts of an orbit of some period that start at its nodes (nodes, 4); None if they cannot be integrated."""
     if not (np.isfinite(states).all() and 0.0 < period < np.inf):
         return None
-    kernels, duration = kernels_of(potential), period / _NODES
+    kernels, duration = potential.well.kernels, period / _NODES
     # The first piece of a part is the whole part, or has more than `_MOST_STEPS_PER_PART` steps.
     steps = [next(trace_pieces(kernels, state, duration, len(potential.outcomes)))[0] for state in states]
     if max(map(len, steps)) > _MOST_STEPS_PER_PART:
@@ -275,7 +274,7 @@ def _finish(family: _Family, energy: float, unknowns: np.ndarray) -> PeriodicOrb
     # `not … <` also rejects NaN.
     if parts is None or not np.abs(parts.ends - np.roll(states, -1, axis=0)).max() < _LARGEST_GAP:
         return None
-    kernels, duration = kernels_of(family.potential), period / _NODES
+    kernels, duration = family.potential.well.kernels, period / _NODES
     times = np.arange(_POINTS_PER_NODE) * (duration / _POINTS_PER_NODE)
     pieces = [sample_path(kernels, steps, times) for steps in parts.steps]
     path = np.concatenate([*pieces, states[:1].T], axis=1)

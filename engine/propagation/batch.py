@@ -16,7 +16,6 @@ from engine.integrator.kernels.propagate import NO_TRACE, VECTOR, Exits, Orbits,
 from engine.integrator.source.recurrence import LANES, TOLERANCE
 from engine.propagation.evidence import Evidence
 from engine.propagation.fates import Fate
-from engine.systems.compiled import kernels_of
 from engine.systems.potential import Potential
 
 LARGEST_TILE = 2048
@@ -236,7 +235,7 @@ def _advance_tile(
     """
     exits = Exits(gates, curves, tile.batch.curve_row)
     orbits = tile.batch.for_kernels(tile.active)
-    kernels_of(potential).propagate(
+    potential.well.kernels.propagate(
         np.arange(tile.orbits.size), horizon, final, tolerance, STEP_BUDGET, least_active, exits, orbits, NO_TRACE
     )
     return tile

@@ -16,7 +16,6 @@ from engine.propagation.batch import OrbitBatch, propagate_batch
 from engine.propagation.fates import Fate, OrbitResult
 from engine.systems.outcomes import Outcome
 from engine.systems.potential import Potential
-from engine.systems.provenance import describe_run
 from engine.systems.well_units import TIME
 
 ENERGY_TOLERANCE = 1e-9
@@ -116,7 +115,7 @@ def classify_orbits(
     outcomes = classify_in_well_units(
         potential.in_well_units, energy / units.energy, states / units.state, t_max / units.time, execution
     )
-    made_by = describe_run(potential, energy=float(energy), t_max=t_max)
+    made_by = potential.describe_run(energy=float(energy), t_max=t_max)
     return replace(units.restore(outcomes), t_max=t_max, outcomes=potential.outcomes_at(energy), made_by=made_by)
 
 

@@ -7,7 +7,6 @@ import numpy as np
 from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.propagation.fixed_step_batches import map_tiles
-from engine.systems.compiled import fixed_step_size, kernels_of
 from engine.systems.potential import Potential
 
 DEVIATION_VECTORS = read_only(np.array([[1.0, 2.0, 3.0, 4.0], [4.0, -3.0, 2.0, -1.0]]) / np.sqrt(30.0))
@@ -47,12 +46,12 @@ def propagate_deviations(
     -------
     The orbits, (n, 13). The smallest SALI of an orbit no longer changes once its coordinates have become infinite.
     """
-    steps = max(1, round(duration / fixed_step_size(potential)))
+    steps = max(1, round(duration / potential.well.fixed_step))
     return map_tiles(_propagate_tile, potential, orbits, steps, shape=orbits.shape[1:], execution=execution)
 
 
 def _propagate_tile(potential: Potential, tile: np.ndarray, steps: int) -> np.ndarray:
     """Return the orbits of a tile (13, lanes), which the kernel changes in place, after some steps; of shape (lanes, 13)."""
     with np.errstate(invalid="ignore"):
-        kernels_of(potential).fixed_step_sali(fixed_step_size(potential), steps, tile[:4], tile[4:8], tile[8:12], tile[12])
+        potential.well.kernels.fixed_step_sali(potential.well.fixed_step, steps, tile[:4], tile[4:8], tile[8:12], tile[12])
     return tile.T

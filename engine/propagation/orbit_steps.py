@@ -13,7 +13,6 @@ from engine.integrator.kernels.propagate import Exits
 from engine.propagation.batch import OrbitBatch
 from engine.propagation.classification import Outcomes, collect_outcomes
 from engine.propagation.fates import Fate
-from engine.systems.compiled import kernels_of
 from engine.systems.potential import Potential
 
 
@@ -64,7 +63,7 @@ def record_orbit(potential: Potential, start: np.ndarray, curves: np.ndarray, t_
     pending = (batch.fate == Fate.NOT_COMPUTED).astype(np.uint8)
     orbits = batch.for_kernels(pending)
     exits = Exits(exit_gates(curve_rows), curve_rows, batch.curve_row)
-    pieces = list(trace_orbit(kernels_of(potential), exits, orbits, t_max, execution))
+    pieces = list(trace_orbit(potential.well.kernels, exits, orbits, t_max, execution))
     execution.raise_if_cancelled()
     outcomes = collect_outcomes(potential, potential.energy(start[None]), batch)
     if not pieces:

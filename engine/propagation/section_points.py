@@ -6,7 +6,6 @@ import numpy as np
 
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.propagation.fixed_step_batches import map_tiles
-from engine.systems.compiled import fixed_step_size, kernels_of
 from engine.systems.potential import Potential
 
 
@@ -47,7 +46,7 @@ def trace_section_points(potential: Potential, tile: np.ndarray, count: int, dur
     # x, px and time of each point.
     points = np.full((tile.shape[1], count, 3), np.nan)
     counts = np.zeros(tile.shape[1], np.int64)
-    steps = int(np.ceil(duration / fixed_step_size(potential)))
+    steps = int(np.ceil(duration / potential.well.fixed_step))
     # The kernel writes the points of each orbit and their number.
-    kernels_of(potential).find_section_points(fixed_step_size(potential), steps, tile, points, counts)
+    potential.well.kernels.find_section_points(potential.well.fixed_step, steps, tile, points, counts)
     return points[..., :2]

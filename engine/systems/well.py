@@ -6,11 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby
+from types import ModuleType
 from typing import Any
 
 import numpy as np
 
 from engine.foundations.arrays import ReadOnlyArrays, read_only
+from engine.integrator.bound_kernels import load_kernels
 from engine.integrator.source.series import Setting
 from engine.systems.forms.exit_saddles import find_maxima_beside, leads_out_of_well
 from engine.systems.forms.form import Form, hessian_matrix
@@ -26,6 +28,8 @@ EQUAL_ENERGY_TOLERANCE = 1e-12
 # numbers on the +x axis.
 _ROUNDING = 1e-13
 
+# Time step for a frequency of 1. At the order of the Taylor kernels, energy is conserved as well as by adaptive steps.
+_FIXED_STEP = 1.0 / 3.0
 # Typical radius of orbits in units of the escape radius.
 _TYPICAL_SHARE = 0.1
 # Number of points on a circle of the typical radius.
@@ -153,6 +157,17 @@ class Well(ReadOnlyArrays):
     def setting(self) -> Setting:
         """The properties other than the formula on which compiled functions depend."""
         return Setting(self.channels, tuple(end.side for end in self.ends), self.rotation != 0.0)
+
+    @property
+    def kernels(self) -> ModuleType:
+        """The compiled kernels, see `load_kernels`, for a potential in units of its well."""
+        channels, sides, _ = self.setting
+        return load_kernels(self.form.definition, channels, sides=sides, rotation=self.rotation)
+
+    @property
+    def fixed_step(self) -> float:
+        """The time step of fixed-step integration."""
+        return _FIXED_STEP / max(1.0, self.fastest_frequency)
 
     @cached_property
     def channel_mergers(self) -> tuple[ChannelMerger, ...]:

@@ -16,7 +16,6 @@ from engine.foundations.validation import checked_state, checks_types
 from engine.propagation.batch import OrbitBatch, propagate_batch
 from engine.propagation.fates import Fate
 from engine.systems.potential import Potential
-from engine.systems.provenance import describe_run
 from engine.systems.well_units import TIME
 
 
@@ -85,7 +84,7 @@ def compute_birkhoff_digits(
     t_max = potential.checked_t_max(t_max)
     units = potential.units
     result = _compare_windows(potential.in_well_units, start[None] / units.state, t_max / units.time, execution)
-    return replace(units.restore(result), made_by=describe_run(potential, energy=float(potential.energy(start)), t_max=t_max))
+    return replace(units.restore(result), made_by=potential.describe_run(energy=float(potential.energy(start)), t_max=t_max))
 
 
 def _compare_windows(potential: Potential, start: np.ndarray, t_max: float, execution: Execution) -> BirkhoffDigits:

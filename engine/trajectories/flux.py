@@ -18,7 +18,6 @@ from engine.foundations.validation import checked_number, checks_types
 from engine.slices.default_window import default_window
 from engine.slices.planes import SPACE
 from engine.systems.potential import Potential
-from engine.systems.provenance import describe_run
 
 # Number of rows of points between which the edge of the interior is searched; a multiple of 3, see `_interior_area`.
 _ROWS = 513
@@ -150,7 +149,7 @@ def compute_flux(potential: Potential, energy: float) -> EscapeFlux:
     actions = [orbit.period * float(np.mean(2.0 * (h - potential.value(orbit.x[:-1], orbit.y[:-1])))) for orbit in orbits]
     area, error = _interior_area(potential, h)
     channels = np.array([orbit.channel for orbit in orbits], np.int64)
-    made_by = describe_run(potential, energy=h)
+    made_by = potential.describe_run(energy=h)
     return EscapeFlux(h, read_only(channels), read_only(np.array(actions)), area, error, potential.mass, made_by=made_by)
 
 

@@ -26,7 +26,6 @@ from engine.slices.default_window import default_window
 from engine.slices.planes import SECTION
 from engine.slices.window import GivenWindow, checked_window
 from engine.systems.potential import Potential
-from engine.systems.provenance import describe_run
 from engine.systems.well_units import LENGTH, MOMENTUM
 from engine.trajectories.smooth_curves import PointSpacing, refine_passages, split_curve
 from engine.trajectories.unstable_manifold import UnstableManifold
@@ -87,7 +86,7 @@ class StableManifolds(Result):
 
     def provenance(self) -> dict[str, Any]:
         """Return the potential, the energy, the slice, the integrator and the version."""
-        return describe_run(self.potential, energy=self.energy, plane=SECTION.title)
+        return self.potential.describe_run(energy=self.energy, plane=SECTION.title)
 
     def columns(self) -> Mapping[str, np.ndarray]:
         """Return all points, with the number of their arc from 1, its channel and its image."""

@@ -26,7 +26,6 @@ from engine.maps.stages import OnChange, Stage
 from engine.propagation.batch import OrbitBatch, propagate_batch
 from engine.propagation.evidence import Evidence
 from engine.propagation.fates import CHAOS_THRESHOLD, Fate
-from engine.systems.compiled import kernels_of
 
 CHAOTIC_DISTANCE = SHIFT / CHAOS_THRESHOLD
 """Distance of two reruns in phase space, in units of the well, above which a bounded orbit is chaotic.
@@ -256,7 +255,7 @@ class TrustTest:
     def _find_chaotic(self, time: float) -> None:
         """Find pixels bounded without evidence whose reruns are farther apart than `CHAOTIC_DISTANCE` at t = `time`."""
         tested = self._undecided[self._without_evidence[self._undecided]]
-        kernels = kernels_of(self.spec.potential)
+        kernels = self.spec.potential.well.kernels
         batches = [rerun.batch for rerun in self._reruns]
         states = np.array([advance_states(kernels, batch.state[tested], time - batch.t[tested]) for batch in batches])
         self._chaotic[tested] = np.linalg.norm(states[0] - states[-1], axis=1) > CHAOTIC_DISTANCE

@@ -1,4 +1,4 @@
-"""Potentials from the attributes of files that `engine.systems.provenance` writes."""
+"""Potentials from the attributes of files that `Potential.provenance` writes."""
 
 from __future__ import annotations
 
