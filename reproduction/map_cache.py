@@ -85,8 +85,7 @@ class MapCache:
         """Return the value stored under a key. The first call computes the value."""
         if key not in self._values:
             self._values[key] = compute()
-        value: Value = self._values[key]
-        return value
+        return self._values[key]
 
     def _search(self, case: str, energy: float, side: int) -> SuperStickySearch:
         frame = self._stored(replace(self._spec(case, Plane.X_PX, energy), resolution=(side, side)))

@@ -126,8 +126,7 @@ def _digits(averages: np.ndarray) -> np.ndarray:
         difference = np.array([np.ptp(averages[:count], axis=0) / np.abs(averages).max(axis=0) for count in (2, 3)])
         digits = -np.log10(np.maximum(difference.max(axis=1), 10.0**-_MOST_DIGITS))
     # NaN, for an observable that is always 0, becomes 0 digits.
-    agreeing_digits: np.ndarray = np.where(np.isfinite(digits), np.maximum(digits, 0.0), 0.0)
-    return agreeing_digits
+    return np.where(np.isfinite(digits), np.maximum(digits, 0.0), 0.0)
 
 
 @functools.lru_cache(maxsize=16)

@@ -154,8 +154,7 @@ class BoundedOrbitSearch:
 
     def _without_evidence(self) -> np.ndarray:
         """Return whether there is no evidence yet for each orbit, of shape (n,)."""
-        without_evidence: np.ndarray = self.evidence == Evidence.NONE
-        return without_evidence
+        return self.evidence == Evidence.NONE
 
     def _find_enclosed(self, regular: np.ndarray) -> None:
         """Mark all orbits that the invariant curves of some of the `regular` orbits enclose."""
@@ -206,8 +205,7 @@ class _Barrier:
         # Rotating the points by 180° is equivalent to rotating the curve into its mirror image.
         products = [self.curve.find_side(sign * points)[:, None] * exit_sides for sign, exit_sides in self.exit_sides.items()]
         # The product is −1 for a point and an exit on opposite sides.
-        is_separated: np.ndarray = np.any(np.equal(products, -1), axis=0)
-        return is_separated
+        return np.any(np.equal(products, -1), axis=0)
 
 
 def _find_barriers(

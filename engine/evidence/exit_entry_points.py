@@ -71,5 +71,4 @@ def _is_interior(potential: Potential, energy: float, points: np.ndarray) -> np.
     with np.errstate(invalid="ignore"):
         is_allowed = SECTION.required_energy(potential, x, px) <= energy
     outside = find_outside_in_well_units(potential, energy, np.where(is_allowed, x, 0.0), np.zeros_like(x))
-    is_interior: np.ndarray = is_allowed & (outside == 0)
-    return is_interior
+    return is_allowed & (outside == 0)

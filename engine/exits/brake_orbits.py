@@ -119,8 +119,7 @@ class _Shot(NamedTuple):
         """Return x and y at m `times`, of shape (2, m)."""
         step = np.searchsorted(self.begins, times, side="right") - 1
         powers = (times - self.begins[step]) ** np.arange(ORDER + 1)[:, None]
-        path: np.ndarray = (self.coefficients[:, :, step] * powers).sum(axis=1)
-        return path
+        return (self.coefficients[:, :, step] * powers).sum(axis=1)
 
 
 def saddle_axes(potential: Potential, channel: int) -> Axes:

@@ -154,8 +154,7 @@ def line_points(curve: np.ndarray) -> np.ndarray:
         chebyshev.chebval(s, curve[geometry.COEFFICIENTS :]),
         curve[geometry.MIDDLE] + curve[geometry.HALF_WIDTH] * s,
     )
-    points: np.ndarray = origin + u[:, None] * outward + q[:, None] * np.array([-outward[1], outward[0]])
-    return points
+    return origin + u[:, None] * outward + q[:, None] * np.array([-outward[1], outward[0]])
 
 
 def _find_walls(potential: Potential, energy: float, axes: Axes, offset: np.ndarray, bend: float) -> np.ndarray:
@@ -166,8 +165,7 @@ def _find_walls(potential: Potential, energy: float, axes: Axes, offset: np.ndar
         """Return whether V > energy at q (n, 2, m)."""
         u = offset[:, None, None] + bend * q * q
         points = axes.origin + u[..., None] * axes.outward + q[..., None] * q_direction
-        beyond: np.ndarray = potential.value(points[..., 0], points[..., 1]) > energy
-        return beyond
+        return potential.value(points[..., 0], points[..., 1]) > energy
 
     # The points are denser near the saddle.
     grid = np.linspace(0.0, 1.0, _WALL_POINTS) ** 2 * _FARTHEST_WALL * float(np.hypot(*axes.origin))
@@ -177,8 +175,7 @@ def _find_walls(potential: Potential, energy: float, axes: Axes, offset: np.ndar
         first = np.argmax(is_beyond(q), axis=-1)[..., None]
         low, high = np.take_along_axis(q, np.maximum(first - 1, 0), -1), np.take_along_axis(q, first, -1)
         low, high = bisect(is_beyond, low, high, _BISECTIONS)
-    walls: np.ndarray = np.where(first > 0, 0.5 * (low + high), np.nan)[..., 0]
-    return walls
+    return np.where(first > 0, 0.5 * (low + high), np.nan)[..., 0]
 
 
 def paths_meet(one: np.ndarray, other: np.ndarray) -> bool:
@@ -194,8 +191,7 @@ def _paths_cross(one: np.ndarray, other: np.ndarray) -> bool:
     def sides(line: np.ndarray, points: np.ndarray) -> np.ndarray:
         """Return whether each point lies to the left of each segment of a line, of shape (segments, points)."""
         segment, offset = np.diff(line, axis=0)[:, None], points - line[:-1, None]
-        is_left: np.ndarray = segment[..., 0] * offset[..., 1] > segment[..., 1] * offset[..., 0]
-        return is_left
+        return segment[..., 0] * offset[..., 1] > segment[..., 1] * offset[..., 0]
 
     # Two segments intersect if the ends of each lie on different sides of the other.
     of_other, of_one = sides(one, other), sides(other, one).T

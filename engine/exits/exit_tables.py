@@ -177,8 +177,7 @@ def _interpolate(nodes: np.ndarray, rows: np.ndarray, height: float) -> np.ndarr
     curves, gates = np.zeros((1, 1, geometry.CURVE_COLUMNS)), np.zeros((1, 3))
     # The kernel writes into `curves` and `gates`.
     interpolate_exit(nodes, rows, 0.0, geometry.CURVE, np.array([height]), 0, curves, gates)
-    curve: np.ndarray = curves[0, 0]
-    return curve
+    return curves[0, 0]
 
 
 def _points(curve: np.ndarray, positions: np.ndarray) -> np.ndarray:

@@ -59,8 +59,7 @@ def find_outside_starts(
     channels = np.where(is_other_end, 0, outcomes).astype(np.int64)
     # Channels that form one exit share its number.
     exit_numbers = np.take_along_axis(potential.well.exit_numbers(energy), channels[:, None], axis=1)[:, 0]
-    outside: np.ndarray = np.where(is_other_end, outcomes, exit_numbers)
-    return outside
+    return np.where(is_other_end, outcomes, exit_numbers)
 
 
 def find_inner_radius(potential: Potential) -> float:

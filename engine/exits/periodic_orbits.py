@@ -120,8 +120,7 @@ def find_orbit_in_rotating_frame(potential: Potential, energy: float, channel: i
 def multipliers_of(matrix: np.ndarray) -> np.ndarray:
     """Return the complex eigenvalues of a monodromy matrix, of shape (4,), the largest modulus first."""
     values = np.linalg.eigvals(matrix).astype(complex)
-    ordered: np.ndarray = values[np.argsort(-np.abs(values), kind="stable")]
-    return ordered
+    return values[np.argsort(-np.abs(values), kind="stable")]
 
 
 def monodromy_matrix(potential: Potential, start: np.ndarray, period: float) -> np.ndarray:
@@ -172,8 +171,7 @@ def _extrapolate(known: _Known, target: float) -> np.ndarray:
     """Evaluate, at the target, the polynomial that interpolates the unknowns at known values of σ."""
     sigmas = np.array([sigma for sigma, _ in known])
     weights = [np.prod((target - np.delete(sigmas, k)) / (sigma - np.delete(sigmas, k))) for k, sigma in enumerate(sigmas)]
-    predicted: np.ndarray = np.array(weights) @ np.array([unknowns for _, unknowns in known])
-    return predicted
+    return np.array(weights) @ np.array([unknowns for _, unknowns in known])
 
 
 def _correct(family: _Family, sigma: float, predicted: np.ndarray) -> np.ndarray | None:
@@ -228,8 +226,7 @@ def _newton_step(family: _Family, sigma: float, unknowns: np.ndarray) -> np.ndar
     residual[-1] = jacobian[-1, :4] @ unknowns[:4]
     if not (np.isfinite(residual).all() and np.isfinite(jacobian).all()):
         return None
-    correction: np.ndarray = -np.linalg.lstsq(jacobian, residual, rcond=None)[0]
-    return correction
+    return -np.linalg.lstsq(jacobian, residual, rcond=None)[0]
 
 
 def _velocities(potential: Potential, states: np.ndarray) -> np.ndarray:
@@ -262,8 +259,7 @@ def _trace(potential: Potential, states: np.ndarray, period: float) -> _Parts | 
 
 def _product(matrices: np.ndarray) -> np.ndarray:
     """Return the product of n transition matrices, of shape (4, 4), with the first matrix applied first."""
-    product: np.ndarray = functools.reduce(lambda earlier, matrix: matrix @ earlier, matrices)
-    return product
+    return functools.reduce(lambda earlier, matrix: matrix @ earlier, matrices)
 
 
 def _finish(family: _Family, energy: float, unknowns: np.ndarray) -> PeriodicOrbit | None:

@@ -56,6 +56,5 @@ def load_pictures(group: str = GROUP) -> Pictures:
         If there is no entry point, for example in sources that are not installed.
     """
     for entry in entry_points(group=group):
-        pictures: Pictures = entry.load()
-        return pictures
+        return entry.load()
     raise RuntimeError(f"no installed package draws results: entry point {group!r} is missing; install escape-explorer")

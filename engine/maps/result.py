@@ -285,8 +285,7 @@ def outcome_shares(fate: np.ndarray, outcomes: Sequence[Outcome]) -> dict[int, f
 
 def find_interior(fate: np.ndarray) -> np.ndarray:
     """Return whether starts are neither forbidden nor outside, given fates of any shape."""
-    interior: np.ndarray = (fate != Fate.FORBIDDEN) & (fate != Fate.OUTSIDE)
-    return interior
+    return (fate != Fate.FORBIDDEN) & (fate != Fate.OUTSIDE)
 
 
 def representative_indices(size: int, stride: int) -> np.ndarray:

@@ -238,15 +238,13 @@ def _with_enough_pairs(indices: np.ndarray, epsilon: np.ndarray, n: np.ndarray, 
     if np.count_nonzero(k[indices]) < MIN_SEPARATIONS:
         return indices[:0]
     share = predict_shares(epsilon[indices], n[indices], k[indices])
-    with_enough: np.ndarray = indices[n[indices] * np.minimum(share, 1.0 - share) >= MIN_EXPECTED_PAIRS]
-    return with_enough
+    return indices[n[indices] * np.minimum(share, 1.0 - share) >= MIN_EXPECTED_PAIRS]
 
 
 def predict_shares(epsilon: np.ndarray, n: np.ndarray, k: np.ndarray) -> np.ndarray:
     """Return f of the most likely power law at each separation; at least two of the k must be above 0, and all k below n."""
     design = _powers(np.log(epsilon), 1)
-    shares: np.ndarray = np.exp(design @ _maximise_likelihood(design, n, k)[0])
-    return shares
+    return np.exp(design @ _maximise_likelihood(design, n, k)[0])
 
 
 def _fit_law(used: np.ndarray, epsilon: np.ndarray, n: np.ndarray, k: np.ndarray) -> _Law | None:

@@ -91,8 +91,7 @@ def describe_fate(fate: int, outcomes: Sequence[Outcome] = ()) -> str:
 
 def renumber(fates: np.ndarray, numbers: np.ndarray) -> np.ndarray:
     """Return fates of any shape with each outcome k ≥ 1 replaced by ``numbers[k]``, (outcomes + 1,); other codes stay."""
-    renumbered: np.ndarray = np.where(fates > 0, numbers[np.maximum(fates, 0)], fates)
-    return renumbered
+    return np.where(fates > 0, numbers[np.maximum(fates, 0)], fates)
 
 
 class OrbitResult(RecordedResult):

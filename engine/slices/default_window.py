@@ -290,8 +290,7 @@ def _is_inside(potential: Potential, energy: float, x: np.ndarray, y: np.ndarray
     outside = find_outside_in_well_units(potential, energy, x, y)
     gap_numbers = [number for number, end in enumerate(potential.ends, potential.channels + 1) if end in potential.gaps]
     # `~(… >)` also accepts NaN, as at the centre of a gap.
-    inside: np.ndarray = ~(potential.value(x, y) > energy) & np.isin(outside, [0, *gap_numbers])
-    return inside
+    return ~(potential.value(x, y) > energy) & np.isin(outside, [0, *gap_numbers])
 
 
 def _search_radius(potential: Potential, energy: float) -> float:

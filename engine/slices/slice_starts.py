@@ -50,8 +50,7 @@ def compute_required_energy(plane: Slice, potential: Potential, x: np.ndarray, o
     start = _coordinates(plane, x, ordinate)
     value = potential.mass * potential.value(start[Coordinate.X], start[Coordinate.Y])
     rest_energy = kernel.rest_energy(_fixed_momentum(plane, start), value) / potential.mass
-    required_energy: np.ndarray = rest_energy - plane.energies(0.0, x, ordinate)
-    return required_energy
+    return rest_energy - plane.energies(0.0, x, ordinate)
 
 
 def _lines(plane: Slice, x: np.ndarray, ordinate: np.ndarray) -> Iterator[tuple[np.ndarray, Slice, Potential]]:

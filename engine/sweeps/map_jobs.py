@@ -84,7 +84,6 @@ def _compute_sweep(
         find_result(members)
 
     def measure(point: SweepPoint) -> xr.Dataset:
-        dataset: xr.Dataset = find_result(Job(_measure_point, (point, map_job(point.map_spec))))
-        return dataset
+        return find_result(Job(_measure_point, (point, map_job(point.map_spec))))
 
     return compute_sweep(spec, on_frame=on_frame, execution=execution, measure=measure)

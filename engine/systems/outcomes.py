@@ -154,8 +154,7 @@ class End(Kind):
     def contains(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
         """Return whether points, in arrays of any shape, lie where orbits have ended."""
         distance = np.hypot(x - self.x, y - self.y)
-        has_ended: np.ndarray = distance < self.radius if self.side < 0 else distance > self.radius
-        return has_ended
+        return distance < self.radius if self.side < 0 else distance > self.radius
 
 
 class Centre(End):

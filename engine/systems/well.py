@@ -200,8 +200,7 @@ class Well(ReadOnlyArrays):
     def exit_numbers(self, energy: Any) -> np.ndarray:
         """Return the number of the exit to which each fate belongs, of shape (…, outcomes + 1) at energies (…). Entry 0 is 0."""
         merger_count = np.searchsorted([merger.energy for merger in self.channel_mergers], np.asarray(energy), side="left")
-        numbers: np.ndarray = exit_numbers(self.channel_mergers, len(self.outcomes))[merger_count]
-        return numbers
+        return exit_numbers(self.channel_mergers, len(self.outcomes))[merger_count]
 
     def outcomes_at(self, energy: float | tuple[float, float], given: Sequence[str] = ()) -> tuple[Outcome, ...]:
         """Return `outcomes` with the names that exits have at an energy, or in a range of energies (low, high).
@@ -249,8 +248,7 @@ class Well(ReadOnlyArrays):
 
     def mirror_numbers(self, energy: Any) -> np.ndarray:
         """Return the mirror image of each fate at energies (…), of shape (…, outcomes + 1). Requires `mirror_in_x`."""
-        numbers: np.ndarray = self.exit_numbers(energy)[..., self.mirror_channels]
-        return numbers
+        return self.exit_numbers(energy)[..., self.mirror_channels]
 
     @cached_property
     def is_minimum(self) -> bool:
@@ -268,8 +266,7 @@ class Well(ReadOnlyArrays):
     @property
     def _typical_circle(self) -> np.ndarray:
         angle = 2.0 * np.pi / _CIRCLE_POINTS * (0.5 + np.arange(_CIRCLE_POINTS))
-        circle: np.ndarray = self.typical_radius * np.array([np.cos(angle), np.sin(angle)])
-        return circle
+        return self.typical_radius * np.array([np.cos(angle), np.sin(angle)])
 
     @cached_property
     def fastest_frequency(self) -> float:

@@ -174,5 +174,4 @@ def _interior_area(potential: Potential, h: float) -> tuple[float, float]:
 
 def _is_inside(potential: Potential, h: float, x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Return whether points are in the well, below the energy and inside all exits."""
-    inside: np.ndarray = (potential.value(x, y) <= h) & (find_outside_channels(potential, h, x, y) == 0)
-    return inside
+    return (potential.value(x, y) <= h) & (find_outside_channels(potential, h, x, y) == 0)

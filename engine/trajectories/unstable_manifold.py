@@ -149,8 +149,7 @@ class UnstableManifold:
 
     def displacements(self, phases: np.ndarray) -> np.ndarray:
         """Return the displacements of the orbits with these phases, (n,), in geometric progression."""
-        displacements: np.ndarray = self.min_displacement * (self.max_displacement / self.min_displacement) ** phases
-        return displacements
+        return self.min_displacement * (self.max_displacement / self.min_displacement) ** phases
 
     def start_states(self, displacements: np.ndarray) -> np.ndarray:
         """Return n states displaced from the Lyapunov orbit's point of rest and projected back onto its energy, (n, 4)."""

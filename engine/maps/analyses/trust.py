@@ -182,8 +182,7 @@ def _find_without_evidence(escape_map: EscapeMap) -> np.ndarray:
     """Return whether each pixel is bounded, above the escape energy, without evidence, of shape (rows, columns)."""
     spec = escape_map.spec
     energy = spec.energies(*np.meshgrid(escape_map.x, escape_map.ordinate))
-    lacks_evidence: np.ndarray = (escape_map.evidence == Evidence.INTEGRATED) & ~spec.potential.well.is_closed_at(energy)
-    return lacks_evidence
+    return (escape_map.evidence == Evidence.INTEGRATED) & ~spec.potential.well.is_closed_at(energy)
 
 
 class TrustTest:

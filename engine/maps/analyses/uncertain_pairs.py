@@ -187,8 +187,7 @@ class _PairSampler:
         counts[share * most_pairs < MIN_EXPECTED_PAIRS] = 0.0
         cost = _PAIR_COST + self.integrated_time / self.pairs.sum()
         affordable_count = max(work / cost - self.pairs.sum(), 0.0)
-        affordable_counts: np.ndarray = (counts * min(1.0, affordable_count / max(counts.sum(), 1.0))).astype(np.int64)
-        return affordable_counts
+        return (counts * min(1.0, affordable_count / max(counts.sum(), 1.0))).astype(np.int64)
 
     def sample(self, counts: np.ndarray, execution: Execution) -> None:
         """Draw and integrate `counts` (m,) more pairs at each separation, and count their outcomes."""

@@ -262,5 +262,4 @@ def _isolated_zeros(expression: Expression) -> np.ndarray:
         return NO_POINTS
     curvature = np.abs(np.broadcast_arrays(*form.hessian(*points.T))).max(axis=0)
     scale = curvature * (1.0 + (points**2).sum(axis=1))
-    zeros: np.ndarray = points[np.abs(form.value(*points.T)) <= _ZERO * scale]
-    return zeros
+    return points[np.abs(form.value(*points.T)) <= _ZERO * scale]
