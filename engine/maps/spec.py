@@ -20,7 +20,7 @@ from engine.slices.planes import checked_slice
 from engine.slices.slice import Slice
 from engine.slices.slice_text import read_slice, write_slice
 from engine.slices.window import GivenWindow, Window, checked_window
-from engine.systems.formulas.stored_potential import read_potential
+from engine.systems.formulas.formula_parser import read_potential
 from engine.systems.outcomes import Outcome
 from engine.systems.potential import Potential
 from engine.systems.system import System

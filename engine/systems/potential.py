@@ -16,13 +16,12 @@ import numpy as np
 from engine.expressions.nodes import Expression
 from engine.foundations.former_names import with_former_fields
 from engine.foundations.result import Result
-from engine.foundations.validation import LONGEST_TIME, check_type, checked_items, checked_number, checked_t_max
+from engine.foundations.validation import LONGEST_TIME, check_type, checked_between, checked_items, checked_number, checked_t_max
 from engine.integrator.source.polynomial_recurrence import Terms
 from engine.integrator.source.recurrence import TOLERANCE
 from engine.integrator.source.series import ORDER
-from engine.systems.forms.expression_form import as_form
-from engine.systems.forms.form import Form
-from engine.systems.motion import Motion, checked_mass
+from engine.systems.forms.expression_form import Form, as_form
+from engine.systems.motion import MASS_RANGE, Motion
 from engine.systems.outcomes import KINDS, Centre, End, EscapeCircle, Outcome, end_kinds
 from engine.systems.related_wells import SEARCHED, ContinuedWell, Lineage, scaled_to_well
 from engine.systems.well import Well
@@ -140,7 +139,7 @@ class Potential(Motion):
             "lineage": lineage,
             "system": system,
             "exit_names": checked_items("exit_names", exit_names, str),
-            "mass": checked_mass(mass),
+            "mass": checked_between("mass", mass, *MASS_RANGE),
         }
         for attribute, value in values.items():
             object.__setattr__(self, attribute, value)

@@ -15,7 +15,8 @@ from engine.foundations.arrays import ReadOnlyArrays, read_only
 from engine.integrator.bound_kernels import load_kernels
 from engine.integrator.source.series import Setting
 from engine.systems.forms.exit_saddles import find_maxima_beside, leads_out_of_well
-from engine.systems.forms.form import Form, hessian_matrix
+from engine.systems.forms.expression_form import Form
+from engine.systems.forms.form import hessian_matrix
 from engine.systems.forms.stored_points import stored_points
 from engine.systems.merged_channels import ChannelMerger, MergedExit, describe_channel, exit_numbers, merged_exits
 from engine.systems.outcomes import End, EscapeCircle, Exit, Outcome, outcomes_of

@@ -7,7 +7,7 @@ import pytest
 
 from engine import Centre, MapSpec, Plane, Potential, compute_map, compute_origin_fates, parse_formula, write_formula
 from engine.systems import outcomes
-from engine.systems.formulas.stored_potential import read_potential
+from engine.systems.formulas.formula_parser import read_potential
 from engine.systems.outcomes import KINDS, EscapeCircle
 from plots.layers.origins import ORIGINS
 from plots.pictures.palette import PALETTES, end_places

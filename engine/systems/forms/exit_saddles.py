@@ -13,7 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from engine.systems.forms.form import NO_POINTS, DescentError, Form, Velocity
+from engine.systems.forms.expression_form import Form
+from engine.systems.forms.form import NO_POINTS, DescentError, Velocity
 
 # Distance from the saddle at which a descent starts, in units of the distance to the nearest other critical point.
 _START_DISTANCE = 1e-3

@@ -18,7 +18,7 @@ from engine.expressions.polynomials import Terms
 from engine.expressions.singularities import singular_bases
 from engine.expressions.text import write_expression
 from engine.foundations.arrays import read_only
-from engine.systems.forms.form import NO_POINTS, Form, NotIsolatedError, UndecidedError, Velocity
+from engine.systems.forms.form import NO_POINTS, NotIsolatedError, UndecidedError, Velocity
 from engine.systems.forms.interval_newton import Derivatives
 from engine.systems.forms.polynomial_form import PolynomialForm, checked_form
 from engine.systems.forms.stationary_points import find_stationary_points
@@ -225,6 +225,10 @@ def _expansions_about_zeros(expression: Expression) -> dict[Expression, Expressi
         if terms is not None and len(zeros) == 1 and zeros.any():
             expansions[base] = _expand_about(terms, *zeros[0].tolist())
     return expansions
+
+
+Form = PolynomialForm | ExpressionForm
+"""A function V(x, y) with its derivatives, immutable and hashable. Equal forms have results that are equal to the bit."""
 
 
 def as_form(given: Any) -> Form:

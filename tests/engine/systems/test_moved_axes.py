@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from engine import parse_formula, review_potential
-from engine.systems.formulas.stored_potential import read_potential
+from engine.systems.formulas.formula_parser import read_potential
 
 CALDERA = "5(x² + y²) + 3y + 0.3(x⁴ + y⁴ − 6x²y²)"
 MUELLER_BROWN = (
