@@ -20,7 +20,7 @@ import numpy as np
 
 from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
-from engine.propagation.fixed_step_batches import map_tiles
+from engine.propagation.tiles import map_tiles
 from engine.systems.potential import Potential
 
 WINDOWS = (1000.0, 4000.0, 16000.0, 64000.0)

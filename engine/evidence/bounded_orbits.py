@@ -15,9 +15,9 @@ from engine.evidence.exit_entry_points import find_entry_points
 from engine.evidence.invariant_curves import InvariantCurve, find_invariant_curve
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, run_parts
 from engine.integrator.source.recurrence import LANES
-from engine.propagation.evidence import Evidence
-from engine.propagation.fixed_step_batches import run_tiles
-from engine.propagation.section_points import find_section_points, trace_section_points
+from engine.propagation.fates import Evidence
+from engine.propagation.fixed_steps import find_section_points, trace_section_points
+from engine.propagation.tiles import run_tiles
 from engine.systems.potential import Potential
 
 # Number of digits to which averages must agree for a test of the orbit with the next window.

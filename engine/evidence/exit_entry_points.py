@@ -10,7 +10,7 @@ from engine.exits.interior import find_outside_in_well_units
 from engine.exits.lyapunov_orbits import LyapunovOrbit, find_orbits_in_well_units
 from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION
-from engine.propagation.section_points import find_section_points
+from engine.propagation.fixed_steps import find_section_points
 from engine.slices.planes import SECTION
 from engine.systems.potential import Potential
 

@@ -22,8 +22,7 @@ from engine.maps.run import MapRun
 from engine.maps.spec import MapSpec
 from engine.maps.stages import OnChange, Stage, Staged, run_stages, run_to_frame
 from engine.propagation.batch import OrbitBatch
-from engine.propagation.evidence import Evidence
-from engine.propagation.fates import Fate, renumber
+from engine.propagation.fates import Evidence, Fate, renumber
 from engine.slices.axes import HeldParameter, highest_energy
 from engine.slices.parameter_family import ManyExitsError, parameter_family
 from engine.slices.window import Window

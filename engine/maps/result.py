@@ -16,8 +16,7 @@ from engine.foundations.wording import describe_codes
 from engine.maps.spec import MapSpec, read_spec
 from engine.measures.starts import checked_dataset
 from engine.propagation.batch import OrbitBatch
-from engine.propagation.evidence import Evidence
-from engine.propagation.fates import Fate, name_fate
+from engine.propagation.fates import Evidence, Fate, name_fate
 from engine.slices.window import Window
 from engine.systems.outcomes import Outcome, write_outcomes
 from engine.systems.well_units import TIME

@@ -14,8 +14,7 @@ from engine.exits.interior import find_outside_starts
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, run_parts
 from engine.integrator.kernels.propagate import NO_TRACE, VECTOR, Exits, Orbits, fill_vectors
 from engine.integrator.source.recurrence import LANES, TOLERANCE
-from engine.propagation.evidence import Evidence
-from engine.propagation.fates import Fate
+from engine.propagation.fates import Evidence, Fate
 from engine.systems.potential import Potential
 
 LARGEST_TILE = 2048

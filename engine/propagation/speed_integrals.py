@@ -7,7 +7,7 @@ import numpy as np
 from engine.exits.exit_rows import exit_gates
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.integrator.source.recurrence import ROWS, TIME_ROW, TOLERANCE
-from engine.propagation.fixed_step_batches import map_tiles
+from engine.propagation.tiles import map_tiles
 from engine.systems.potential import Potential
 
 # Number of tiles that a worker computes in one call: in less than 0.1 s, so cancelling a computation takes effect soon.

@@ -16,8 +16,7 @@ from engine.slices.axes import ParameterAxis
 from engine.slices.parameter_family import find_members
 from engine.slices.window import Window
 from engine.sweeps.measured_map import SweepPoint
-from engine.sweeps.measures import MEASURES
-from engine.sweeps.points import compute_point, measure_map
+from engine.sweeps.measures import MEASURES, compute_point, measure_map
 from engine.sweeps.spec import SweepSpec
 from engine.sweeps.sweep import Sweep, compute_sweep
 from engine.systems.system import TYPED

@@ -17,7 +17,7 @@ from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_pro
 from engine.foundations.result import Result
 from engine.foundations.validation import checks_types
 from engine.sweeps.measured_map import SweepPoint
-from engine.sweeps.points import compute_point
+from engine.sweeps.measures import compute_point
 from engine.sweeps.spec import EXTENT, SweepSpec
 from engine.sweeps.store import check_same_sweep, open_store
 from engine.systems.outcomes import Outcome, read_outcomes

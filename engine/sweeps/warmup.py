@@ -22,7 +22,7 @@ from engine.integrator.jit.compiled_operations import CompiledCodeLimitError, Co
 from engine.integrator.source.recurrence import code_digest
 from engine.maps.compute import compute_map
 from engine.maps.spec import MapSpec
-from engine.propagation.section_points import find_section_points
+from engine.propagation.fixed_steps import find_section_points
 from engine.slices.planes import SECTION
 from engine.systems.known_potentials import POTENTIALS
 from engine.systems.potential import Potential

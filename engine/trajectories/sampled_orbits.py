@@ -12,9 +12,8 @@ from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, SERIAL_EXECUTION, Execution, shows_progress
 from engine.foundations.validation import checked_array, checked_states, checks_types, short_repr
 from engine.integrator.kernels.dense_output import sample_path
-from engine.propagation.classification import Outcomes
+from engine.propagation.classification import Outcomes, record_orbit
 from engine.propagation.fates import Fate, OrbitResult
-from engine.propagation.orbit_steps import record_orbit
 from engine.systems.outcomes import Outcome
 from engine.systems.potential import Potential
 from engine.systems.well_units import ENERGY, LENGTH, MOMENTUM, TIME

@@ -15,10 +15,9 @@ from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.foundations.former_names import with_former_fields
 from engine.foundations.validation import checked_state, checks_types
 from engine.integrator.kernels.dense_output import find_crossings, sample_deviations, sample_path, trace_steps
-from engine.propagation.deviation_vectors import DEVIATION_VECTORS
-from engine.propagation.evidence import Evidence
-from engine.propagation.fates import Fate, OrbitResult
-from engine.propagation.orbit_steps import OrbitSteps, record_orbit
+from engine.propagation.classification import OrbitSteps, record_orbit
+from engine.propagation.fates import Evidence, Fate, OrbitResult
+from engine.propagation.fixed_steps import DEVIATION_VECTORS
 from engine.systems.outcomes import Outcome
 from engine.systems.potential import Potential
 from engine.systems.well_units import AREA, ENERGY, LENGTH, MOMENTUM, RATE, TIME

@@ -14,7 +14,7 @@ from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.integrator.kernels.dense_output import sample_path, trace_steps
 from engine.integrator.source.recurrence import TOLERANCE
-from engine.propagation.fixed_step_batches import map_tiles
+from engine.propagation.tiles import map_tiles
 from engine.systems.potential import Potential
 
 # Largest displacement from the Lyapunov orbit at which orbits of the tube start, in units of the well. When the tube has grown to

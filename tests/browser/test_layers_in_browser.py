@@ -10,7 +10,7 @@ from playwright.sync_api import expect
 
 from engine import CASES, MapSpec, Plane, Regularity, compute_map, compute_origin_fates, compute_regularity
 from engine.foundations.wording import format_number
-from engine.propagation.evidence import describe_evidence
+from engine.propagation.fates import describe_evidence
 from tests.browser.explorer_page import ExplorerPage
 
 OpenExplorer = Callable[..., ExplorerPage]

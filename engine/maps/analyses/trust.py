@@ -24,8 +24,7 @@ from engine.maps.result import EscapeMap, MapLike, as_complete_map
 from engine.maps.run import FIRST_TEST_TIME, looks_for_tori, rising_horizons
 from engine.maps.stages import OnChange, Stage
 from engine.propagation.batch import OrbitBatch, propagate_batch
-from engine.propagation.evidence import Evidence
-from engine.propagation.fates import CHAOS_THRESHOLD, Fate
+from engine.propagation.fates import CHAOS_THRESHOLD, Evidence, Fate
 
 CHAOTIC_DISTANCE = SHIFT / CHAOS_THRESHOLD
 """Distance of two reruns in phase space, in units of the well, above which a bounded orbit is chaotic.

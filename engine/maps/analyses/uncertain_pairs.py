@@ -14,8 +14,7 @@ from engine.foundations.validation import checked_count, checks_types, short_rep
 from engine.maps.spec import MapSpec
 from engine.measures.power_law_fit import MIN_EXPECTED_PAIRS, UncertaintyExponent, fit_uncertainty, predict_shares
 from engine.propagation.batch import OrbitBatch, propagate_batch
-from engine.propagation.evidence import Evidence
-from engine.propagation.fates import Fate
+from engine.propagation.fates import Evidence, Fate
 
 HORIZON = 1e4
 """Longest integration time of the pairs, in units of the well.

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from engine import CASES, Plane, integrate_orbit, start_states
-from engine.propagation.deviation_vectors import attach_deviations, propagate_deviations
+from engine.propagation.fixed_steps import attach_deviations, propagate_deviations
 
 STATES = start_states(CASES["II"], Plane.X_PX, 0.16, np.array([0.0, 0.1, -0.3]), np.array([0.0, 0.05, 0.1]))
 

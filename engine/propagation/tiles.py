@@ -1,4 +1,4 @@
-"""Parallel fixed-step computations on many orbits, in tiles of at most `LANES` orbits on any executor."""
+"""Parallel computations on many orbits, in tiles of at most `LANES` orbits on any executor."""
 
 from __future__ import annotations
 
