@@ -17,8 +17,7 @@ from engine.foundations.arrays import read_only
 from engine.foundations.validation import LARGEST_NUMBER, check_type, checked_array, checked_number, short_repr
 from engine.integrator.kernels import slice_starts
 from engine.slices.axes import ANGLES, MOMENTA, POSITIONS, STATE, Axis, Coordinate, Direction, Energy, ParameterAxis
-from engine.slices.slice_rules import check_coordinates, momentum_left
-from engine.slices.slice_starts import compute_required_energy, compute_states
+from engine.slices.slice_starts import check_coordinates, compute_required_energy, compute_states, momentum_left
 from engine.systems.potential import Potential
 from engine.systems.system import System
 from engine.systems.well_units import WellUnits
