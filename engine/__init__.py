@@ -22,7 +22,7 @@ programs of this repository, and may change with any version.
 import types
 import typing
 
-from engine.exits.lyapunov_orbits import LyapunovOrbit as LyapunovOrbit
+from engine.exits.lyapunov_orbit import LyapunovOrbit as LyapunovOrbit
 from engine.exits.lyapunov_orbits import find_lyapunov_orbits as find_lyapunov_orbits
 from engine.foundations.execution import Execution as Execution
 from engine.foundations.result import Result as Result

@@ -7,7 +7,8 @@ import functools
 import numpy as np
 
 from engine.exits.interior import find_outside_in_well_units
-from engine.exits.lyapunov_orbits import LyapunovOrbit, find_orbits_in_well_units
+from engine.exits.lyapunov_orbit import LyapunovOrbit
+from engine.exits.lyapunov_orbits import find_orbits_in_well_units
 from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION
 from engine.propagation.fixed_steps import find_section_points

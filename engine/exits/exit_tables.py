@@ -16,7 +16,8 @@ import numpy as np
 from engine.exits.brake_orbits import chord_axes
 from engine.exits.exit_rows import exit_gates
 from engine.exits.exit_shapes import curve_along, find_reach
-from engine.exits.lyapunov_orbits import LyapunovOrbit, find_orbits_in_well_units
+from engine.exits.lyapunov_orbit import LyapunovOrbit
+from engine.exits.lyapunov_orbits import find_orbits_in_well_units
 from engine.foundations.arrays import read_only
 from engine.integrator.kernels import exit_geometry as geometry
 from engine.integrator.kernels.exit_geometry import MIDDLE_COLUMN, exit_points, interpolate_exit

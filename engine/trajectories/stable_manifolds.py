@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from engine.exits.lyapunov_orbits import LyapunovOrbit, find_orbits_in_well_units
+from engine.exits.lyapunov_orbit import LyapunovOrbit
+from engine.exits.lyapunov_orbits import find_orbits_in_well_units
 from engine.foundations.arrays import ReadOnlyArrays, read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.foundations.result import Result

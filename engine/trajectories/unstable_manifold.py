@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from engine.exits.exit_rows import exit_curves, exit_gates
-from engine.exits.lyapunov_orbits import LyapunovOrbit
+from engine.exits.lyapunov_orbit import LyapunovOrbit
 from engine.exits.periodic_orbits import monodromy_matrix
 from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
