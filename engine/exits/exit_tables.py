@@ -18,7 +18,7 @@ from engine.exits.exit_rows import exit_gates
 from engine.exits.exit_shapes import curve_along, find_reach
 from engine.exits.lyapunov_orbit import LyapunovOrbit
 from engine.exits.lyapunov_orbits import find_orbits_in_well_units
-from engine.foundations.arrays import read_only
+from engine.foundations.arrays import ReadOnlyArrays
 from engine.integrator.kernels import exit_geometry as geometry
 from engine.integrator.kernels.exit_geometry import MIDDLE_COLUMN, exit_points, interpolate_exit
 from engine.systems.potential import Potential
@@ -45,7 +45,7 @@ _Curves = Callable[[float], dict[int, np.ndarray]]
 
 
 @dataclass(frozen=True, eq=False)
-class ExitTable:
+class ExitTable(ReadOnlyArrays):
     """The exits of one channel, in units of the well. The arrays are read-only.
 
     Attributes
@@ -65,10 +65,6 @@ class ExitTable:
     highest: float
     nodes: np.ndarray
     rows: np.ndarray
-
-    def __post_init__(self) -> None:
-        for array in (self.nodes, self.rows):
-            read_only(array)
 
     def points_at(self, energy: float, positions: np.ndarray) -> np.ndarray:
         """Return m points of the exit, at s from −1 to 1, at an energy above the saddle, of shape (2, m)."""

@@ -55,10 +55,6 @@ class LyapunovOrbit(Result):
 
     inner_names: ClassVar = Result.inner_names | {"mirrored", "restored", "symmetrized"}
 
-    def __post_init__(self) -> None:
-        for array in (self.x, self.y, self.curve, self.velocity):
-            read_only(array)
-
     def find_multipliers(self) -> np.ndarray:
         """Return the stability of the orbit: the eigenvalues of the flow linearised along one period, the largest modulus first.
 

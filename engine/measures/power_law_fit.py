@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from engine.foundations.arrays import read_only
 from engine.foundations.result import RecordedResult
 from engine.foundations.validation import checked_array, checked_integers, short_repr
 from engine.foundations.wording import format_count, format_decimals
@@ -174,7 +173,6 @@ def fit_uncertainty(separations: Any, pairs: Any, uncertain: Any) -> Uncertainty
     epsilon, n, k = _checked_counts(separations, pairs, uncertain)
     law = _find_law(epsilon, n, k)
     used = np.isin(np.arange(epsilon.size), law.used)
-    epsilon, n, k, used = (read_only(array) for array in (epsilon, n, k, used))
     if not law.holds:
         return UncertaintyExponent(epsilon, n, k, used, np.nan, np.nan, np.nan, np.nan, law.misfit)
     low, high = law.exponent - law.half_width, law.exponent + law.half_width

@@ -9,7 +9,6 @@ from typing import Any, ClassVar
 import numpy as np
 
 from engine.exits.exit_rows import exit_curves, exit_gates
-from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.validation import checked_number, checked_states, checks_types
 from engine.integrator.kernels.dense_output import trace_orbit
@@ -65,7 +64,7 @@ def collect_outcomes(potential: Potential, energy: np.ndarray, batch: OrbitBatch
     error = np.full(batch.fate.size, np.nan)
     error[is_decided] = difference / np.maximum(np.abs(reference), np.finfo(float).tiny)
     escape_time = np.where(batch.fate >= 1, batch.t, np.nan)
-    return Outcomes(read_only(batch.fate.copy()), read_only(escape_time), read_only(crossings), read_only(error))
+    return Outcomes(batch.fate.copy(), escape_time, crossings, error)
 
 
 @shows_progress("orbits")

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from engine.foundations.arrays import read_only
 from engine.foundations.validation import LARGEST_NUMBER, check_type, checked_array, checked_number, short_repr
 from engine.integrator.kernels import slice_starts
 from engine.slices.axes import ANGLES, MOMENTA, POSITIONS, STATE, Axis, Coordinate, Direction, Energy, ParameterAxis
@@ -189,9 +188,6 @@ class Slice:
         """Convert a result from units of the well; `result.x` and `result.ordinate` are positions on this slice."""
         x_unit, ordinate_unit = self.axis_units(units)
         x, ordinate = x_unit * result.x, ordinate_unit * result.ordinate  # type: ignore[attr-defined]
-        for coordinate in (x, ordinate):
-            if isinstance(coordinate, np.ndarray):
-                read_only(coordinate)
         return replace(units.restore(result), x=x, ordinate=ordinate)  # type: ignore[type-var]
 
     def in_well_units(self, units: WellUnits) -> Slice:

@@ -9,7 +9,6 @@ import numpy as np
 
 from engine.evidence.birkhoff_averages import TORUS_DIGITS, WINDOWS, count_agreeing_digits
 from engine.exits.exit_rows import exits_of_orbit
-from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.foundations.result import Chart, RecordedResult
 from engine.foundations.validation import checked_state, checks_types
@@ -107,7 +106,7 @@ def _compare_windows(potential: Potential, start: np.ndarray, t_max: float, exec
         digits.append(float(agreeing_digits))
         if agreeing_digits >= TORUS_DIGITS:
             break
-    return BirkhoffDigits(read_only(np.array(windows[: len(digits)])), read_only(np.array(digits)), unit)
+    return BirkhoffDigits(np.array(windows[: len(digits)]), np.array(digits), unit)
 
 
 def _stays_inside(potential: Potential, curves: np.ndarray, orbit: OrbitBatch, t_end: float, execution: Execution) -> bool:

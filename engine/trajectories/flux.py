@@ -11,7 +11,6 @@ import numpy as np
 
 from engine.exits.interior import find_outside_channels
 from engine.exits.lyapunov_orbits import find_lyapunov_orbits
-from engine.foundations.arrays import read_only
 from engine.foundations.result import Chart, RecordedResult
 from engine.foundations.root_finding import bisect
 from engine.foundations.validation import checked_number, checks_types
@@ -150,7 +149,7 @@ def compute_flux(potential: Potential, energy: float) -> EscapeFlux:
     area, error = _interior_area(potential, h)
     channels = np.array([orbit.channel for orbit in orbits], np.int64)
     made_by = potential.describe_run(energy=h)
-    return EscapeFlux(h, read_only(channels), read_only(np.array(actions)), area, error, potential.mass, made_by=made_by)
+    return EscapeFlux(h, channels, np.array(actions), area, error, potential.mass, made_by=made_by)
 
 
 def _interior_area(potential: Potential, h: float) -> tuple[float, float]:

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from engine.exits.exit_rows import exit_curves
-from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, SERIAL_EXECUTION, Execution, shows_progress
 from engine.foundations.validation import checked_array, checked_states, checks_types, short_repr
 from engine.integrator.kernels.dense_output import sample_path
@@ -160,7 +159,7 @@ def _join(potential: Potential, states: np.ndarray, times: np.ndarray, results: 
     names = ("fate", "escape_time", "crossings")
     outcomes = (np.concatenate([getattr(outcome, name) for _, outcome in results]) for name in names)
     arrays = (times, *paths.transpose(1, 0, 2), *outcomes, np.atleast_1d(potential.energy(states)))
-    fields: list[Any] = [read_only(np.ascontiguousarray(array)) for array in arrays]
+    fields: list[Any] = [np.ascontiguousarray(array) for array in arrays]
     return SampledOrbits(*fields)
 
 

@@ -7,7 +7,6 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.foundations.former_names import with_former_parameters
 from engine.foundations.result import Chart, RecordedResult
@@ -88,4 +87,4 @@ def compute_separation(
         steps = trace_steps(kernels, start, float(times[-1]), len(potential.outcomes), execution)
         paths.append(sample_path(kernels, steps, times, execution))
     made_by = potential.describe_run(energy=float(potential.energy(first)))
-    return units.restore(Separation(read_only(times), read_only(np.linalg.norm(paths[1] - paths[0], axis=0)), made_by=made_by))
+    return units.restore(Separation(times, np.linalg.norm(paths[1] - paths[0], axis=0), made_by=made_by))

@@ -10,7 +10,6 @@ import numpy as np
 
 from engine.evidence.birkhoff_averages import compare_halves
 from engine.exits.exit_rows import exits_of_orbit
-from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.foundations.former_names import with_former_fields
 from engine.foundations.validation import checked_state, checks_types
@@ -204,8 +203,6 @@ def _integrate(potential: Potential, start: np.ndarray, t_max: float, execution:
     recorded = record_orbit(potential, start, curves, t_max, execution)
     times, (x, y, px, py), sali, exponent = _sample_orbit(potential, start, recorded, execution)
     arrays = (times, x, y, px, py, sali, exponent, x * x + y * y)
-    for array in arrays:
-        read_only(array)
     # The columns of one orbit are arrays of length 1, in this order.
     fate, escape_time, crossings, energy_error = (values[0].item() for values in recorded.outcomes.columns().values())
     evidence = _find_evidence(potential, energy, fate)

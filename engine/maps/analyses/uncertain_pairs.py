@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 
 from engine.exits.exit_rows import exit_curves_at
-from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.validation import checked_count, checks_types, short_repr
 from engine.maps.spec import MapSpec
@@ -276,5 +275,4 @@ class _PairSampler:
     def fit(self) -> UncertaintyExponent:
         """Fit the exponent to all pairs so far."""
         fit = fit_uncertainty(self.separations, self.pairs, self.uncertain)
-        one_inside, both_inside = read_only(self.one_inside), read_only(self.both_inside)
-        return replace(fit, one_inside=one_inside, both_inside=both_inside, horizon=self.horizon)
+        return replace(fit, one_inside=self.one_inside, both_inside=self.both_inside, horizon=self.horizon)
