@@ -91,6 +91,15 @@ class Axes(NamedTuple):
         dx, dy = path[0] - self.origin[0], path[1] - self.origin[1]
         return self.outward[0] * dx + self.outward[1] * dy, self.outward[0] * dy - self.outward[1] * dx
 
+    @property
+    def across(self) -> np.ndarray:
+        """The direction of q, (2,)."""
+        return np.array([-self.outward[1], self.outward[0]])
+
+    def points(self, u: np.ndarray, q: np.ndarray) -> np.ndarray:
+        """Return x and y, of shape (2, …)."""
+        return np.moveaxis(self.origin + u[..., None] * self.outward + q[..., None] * self.across, -1, 0)
+
 
 class _Search(NamedTuple):
     """Lengths of a bracket search: its first step and its end along the channel."""

@@ -64,7 +64,7 @@ def ridge_bend(potential: Potential, channel: int) -> float:
     a = −V_uqq/(2 V_uu). A central difference suffices for V_uqq, because any a near the exact value gives an exit.
     """
     axes = saddle_axes(potential, channel)
-    step = _RIDGE_STEP * float(np.hypot(*axes.origin)) * np.array([-axes.outward[1], axes.outward[0]])
+    step = _RIDGE_STEP * float(np.hypot(*axes.origin)) * axes.across
     sides = np.array([axes.origin - step, axes.origin + step])
     slopes = axes.outward @ np.array(np.broadcast_arrays(*potential.gradient(*sides.T)))
     curvature = axes.outward @ potential.hessian_matrix(*axes.origin) @ axes.outward
@@ -132,40 +132,34 @@ def find_reach(potential: Potential, energy: float, curve: np.ndarray) -> float:
     up to half the way to the nearer of these two points.
     """
     reach = np.inf
-    saddle, outward = (
-        curve[[geometry.ORIGIN_X, geometry.ORIGIN_Y]],
-        curve[[geometry.OUTWARD_X, geometry.OUTWARD_Y]],
-    )
-    farthest = _FARTHEST_BEYOND * max(float(np.hypot(*saddle)) / curve[geometry.HALF_WIDTH], 1.0)
+    axes = _axes_of(curve)
+    farthest = _FARTHEST_BEYOND * max(float(np.hypot(*axes.origin)) / curve[geometry.HALF_WIDTH], 1.0)
     beyond = np.geomspace(_FIRST_BEYOND, farthest, _SAMPLES_BEYOND)
     for end, slope in ((-1.0, curve[geometry.SLOPE_LOW]), (1.0, curve[geometry.SLOPE_HIGH])):
         u = chebyshev.chebval(end, curve[geometry.COEFFICIENTS :]) + slope * end * beyond
         q = curve[geometry.MIDDLE] + curve[geometry.HALF_WIDTH] * end * (1.0 + beyond)
-        x, y = saddle[0] + outward[0] * u - outward[1] * q, saddle[1] + outward[1] * u + outward[0] * q
-        reach = min(reach, 1.0 + 0.5 * beyond[potential.value(x, y) <= energy].min(initial=np.inf))
+        is_inside = potential.value(*axes.points(u, q)) <= energy
+        reach = min(reach, 1.0 + 0.5 * beyond[is_inside].min(initial=np.inf))
     return float(reach)
 
 
 def line_points(curve: np.ndarray) -> np.ndarray:
     """Return x and y along an exit from `line_across`, from wall to wall, of shape (41, 2)."""
-    origin, outward = curve[geometry.ORIGIN_X : geometry.ORIGIN_Y + 1], curve[geometry.OUTWARD_X : geometry.OUTWARD_Y + 1]
     s = np.linspace(-1.0, 1.0, _LINE_POINTS)
-    u, q = (
-        chebyshev.chebval(s, curve[geometry.COEFFICIENTS :]),
-        curve[geometry.MIDDLE] + curve[geometry.HALF_WIDTH] * s,
-    )
-    return origin + u[:, None] * outward + q[:, None] * np.array([-outward[1], outward[0]])
+    u, q = chebyshev.chebval(s, curve[geometry.COEFFICIENTS :]), curve[geometry.MIDDLE] + curve[geometry.HALF_WIDTH] * s
+    return _axes_of(curve).points(u, q).T
+
+
+def _axes_of(curve: np.ndarray) -> Axes:
+    return Axes(curve[geometry.ORIGIN_X : geometry.ORIGIN_Y + 1], curve[geometry.OUTWARD_X : geometry.OUTWARD_Y + 1])
 
 
 def _find_walls(potential: Potential, energy: float, axes: Axes, offset: np.ndarray, bend: float) -> np.ndarray:
     """Find the q of the walls on both sides of q = 0 on n parabolas u = offset + bend q², of shape (n, 2); NaN without a wall."""
-    q_direction = np.array([-axes.outward[1], axes.outward[0]])
 
     def is_beyond(q: np.ndarray) -> np.ndarray:
         """Return whether V > energy at q (n, 2, m)."""
-        u = offset[:, None, None] + bend * q * q
-        points = axes.origin + u[..., None] * axes.outward + q[..., None] * q_direction
-        return potential.value(points[..., 0], points[..., 1]) > energy
+        return potential.value(*axes.points(offset[:, None, None] + bend * q * q, q)) > energy
 
     # The points are denser near the saddle.
     grid = np.linspace(0.0, 1.0, _WALL_POINTS) ** 2 * _FARTHEST_WALL * float(np.hypot(*axes.origin))
