@@ -174,8 +174,19 @@ def _find_walls(potential: Potential, energy: float, axes: Axes, offset: np.ndar
 
 def paths_meet(one: np.ndarray, other: np.ndarray) -> bool:
     """Return whether two paths, (n, 2) and (m, 2), intersect, or have the same ends and thus are the same path."""
-    # The import is slow.
-    import shapely
+    return _paths_cross(one, other) or bool(np.abs(one[[0, -1]] - other[[0, -1]]).max() < _SAME_END)
 
-    intersect = shapely.LineString(one).intersects(shapely.LineString(other))
-    return bool(intersect or np.abs(one[[0, -1]] - other[[0, -1]]).max() < _SAME_END)
+
+def _paths_cross(one: np.ndarray, other: np.ndarray) -> bool:
+    """Return whether two polygonal lines, (n, 2) and (m, 2), intersect."""
+    if np.any(one.max(axis=0) < other.min(axis=0)) or np.any(other.max(axis=0) < one.min(axis=0)):
+        return False
+
+    def sides(line: np.ndarray, points: np.ndarray) -> np.ndarray:
+        """Return whether each point lies to the left of each segment of a line, of shape (segments, points)."""
+        segment, offset = np.diff(line, axis=0)[:, None], points - line[:-1, None]
+        return segment[..., 0] * offset[..., 1] > segment[..., 1] * offset[..., 0]
+
+    # Two segments intersect if the ends of each lie on different sides of the other.
+    of_other, of_one = sides(one, other), sides(other, one).T
+    return bool(np.any((of_other[:, 1:] != of_other[:, :-1]) & (of_one[1:] != of_one[:-1])))
