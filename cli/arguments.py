@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 import reprlib
 from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import replace
 from typing import Annotated, Any
 
 import numpy as np
@@ -21,9 +22,6 @@ from engine.slices.axes import Energy
 from engine.slices.slice_text import AXIS_NAMES, read_slice
 from engine.slices.window import GivenWindow
 from engine.sweeps.spec import MOST_VALUES
-from engine.systems.catalogue.table import CATALOGUE
-from engine.systems.formulas.formula_parser import formula_letters
-from engine.systems.parameters import WELL_PARAMETERS
 from engine.systems.system import TYPED
 from plots.pictures.palette import PALETTES, Palette
 from plots.texts.accepted_potentials import refusal
@@ -46,10 +44,10 @@ def find_system(case: Case) -> System:
         letters of a formula are also parameters: 0.5(x^2+y^2)-a x y^2@a=1.5.
     """
     name, _, parameters = case.partition("@")
-    values = _read_parameters(case, name, parameters) if parameters else {}
+    unchanged = System(name) if name in POTENTIALS else System(TYPED, name)
+    system = replace(unchanged, parameters=_read_parameters(case, unchanged, parameters) if parameters else {})
     if name in POTENTIALS:
-        return System(name, "", values)
-    system = System(TYPED, name, values)
+        return system
     try:
         # The first access parses the formula.
         _ = system.potential
@@ -247,8 +245,8 @@ OPTION_TYPES: Mapping[Any, Any] = {
 """The types that Typer reads, by type of the parameter. Typer reads other types as they are."""
 
 
-def _read_parameters(case: str, formula: str, text: str) -> dict[str, float]:
-    legal = CATALOGUE[formula].adjustable if formula in CATALOGUE else (*WELL_PARAMETERS, *_letters(formula))
+def _read_parameters(case: str, system: System, text: str) -> dict[str, float]:
+    legal = system.parameter_names
     values: dict[str, float] = {}
     for part in text.split(","):
         name, _, value = part.partition("=")
@@ -260,11 +258,3 @@ def _read_parameters(case: str, formula: str, text: str) -> dict[str, float]:
             raise ValueError(f"case={reprlib.repr(case)}: parameters are {', '.join(legal)}, as in III@omega_1=1.1,epsilon=0.5")
         values[name.strip()] = number
     return values
-
-
-def _letters(formula: str) -> tuple[str, ...]:
-    """Return the letters of a formula; none for text that is not a formula, because such text is refused later."""
-    try:
-        return formula_letters(formula)
-    except ValueError:
-        return ()

@@ -7,10 +7,10 @@ from cli.layer_options import LayerOptions
 from engine import EscapeMap, MapSpec, compute_map
 from engine.jobs.job import run_job
 from engine.sweeps.map_jobs import map_job
-from plots.layers.map_analyses import MapAnalyses
+from plots.layers.layer import Analyses
 
 
-def compute_map_with_layers(spec: MapSpec, requested_layers: LayerOptions, context: RunContext) -> tuple[EscapeMap, MapAnalyses]:
+def compute_map_with_layers(spec: MapSpec, requested_layers: LayerOptions, context: RunContext) -> tuple[EscapeMap, Analyses]:
     """Return the complete map and the results of its layers; CancelledError if interrupted."""
     frame = compute_whole_map(spec, context, "map")
     results = {}
@@ -18,7 +18,7 @@ def compute_map_with_layers(spec: MapSpec, requested_layers: LayerOptions, conte
         results[layer.name] = run_job(
             layer.job(spec, requested_layers.values), context.start_stage(layer.stage), {map_job(spec): frame}
         )
-    return frame, MapAnalyses(results)
+    return frame, results
 
 
 def compute_whole_map(spec: MapSpec, context: RunContext, stage: str) -> EscapeMap:

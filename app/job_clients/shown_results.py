@@ -5,14 +5,14 @@ from __future__ import annotations
 import param
 
 from engine import EscapeMap
-from plots.layers.map_analyses import NO_ANALYSES
+from plots.layers.layer import NO_ANALYSES
 
 
 class ShownResults(param.Parameterized):
     """The results for the view of one session. Each is None or empty until it is computed."""
 
     frame = param.Parameter(default=None, doc="the `engine.EscapeMap` in view, complete or not; None before its first frame")
-    analyses = param.Parameter(default=NO_ANALYSES, doc="the `MapAnalyses` of the map")
+    analyses = param.Parameter(default=NO_ANALYSES, doc="complete results of the layers of the map, by name")
     orbits = param.Parameter(default=(), doc="a `ChosenOrbit` for each start")
     curves = param.Parameter(default=None, doc="the `engine.Sweep` of the curves against energy or a parameter")
 

@@ -12,8 +12,9 @@ import time
 import traceback
 from collections import Counter
 from collections.abc import Callable
+from functools import lru_cache
 from pathlib import Path
-from types import FrameType
+from types import CodeType, FrameType
 
 from prometheus_client import Histogram
 
@@ -158,7 +159,7 @@ class LoopWatch:
 def find_cause(innermost: FrameType) -> str:
     """Return the outermost function on a stack that belongs to the app and does more than pass calls on, or else to a library."""
     frames = [frame for frame, _ in traceback.walk_stack(innermost)][::-1]
-    app_places = [place for place in map(_place_in_app, frames) if place is not None]
+    app_places = [place for place in (_place_in_app(frame.f_code) for frame in frames) if place is not None]
     library_places = [place for place in map(_place_in_library, frames) if place is not None]
     cause = next((place for place in app_places if not place.startswith(_PLUMBING)), None)
     if cause is not None:
@@ -168,13 +169,11 @@ def find_cause(innermost: FrameType) -> str:
     return f"{app_places[0]}, {library_places[-1]}" if library_places else app_places[0]
 
 
-def _place_in_app(frame: FrameType) -> str | None:
-    path = Path(frame.f_code.co_filename)
-    return (
-        f"{path.relative_to(_APP_FOLDER).with_suffix('')}: {frame.f_code.co_qualname}"
-        if path.is_relative_to(_APP_FOLDER)
-        else None
-    )
+# Without the cache, one reading of a stack takes a millisecond, in which the loop waits for the interpreter lock.
+@lru_cache(maxsize=4096)
+def _place_in_app(code: CodeType) -> str | None:
+    path = Path(code.co_filename)
+    return f"{path.relative_to(_APP_FOLDER).with_suffix('')}: {code.co_qualname}" if path.is_relative_to(_APP_FOLDER) else None
 
 
 def _place_in_library(frame: FrameType) -> str | None:

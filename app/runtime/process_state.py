@@ -75,6 +75,8 @@ class ProcessState:
     stopping: threading.Event = field(default_factory=threading.Event, init=False)
     _is_crowded: bool = field(default=False, init=False)
     _shares: WeakKeyDictionary[Document, FairShare] = field(default_factory=WeakKeyDictionary, init=False)
+    # Held by the page that has the turn, for each event loop: a process of tests has several loops, one after another.
+    _turns: WeakKeyDictionary[asyncio.AbstractEventLoop, asyncio.Lock] = field(default_factory=WeakKeyDictionary, init=False)
 
     def __post_init__(self) -> None:
         compiled_operations.most = self.settings.compiled_operations
@@ -86,6 +88,14 @@ class ProcessState:
             most_limited_calls=PROCESSES,
         )
         self.capacity = Capacity(self.settings.cores_per_page, self.settings.processes, self._processor_times)
+
+    async def next_turn(self) -> None:
+        """Wait for an iteration of the event loop in which no other page has the turn.
+
+        asyncio runs all that is ready in one iteration, so work of many pages that has piled up would delay all else by its sum.
+        """
+        async with self._turns.setdefault(asyncio.get_running_loop(), asyncio.Lock()):
+            await asyncio.sleep(0)
 
     def fair_share(self, document: Document) -> FairShare:
         """Return the share of a page, given its document. All connections of the page use the same share."""

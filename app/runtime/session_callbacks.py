@@ -11,7 +11,7 @@ import asyncio
 import logging
 import weakref
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from functools import partial
 from typing import Any
@@ -44,7 +44,7 @@ class SessionCallbacks:
 
     def __init__(self, document: Document, loop: asyncio.AbstractEventLoop | None = None) -> None:
         self._document = weakref.ref(document)
-        self._share = process_state().fair_share(document)
+        self._next_turn, self._share = process_state().next_turn, process_state().fair_share(document)
         self._loop = (loop or asyncio.get_running_loop()) if document.session_context is not None else None
 
     def every(self, function: Callable[..., Any]) -> Callable[..., Any]:
@@ -58,7 +58,7 @@ class SessionCallbacks:
     def _wrap(self, function: Callable[..., Any], most_waiting: int | None) -> Callable[..., Any]:
         if self._loop is None:
             return function
-        return _LockedCallback(self._loop, self._document, self._share, function, most_waiting)
+        return _LockedCallback(self._loop, self._document, self._next_turn, self._share, function, most_waiting)
 
 
 class _LockedCallback:
@@ -68,11 +68,13 @@ class _LockedCallback:
         self,
         loop: asyncio.AbstractEventLoop,
         document: weakref.ref[Document],
+        next_turn: Callable[[], Awaitable[None]],
         share: FairShare,
         function: Callable[..., Any],
         most_waiting: int | None,
     ) -> None:
-        self._loop, self._document, self._share, self._function = loop, document, share, function
+        self._loop, self._document, self._function = loop, document, function
+        self._next_turn, self._share = next_turn, share
         self._calls: deque[Callable[[], Any]] = deque(maxlen=most_waiting)
         self._task: asyncio.Task[None] | None = None
 
@@ -87,14 +89,16 @@ class _LockedCallback:
             self._task = self._loop.create_task(self._run_calls())
 
     async def _run_calls(self) -> None:
-        while self._calls and (context := self._open_session()) is not None:
+        while self._calls:
+            await self._next_turn()
+            context = self._open_session()
+            if context is None:
+                return
             try:
                 await self._share.count(context.with_locked_document(self._run_one))
             except Exception:
                 log.exception("the changes of a callback could not be sent")
                 self._calls.clear()
-            # Each call runs in its own iteration of the loop.
-            await asyncio.sleep(0)
 
     def _open_session(self) -> SessionContext | None:
         document = self._document()

@@ -125,7 +125,7 @@ class PageWebSocket(SecurityHeaders, WSHandler):
         return bool(sum(session.connection_count for session in self.application_context.sessions) > 1)
 
     async def _take_part(self, message: str | bytes, document: Document) -> None:
-        if self._closed or (session := self._open_session()) is None:
+        if self._closed or self._open_session() is None:
             return
         try:
             parts = self._guard.take(message, document)
@@ -134,10 +134,19 @@ class PageWebSocket(SecurityHeaders, WSHandler):
         except RefusedMessageError as refusal:
             log.warning("message refused: %s", refusal)
         else:
-            for part in parts:
-                await super().on_message(part)
-            if parts and self._guard.choices:
-                await session.with_document_locked(_send_again, document, self._guard.choices)
+            if parts:
+                await self._pass_on(parts, document)
+
+    async def _pass_on(self, parts: Sequence[str | bytes], document: Document) -> None:
+        """Pass a message to Bokeh when it is this page's turn, unless the connection has been closed in the meantime."""
+        await process_state().next_turn()
+        session = self._open_session()
+        if self._closed or session is None:
+            return
+        for part in parts:
+            await super().on_message(part)
+        if self._guard.choices:
+            await session.with_document_locked(_send_again, document, self._guard.choices)
 
     def on_close(self) -> None:
         """Tell Bokeh that the connection is closed, unless Bokeh has already dropped it."""

@@ -112,7 +112,9 @@ class PageHandler(SecurityHeaders, DocHandler):
                 raise Finish
             extra = self.application_context.application.process_request(self.request)
             use_token(self.request, issue_token(self.application, self.request, extra))
-            return await super().get_session()
+            session = await super().get_session()
+            await process_state().next_turn()
+            return session
 
     def on_connection_close(self) -> None:
         """Make no page for a visitor who has left."""

@@ -27,8 +27,7 @@ from engine.slices.slice_text import default_range
 from engine.sweeps.map_jobs import measure_job, sweep_job
 from engine.sweeps.measures import CURVES
 from engine.sweeps.warmup import is_ready_for_maps
-from plots.layers.layer import Layer
-from plots.layers.map_analyses import NO_ANALYSES
+from plots.layers.layer import NO_ANALYSES, Layer
 from plots.layers.table import LAYERS
 
 # Columns and rows of each map of a sweep.
@@ -148,7 +147,7 @@ class AnalysisPresenter:
     def _remove_layer_result(self, name: str) -> None:
         self._results_by_layer.pop(name, None)
         self._maps.remove_layer(name)
-        self._results.analyses = self._results.analyses.with_result(name, None)
+        self._store(name, None)
         self.show_notes(**{name: ""})
 
     def _explain_refusals(self) -> None:
@@ -184,7 +183,12 @@ class AnalysisPresenter:
         self._maps.show_layer(layer.name, frame, selection)
         self.show_notes(**{layer.name: selection.describe()})
         if _is_complete(result):
-            self._results.analyses = self._results.analyses.with_result(layer.name, selection)
+            self._store(layer.name, selection)
+
+    def _store(self, name: str, result: Any) -> None:
+        """Store the complete result of a layer for files and figures; None removes the result."""
+        analyses = {**self._results.analyses, name: result}
+        self._results.analyses = {each: analyses[each] for each in LAYERS if analyses.get(each) is not None}
 
     # Slow measures, started by buttons.
 

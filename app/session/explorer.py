@@ -23,7 +23,7 @@ from app.session.map_presenter import MapPresenter
 from app.session.orbit_presenter import OrbitPresenter
 from app.session.potential_presenter import PotentialPresenter
 from app.state.help_texts import title_with_help
-from app.state.navigation import window_moves
+from app.state.navigation import WINDOW_MOVES
 from app.state.presets import Preset
 from app.state.view import Analysis
 from app.views.analysis.statistics import StatisticsView
@@ -32,8 +32,8 @@ from app.views.components.notice import Notice
 from app.views.components.texts import TextPane
 from app.views.orbits.ensemble_player import EnsemblePlayer
 from app.views.panels.analysis_choice import analysis_tabs
-from app.views.panels.browser_events import KEYS, PICTURE_KEYS, WINDOW_KEYS, BrowserEvents
-from app.views.panels.controls import ControlActions, Controls
+from app.views.panels.browser_events import KEYS, PICTURE_KEYS, BrowserEvents
+from app.views.panels.controls import Controls
 from app.views.panels.downloads import Downloads
 from app.views.panels.embedding import embed_code, page_address
 from app.views.panels.gallery import Gallery
@@ -88,9 +88,10 @@ class Explorer:
         self.statistics = StatisticsView(state, results, self._copy)
         self.downloads = Downloads(state, results, partial(self._copy, None), self._copy_embed_code, locked(self._copied))
         self.gallery = Gallery(state, locked(self._show_preset))
-        keys = WINDOW_KEYS if self.links.embedded else KEYS
+        keys = WINDOW_MOVES if self.links.embedded else KEYS
         self.browser = BrowserEvents(state, keys, locked, self._press, self.links.navigate, self._copied)
-        self.controls = self._make_controls()
+        lock_times = lambda on: state.param.update(lock_times=self.maps.view.times if on else None)  # noqa: E731
+        self.controls = Controls(state, self.engine, self._toggle_drawer, self.comparison.swap_views, lock_times)
         self.drawers = Drawers(
             {
                 "potential": ("", "Potential", lambda: self.potential.panel.build()),
@@ -113,22 +114,12 @@ class Explorer:
             head=[analysis_tabs(state)],
         )
 
+    def _toggle_drawer(self, name: str) -> None:
+        self.drawers.toggle(name)
+
     def _build_watch(self) -> list[pn.viewable.Viewable]:
         title = TextPane(title_with_help("Many orbits at once", "watch"), margin=(0, 10))
         return [title, EnsemblePlayer(self.state, self.results, self._client, self._locked)]
-
-    def _make_controls(self) -> Controls:
-        state, maps = self.state, self.maps.view
-        actions = ControlActions(
-            play=self.engine.play,
-            choose_potential=lambda: self.drawers.toggle("potential"),
-            choose_slice=lambda: self.drawers.toggle("slice"),
-            swap=self.comparison.swap_views,
-            lock_times=self._locked(lambda on: state.param.update(lock_times=maps.times if on else None)),
-        )
-        controls = Controls(state, actions)
-        self.engine.param.watch(lambda event: controls.show_playing(event.new), "playing")
-        return controls
 
     def close(self, *_: Any) -> None:
         """Cancel all requests at the end of the session."""
@@ -163,8 +154,8 @@ class Explorer:
 
     def _press(self, key: str) -> None:
         """Handle a key of `KEYS`."""
-        moves: dict[str, Callable[[], Any]] = {
-            **window_moves(self.maps.show_window, self.state.find_window),
+        actions: dict[str, Callable[[], Any]] = {
+            **{key: partial(self.maps.move, move.change) for key, move in WINDOW_MOVES.items()},
             "b": self.browser.go_back,
             "f": self.browser.go_forward,
             "p": self.engine.play,
@@ -174,7 +165,7 @@ class Explorer:
             **{key: partial(self.state.enlarge, name) for key, name in PICTURE_KEYS.items()},
         }
         try:
-            moves[key]()
+            actions[key]()
         except ValueError as error:
             self.notice.warn(str(error))
 

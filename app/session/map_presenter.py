@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -56,6 +57,7 @@ class MapPresenter:
             ),
             alone=alone,
         )
+        document.js_on_event("document_ready", self.view.ranges.answer)
         self.toolbar = MapToolbar(state, locked(self.view.set_drag))
         self.requests = MapRequests(state, context.jobs, self, context.latest, process_state().is_crowded, prepare_curves)
         self.progress = ProgressView(state, locked(self.requests.stop_map), locked(self.requests.request_map))
@@ -74,6 +76,10 @@ class MapPresenter:
             self.view.ranges.follow(self._state.find_window())
         else:
             self._state.window = window
+
+    def move(self, change: Callable[[Window], Window | None]) -> None:
+        """Show the window to which `change` leads from the window in view; ValueError if the window in view is not known."""
+        self.show_window(change(self._state.find_window()))
 
     def _zoom_to(self, window: Window | None) -> None:
         self._history.begin_gesture()
@@ -98,7 +104,7 @@ class MapPresenter:
         state = self._state
         if self._added_start in state.starts:
             state.remove_start(state.starts.index(self._added_start))
-        self.show_window(zoom(state.find_window(), DIVE_FACTOR, (x, ordinate)))
+        self.move(lambda window: zoom(window, DIVE_FACTOR, (x, ordinate)))
 
     def add_middle(self) -> None:
         """Add the start in the middle of the window."""

@@ -8,7 +8,7 @@ from typing import Any
 from app.state.link_formats import Format, name_format, number_format
 from app.state.view import FIRST_VIEW
 from engine import POTENTIALS, System
-from engine.systems.formulas.formula_parser import LARGEST_VALUE, LONGEST_TEXT, checked_letter_value, formula_letters
+from engine.systems.formulas.formula_parser import LARGEST_VALUE, LONGEST_TEXT, checked_letter_value
 from engine.systems.parameters import WELL_PARAMETERS
 from engine.systems.system import TYPED
 
@@ -33,23 +33,13 @@ def system_of(parts: Mapping[str, Any]) -> tuple[System, list[str]]:
     case = parts.get(_CASE, TYPED if _FORMULA in parts else FIRST_VIEW.system.case)
     formula = parts.get(_FORMULA, "")
     letter_values = parts.get(_LETTERS, {})
-    letters = _letters(case, formula)
+    letters = [name for name in System(case, formula).parameter_names if name not in WELL_PARAMETERS]
     used_values = {name: value for name, value in letter_values.items() if name in letters}
     system = System(case, formula, {**{name: parts[name] for name in WELL_PARAMETERS if name in parts}, **used_values})
     if len(used_values) == len(letter_values):
         return system, []
     legal = f"letters of the formula: {', '.join(letters)}" if letters else "a formula with letters"
     return system, [f"Ignored the values of letters that the formula does not have: choose {legal}."]
-
-
-def _letters(case: str, formula: str) -> tuple[str, ...]:
-    """Return the adjustable letters of a system of the catalogue, or the letters of a formula; none if it cannot be parsed."""
-    if case != TYPED:
-        return System(case).entry.adjustable
-    try:
-        return formula_letters(formula)
-    except ValueError:
-        return ()
 
 
 def _write_letters(values: Mapping[str, float]) -> str:

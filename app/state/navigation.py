@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
+from types import MappingProxyType
+from typing import NamedTuple
 
 from engine import Window
 
@@ -16,13 +18,16 @@ ZOOM_FACTOR = 2.0
 DIVE_FACTOR = 4.0
 """Factor by which a double click shrinks the sides of the window."""
 
-DIRECTIONS = {"ArrowLeft": (-1, 0), "ArrowRight": (1, 0), "ArrowDown": (0, -1), "ArrowUp": (0, 1)}
-"""Direction of each arrow key in x and in the ordinate."""
+
+class Move(NamedTuple):
+    """A change of the window by a key: its words, and a function of the window in view. None is the whole interior."""
+
+    words: str
+    change: Callable[[Window], Window | None]
 
 
-def pan(window: Window, key: str) -> Window:
-    """Return a window moved by an arrow key."""
-    x_direction, ordinate_direction = DIRECTIONS[key]
+def pan(x_direction: int, ordinate_direction: int, window: Window) -> Window:
+    """Return a window moved by `PAN_SHARE` in two directions, each -1, 0 or 1."""
     dx = PAN_SHARE * x_direction * window.width
     dy = PAN_SHARE * ordinate_direction * window.height
     return Window(window.x_low + dx, window.x_high + dx, window.ordinate_low + dy, window.ordinate_high + dy)
@@ -49,29 +54,15 @@ def zoom(window: Window, factor: float, about: tuple[float, float] | None = None
     )
 
 
-def window_moves(
-    show_window: Callable[[Window | None], None], find_window: Callable[[], Window]
-) -> dict[str, Callable[[], None]]:
-    """Return the actions of the keys that move the window.
-
-    Parameters
-    ----------
-    show_window
-        Shows another window; None is the whole interior.
-    find_window
-        Returns the window in view.
-    """
-
-    def show(change: Callable[[Window], Window]) -> Callable[[], None]:
-        return lambda: show_window(change(find_window()))
-
-    return {
-        "+": show(lambda window: zoom(window, ZOOM_FACTOR)),
-        "-": show(lambda window: zoom(window, 1.0 / ZOOM_FACTOR)),
-        "h": lambda: show_window(None),
-        **{arrow: show(partial(_pan_by, arrow)) for arrow in DIRECTIONS},
+WINDOW_MOVES: Mapping[str, Move] = MappingProxyType(
+    {
+        "ArrowLeft": Move("move left", partial(pan, -1, 0)),
+        "ArrowRight": Move("move right", partial(pan, 1, 0)),
+        "ArrowUp": Move("move up", partial(pan, 0, 1)),
+        "ArrowDown": Move("move down", partial(pan, 0, -1)),
+        "+": Move("zoom in", lambda window: zoom(window, ZOOM_FACTOR)),
+        "-": Move("zoom out", lambda window: zoom(window, 1.0 / ZOOM_FACTOR)),
+        "h": Move("whole plane", lambda window: None),
     }
-
-
-def _pan_by(arrow: str, window: Window) -> Window:
-    return pan(window, arrow)
+)
+"""The moves of the keys, by the key's name in `KeyboardEvent.key`."""

@@ -7,17 +7,21 @@ from typing import Any
 from urllib.parse import urlencode
 
 from app.state.link_formats import (
+    STARTS,
     SWITCH,
     TIMES,
+    WATCHED,
+    WINDOW,
     Format,
     LinkParameter,
     choice_format,
     listed,
     name_format,
+    number_choice_format,
     number_format,
 )
 from app.state.link_system import SYSTEM_FORMATS, system_of, write_system
-from app.state.view import FIRST_VIEW, PICTURES, VIEW_PARAMETERS, View, default_settings
+from app.state.view import FIRST_VIEW, PICTURES, Analysis, View, allowed_resolutions, allowed_t_max, default_settings
 from app.state.view_state import ViewState, longest_first_t_max
 from engine import Plane
 from engine.foundations.validation import LARGEST_NUMBER
@@ -25,7 +29,7 @@ from engine.slices.slice_text import read_slice, write_slice
 from engine.systems.formulas.formula_parser import LONGEST_TEXT
 from engine.systems.review.potential_review import SystemReview
 from plots.layers.table import LAYER_OF, LAYERS, SETTINGS
-from plots.pictures.palette import PALETTES
+from plots.pictures.palette import MOST_ORBITS, PALETTES
 
 LONGEST_VALUE = LONGEST_TEXT
 """Largest length of a value in a link, in characters."""
@@ -42,9 +46,25 @@ _PLANE, _FIX, _ENERGY, _JACOBI = "plane", "fix", "h", "C"
 _COMPARED = "with_"
 _VIEW_NAMES = (*SYSTEM_FORMATS, _PLANE, _FIX, _ENERGY)
 
-# Link parameters of attributes of the view state with one parameter each: fields of `View`, then the visitor's own choices.
+# Indices of starts by the number that the page shows.
+_PLACES = {str(place + 1): place for place in range(MOST_ORBITS)}
+
+
+def _sides() -> dict[str, int]:
+    return {str(side): side for side in allowed_resolutions().values()}
+
+
+# Link parameters of attributes of the view state with one parameter each, in the order of links: fields of `View`, then the
+# visitor's own choices.
 _LINKED: dict[str, LinkParameter] = {
-    **VIEW_PARAMETERS,
+    "t_max": LinkParameter("t_max", number_choice_format(allowed_t_max), always=True),
+    "resolution": LinkParameter("resolution", number_choice_format(_sides), always=True),
+    "window": LinkParameter("window", WINDOW, of_system=True),
+    "box": LinkParameter("box", WINDOW, of_system=True),
+    "analysis": LinkParameter("analysis", name_format(Analysis)),
+    "watched": LinkParameter("watch", WATCHED),
+    "starts": LinkParameter("orbits", STARTS, of_system=True),
+    "chosen": LinkParameter("look", choice_format(_PLACES), of_system=True),
     "focus": LinkParameter("focus", name_format(PICTURES)),
     "palette": LinkParameter("palette", name_format(PALETTES)),
     "lock_times": LinkParameter("lock_times", TIMES),
@@ -134,7 +154,7 @@ def linked_view(values: Mapping[str, Any]) -> View:
 
 def without_system(values: Mapping[str, Any]) -> dict[str, Any]:
     """Return the values of a link that do not depend on its system."""
-    dropped_names = {"system", "energy", "jacobi", *(name for name, parameter in VIEW_PARAMETERS.items() if parameter.of_system)}
+    dropped_names = {"system", "energy", "jacobi", *(name for name, parameter in _LINKED.items() if parameter.of_system)}
     if linked_view(values).plane.parameter is not None:
         dropped_names.add("plane")
     return {name: value for name, value in values.items() if name not in dropped_names}

@@ -2,22 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from enum import StrEnum
 from typing import Any
 
 from app.runtime.process_state import process_state
-from app.state.link_formats import (
-    STARTS,
-    WATCHED,
-    WINDOW,
-    Format,
-    LinkParameter,
-    choice_format,
-    name_format,
-    number_choice_format,
-)
 from app.state.watched_starts import WatchedStarts
 from engine import MapSpec, Plane, Slice, System, Window
 from engine.slices.axes import Energy
@@ -25,7 +14,6 @@ from engine.systems.review.potential_review import SystemReview
 from plots.layers.layer import Settings
 from plots.layers.table import PICTURES as MAPS
 from plots.layers.table import SETTINGS
-from plots.pictures.palette import MOST_ORBITS
 
 Start = tuple[float, float]
 """x and ordinate of a start in the plane."""
@@ -42,10 +30,6 @@ class Analysis(StrEnum):
 
 
 _FIRST_SYSTEM = System("I")
-# Key of a field's link parameter in its metadata.
-_LINK = "link"
-# Indices of starts by the number that the page shows.
-_PLACES = {str(place + 1): place for place in range(MOST_ORBITS)}
 
 
 def _up_to[Number: (int, float)](limit: float, choices: dict[str, Number]) -> dict[str, Number]:
@@ -78,15 +62,6 @@ PICTURES = ("well", *(name for name in MAPS if name != "curves"))
 def default_settings() -> dict[str, Any]:
     """Return the default of each setting of the layers."""
     return {name: setting.default for name, setting in SETTINGS.items()}
-
-
-def _linked(name: str, form: Format, *, of_system: bool = False, always: bool = False) -> dict[str, LinkParameter]:
-    """Return the metadata of a field that has a parameter in links."""
-    return {_LINK: LinkParameter(name, form, of_system, always)}
-
-
-def _sides() -> dict[str, int]:
-    return {str(side): side for side in allowed_resolutions().values()}
 
 
 @dataclass(frozen=True)
@@ -122,18 +97,16 @@ class View:
     system: System = _FIRST_SYSTEM
     plane: Slice = Plane.X_PX
     energy: float | None = None
-    t_max: float = field(default=1e5, metadata=_linked("t_max", number_choice_format(allowed_t_max), always=True))
-    resolution: int = field(
-        default=MapSpec.resolution[0], metadata=_linked("resolution", number_choice_format(_sides), always=True)
-    )
-    window: Window | None = field(default=None, metadata=_linked("window", WINDOW, of_system=True))
-    box: Window | None = field(default=None, metadata=_linked("box", WINDOW, of_system=True))
+    t_max: float = 1e5
+    resolution: int = MapSpec.resolution[0]
+    window: Window | None = None
+    box: Window | None = None
     layers: frozenset[str] = frozenset()
     settings: Settings = field(default_factory=default_settings, hash=False)
-    analysis: Analysis = field(default=Analysis.ORBIT, metadata=_linked("analysis", name_format(Analysis)))
-    watched: WatchedStarts = field(default=WatchedStarts(), metadata=_linked("watch", WATCHED))
-    starts: tuple[Start, ...] = field(default=(), metadata=_linked("orbits", STARTS, of_system=True))
-    chosen: int = field(default=0, metadata=_linked("look", choice_format(_PLACES), of_system=True))
+    analysis: Analysis = Analysis.ORBIT
+    watched: WatchedStarts = field(default=WatchedStarts())
+    starts: tuple[Start, ...] = ()
+    chosen: int = 0
 
     @property
     def title(self) -> str:
@@ -176,6 +149,3 @@ class View:
 
 FIRST_VIEW = View()
 """The view of the page without a link."""
-
-VIEW_PARAMETERS: Mapping[str, LinkParameter] = {each.name: each.metadata[_LINK] for each in fields(View) if each.metadata}
-"""The fields with one link parameter each, in the order of links."""

@@ -36,7 +36,7 @@ from cli.output_files import Content, Stem, add_ending, reserve_output, split_en
 from cli.printing import AsJson, Table, print_result
 from engine import EscapeMap, Fate, MapSpec
 from engine.propagation.fates import UNRESOLVED, name_fate
-from plots.layers.map_analyses import MapAnalyses
+from plots.layers.layer import Analyses
 from plots.layers.table import LAYERS, TITLES
 from plots.pictures.palette import Palette
 from plots.printed.figure_files import map_figure_bytes
@@ -119,7 +119,7 @@ def run(
 
 
 def _make_contents(
-    stem: Path, endings: Sequence[str], frame: EscapeMap, analyses: MapAnalyses, drawing: Drawing
+    stem: Path, endings: Sequence[str], frame: EscapeMap, analyses: Analyses, drawing: Drawing
 ) -> dict[Path, Content]:
     """Return the content of each output file: the map in some formats, and tables as CSV."""
     files: dict[Path, Content] = {}
@@ -137,10 +137,10 @@ def _make_contents(
     return files
 
 
-def _print(frame: EscapeMap, analyses: MapAnalyses, files: Sequence[str], count_outside: bool, as_json: bool) -> None:
+def _print(frame: EscapeMap, analyses: Analyses, files: Sequence[str], count_outside: bool, as_json: bool) -> None:
     fractions = frame.fractions(count_outside=count_outside)
     shares = {name_fate(code, frame.spec.outcomes): share for code, share in fractions.items() if code != Fate.NOT_COMPUTED}
-    sentences = analyses.describe()
+    sentences = [result.describe() for result in analyses.values()]
     rows = [(name, f"{100 * share:.2f} %") for name, share in shares.items() if share or name != UNRESOLVED]
     answer = {"request": frame.provenance(), "shares": shares, "findings": sentences}
     print_result(as_json, answer, Table(("outcome", "share"), rows), *sentences, files=files)

@@ -27,8 +27,7 @@ from engine.foundations.execution import DEFAULT_EXECUTION
 from engine.jobs.job import run_job
 from engine.slices.limiting_curves import trace_equipotentials
 from engine.sweeps.map_jobs import map_job
-from plots.layers.layer import Stroke
-from plots.layers.map_analyses import MapAnalyses
+from plots.layers.layer import Analyses, Stroke
 from plots.layers.map_images import picture_pixels
 from plots.layers.table import LAYERS
 from plots.pictures.palette import LIGHT, PAPER, PATCH_EDGE
@@ -77,10 +76,10 @@ def _draw_thumbnail(preset: Preset) -> Image.Image:
     return Image.open(file).convert("RGBA")
 
 
-def _analyse(frame: EscapeMap, view: View) -> MapAnalyses:
+def _analyse(frame: EscapeMap, view: View) -> Analyses:
     known = {map_job(frame.spec): frame}
     layers = (layer for name, layer in LAYERS.items() if name in view.layers)
-    return MapAnalyses({layer.name: run_job(layer.job(frame.spec, view.settings), DEFAULT_EXECUTION, known) for layer in layers})
+    return {layer.name: run_job(layer.job(frame.spec, view.settings), DEFAULT_EXECUTION, known) for layer in layers}
 
 
 def _draw_strokes(axes: Axes, strokes: Sequence[Stroke], window: Window) -> None:

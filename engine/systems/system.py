@@ -89,12 +89,15 @@ class System:
 
     @property
     def letters(self) -> dict[str, float]:
-        """The values of the letters of the formula; ValueError if a character of the formula is not understood."""
-        return {name: self.value_of(name) for name in formula_letters(self.formula)}
+        """The values of the letters of the formula; empty if a character of the formula is not understood."""
+        try:
+            return {name: self.value_of(name) for name in formula_letters(self.formula)}
+        except ValueError:
+            return {}
 
     @property
     def parameter_names(self) -> tuple[str, ...]:
-        """The names of all parameters; ValueError if a character of the formula is not understood."""
+        """The names of all parameters."""
         return (*self.entry.adjustable, *self.letters)
 
     def default_of(self, name: str) -> float:

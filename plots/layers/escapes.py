@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+from engine import Evidence, Fate
 from plots.layers.picture import Legend, Picture, ShownMap
-from plots.pictures.palette import Palette
+from plots.pictures.palette import DIFFERENCES as CLASSES
+from plots.pictures.palette import OUTCOMES, Palette
+
+# Colour of the interior in the picture of the exits, translucent for light and dark pages.
+_INTERIOR = "#7aa7d618"
 
 
 def _region_legend(shown: ShownMap) -> Legend:
@@ -35,11 +40,28 @@ def _difference_legend(shown: ShownMap) -> Legend:
     """Return the classes of pixels, or the reason why the views cannot be compared."""
     if shown.other is not None and shown.other.axes != shown.spec.plane.axis_symbols:
         return Legend(sentence="Other axes: pixels cannot be compared.")
-    return Legend(shown.palette.difference_entries)
+    return Legend(CLASSES)
 
 
 def _fate_colours(palette: Palette) -> list[str]:
-    return palette.fate_colours
+    return [*palette.outcome_colours, *palette.ends]
+
+
+def _region_colours(palette: Palette) -> list[str]:
+    """Return the colours of the picture of the exits, where the interior has a single colour."""
+    starts_without_orbit = (Fate.OUTSIDE, Fate.FORBIDDEN)
+    plain = [palette.outcomes[fate].colour if fate in starts_without_orbit else _INTERIOR for fate in OUTCOMES]
+    return [*plain, *[_INTERIOR] * len(palette.ends)]
+
+
+def _background_colours(palette: Palette) -> list[str]:
+    """Return the colours below the image of escape times, which covers the pixels of escaping orbits."""
+    return [*palette.outcome_colours, *[palette.outcomes[Fate.FORBIDDEN].colour] * len(palette.ends)]
+
+
+def _crossing_colours(palette: Palette) -> list[str]:
+    """Return the colours of the crossings. Bounded pixels have a code for each kind of evidence."""
+    return [*palette.outcome_colours, *palette.classes, *[palette.bounded] * len(Evidence)]
 
 
 CURVES = Picture(
@@ -48,7 +70,7 @@ CURVES = Picture(
     short_title="Well",
     help="",
     column="fate",
-    colours=lambda palette: palette.region_colours,
+    colours=_region_colours,
     legend=_region_legend,
 )
 
@@ -79,7 +101,7 @@ TIMES = Picture(
         "stand for all shorter and all longer times."
     ),
     column="fate",
-    colours=lambda palette: palette.background_colours,
+    colours=_background_colours,
     legend=_time_legend,
     has_times=True,
 )
@@ -94,7 +116,7 @@ CROSSINGS = Picture(
         "escape time, and they become thinner towards a basin boundary."
     ),
     column="crossing_class",
-    colours=lambda palette: palette.crossing_colours,
+    colours=_crossing_colours,
     legend=_crossing_legend,
 )
 
@@ -123,7 +145,7 @@ DIFFERENCES = Picture(
         "the energy show where the boundaries are."
     ),
     column="difference",
-    colours=lambda palette: palette.difference_colours,
+    colours=lambda palette: [*palette.outcome_colours, *(entry.colour for entry in CLASSES)],
     legend=_difference_legend,
     compares=True,
 )

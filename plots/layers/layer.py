@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,12 @@ from plots.pictures.palette import PALETTES, Entry, Palette
 
 Settings = Mapping[str, Any]
 """Values of the settings of layers, by name. Missing settings have their defaults."""
+
+Analyses = Mapping[str, Any]
+"""Complete results of layers, by name. Layers that were not requested or are not finished are missing."""
+
+NO_ANALYSES: Analyses = MappingProxyType({})
+"""No results."""
 
 
 @dataclass(frozen=True)
@@ -207,27 +214,6 @@ class Over:
     strokes: Callable[[Any], Sequence[Stroke]] | None = None
 
 
-def own_spec(result: Any) -> MapSpec:
-    """Return the request of the map of a result with a value for each pixel."""
-    spec: MapSpec = result.spec
-    return spec
-
-
-def always_allowed(spec: MapSpec) -> str:
-    """Accept every map."""
-    return ""
-
-
-def unchanged(result: Any, settings: Settings) -> Any:
-    """Select the whole result."""
-    return result
-
-
-def never(frame: EscapeMap) -> bool:
-    """Return False for every map."""
-    return False
-
-
 @dataclass(frozen=True, kw_only=True)
 class Layer:
     """A layer over the pictures of a map.
@@ -254,9 +240,9 @@ class Layer:
     settings
         Choices of how the layer is computed or drawn.
     select
-        Returns the part of a result that is drawn.
+        Returns the part of a result that is drawn; by default the whole result.
     spec_of
-        Returns the request of the map on which a result is drawn alone.
+        Returns the request of the map on which a result is drawn alone; by default its attribute `spec`.
     pixels
         Pixel codes of the layer; None if it has none.
     picture
@@ -279,18 +265,18 @@ class Layer:
     stage: str
     result: type
     job: Callable[[MapSpec, Settings], Job[Any]]
-    refusal: Callable[[MapSpec], str] = always_allowed
+    refusal: Callable[[MapSpec], str] = lambda spec: ""
     count: Count | None = None
     settings: tuple[Setting, ...] = ()
-    select: Callable[[Any, Settings], Any] = unchanged
-    spec_of: Callable[[Any], MapSpec] = own_spec
+    select: Callable[[Any, Settings], Any] = lambda result, settings: result
+    spec_of: Callable[[Any], MapSpec] = lambda result: result.spec
     pixels: Pixels | None = None
     picture: Picture | None = None
     over: Over | None = None
     variables: tuple[str, ...] = ()
     has_table: bool = False
-    is_empty: Callable[[EscapeMap], bool] = never
-    is_offered: Callable[[EscapeMap], bool] = never
+    is_empty: Callable[[EscapeMap], bool] = lambda frame: False
+    is_offered: Callable[[EscapeMap], bool] = lambda frame: False
 
     def over_picture(self, picture: str) -> Over | None:
         """Return what the layer draws over a picture; None if it draws nothing."""

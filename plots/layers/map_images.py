@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection
 from typing import Any
 
 import numpy as np
 
 from engine import EscapeMap
-from plots.layers.map_analyses import NO_ANALYSES
+from plots.layers.layer import NO_ANALYSES, Analyses
 from plots.layers.table import LAYERS, PICTURES, TITLES
 from plots.pictures.image_columns import NO_LAYER, map_columns
 from plots.pictures.palette import Palette, rgba
@@ -35,7 +35,7 @@ def result_columns(name: str, frame: EscapeMap, result: Any) -> dict[str, list[A
 
 
 def picture_pixels(
-    frame: EscapeMap, picture: str, palette: Palette, analyses: Mapping[str, Any] = NO_ANALYSES, times: TimeScale | None = None
+    frame: EscapeMap, picture: str, palette: Palette, analyses: Analyses = NO_ANALYSES, times: TimeScale | None = None
 ) -> np.ndarray:
     """Return the pixels of a picture without axes and curves.
 

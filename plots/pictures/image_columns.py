@@ -56,7 +56,7 @@ def map_columns(frame: EscapeMap) -> dict[str, list[Any]]:
 
 
 def fate_codes(fate: np.ndarray, outcomes: Sequence[Outcome]) -> np.ndarray:
-    """Return the uint8 codes of `Palette.fate_colours` for fates of any shape."""
+    """Return the uint8 codes of the picture of the basins for fates of any shape."""
     return pixel_codes(fate, end_numbers(fate, outcomes) - 1)
 
 

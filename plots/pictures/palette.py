@@ -15,7 +15,7 @@ from itertools import accumulate
 
 import numpy as np
 
-from engine import Evidence, Fate, Outcome
+from engine import Fate, Outcome
 from engine.propagation.fates import UNRESOLVED, outcome_of
 from engine.systems.outcomes import KINDS, Exit
 
@@ -66,12 +66,12 @@ OUTCOMES: dict[Fate, str] = {
 CROSSING_CLASSES: tuple[tuple[int, str], ...] = ((0, "0 (direct)"), (1, "1"), (2, "2"), (3, "3–10"), (11, "> 10"))
 """(fewest crossings, label) of each class."""
 
-DIFFERENCES: tuple[tuple[str, str], ...] = (
-    ("same: equal outcomes", "#7f7f7f30"),
-    ("different: other outcomes", "#6a00f4"),
-    ("in one view only: no orbit in the other view", "#b0904aa0"),
+DIFFERENCES = (
+    Entry("same: equal outcomes", "#7f7f7f30"),
+    Entry("different: other outcomes", "#6a00f4"),
+    Entry("in one view only: no orbit in the other view", "#b0904aa0"),
 )
-"""(label, colour) of each class of pixels in the comparison of two views."""
+"""Legend of the classes of pixels in the comparison of two views."""
 
 
 def end_places(outcomes: Sequence[Outcome]) -> list[int]:
@@ -91,11 +91,10 @@ _OMITTED = re.compile(r"^exit |^bounded(?: and|,) | pixels$|(?::| \().*$")
 CLEAR = "#00000000"
 """Transparent."""
 
-# Colours of fates and of the interior, translucent for light and dark pages.
+# Colours of fates, translucent for light and dark pages.
 _FORBIDDEN = "#ffffff00"
 _OUTSIDE = "#b0904a48"
 _NOT_COMPUTED = "#7f9cc855"
-_INTERIOR = "#7aa7d618"
 _FAILED = "#000000"
 
 
@@ -153,11 +152,6 @@ class Palette:
         return {fate: Entry(label, colour) for (fate, label), colour in zip(OUTCOMES.items(), colours, strict=True)}
 
     @cached_property
-    def difference_entries(self) -> list[Entry]:
-        """Legend of the comparison of two views."""
-        return [Entry(label, colour) for label, colour in DIFFERENCES]
-
-    @cached_property
     def crossing_entries(self) -> list[Entry]:
         """Legend of the crossing classes."""
         return [Entry(label, colour) for (_, label), colour in zip(CROSSING_CLASSES, self.classes, strict=True)]
@@ -177,32 +171,6 @@ class Palette:
     def legend_entries(self, outcomes: Sequence[Outcome]) -> dict[int, Entry]:
         """Return the labels and colours of the outcomes that occur, by fate."""
         return {fate: entry for fate, entry in enumerate(self.end_entries(outcomes), 1) if outcomes[fate - 1].occurs}
-
-    @cached_property
-    def fate_colours(self) -> list[str]:
-        """Colours of the pixel codes of the basins."""
-        return [*self.outcome_colours, *self.ends]
-
-    @cached_property
-    def crossing_colours(self) -> list[str]:
-        """Colours of the pixel codes of the crossings. Bounded pixels have a code for each kind of evidence."""
-        return [*self.outcome_colours, *self.classes, *(self.bounded for _ in Evidence)]
-
-    @cached_property
-    def difference_colours(self) -> list[str]:
-        """Colours of the pixel codes of the comparison of two views."""
-        return [*self.outcome_colours, *(entry.colour for entry in self.difference_entries)]
-
-    @cached_property
-    def background_colours(self) -> list[str]:
-        """Colours of the pixel codes below the image of escape times, which covers the pixels of escaping orbits."""
-        return [*self.outcome_colours, *([_FORBIDDEN] * len(self.ends))]
-
-    @cached_property
-    def region_colours(self) -> list[str]:
-        """Colours of the pixel codes of the picture of the exits, where the interior has a single colour."""
-        plain = [self.outcomes[fate].colour if fate in (Fate.OUTSIDE, Fate.FORBIDDEN) else _INTERIOR for fate in OUTCOMES]
-        return [*plain, *([_INTERIOR] * len(self.ends))]
 
     @property
     def outcome_colours(self) -> list[str]:

@@ -63,6 +63,9 @@ _MOST_COLUMNS = 6
 # Padding around panels, in inches.
 _GAP = 0.07
 
+# Width of a letter of a tick label, and space between tick labels, in units of the font size.
+_LETTER_WIDTH, _BETWEEN_LABELS = 0.5, 1.0
+
 Corner = Literal["upper left", "upper right", "lower left", "lower right", "center right", "best"]
 """Position of a legend in its panel."""
 
@@ -86,11 +89,13 @@ def write_below(figure: Figure, lines: Iterable[str], style: FigureStyle, size: 
 
 def fit_height(figure: Figure) -> None:
     """Fit the height of a figure to its panels and the lines below them. Their sizes follow from the width of the figure."""
-    figure.draw_without_rendering()
-    panels = Bbox.union([box for axes in figure.axes if (box := axes.get_tightbbox()) is not None])
-    text_height = sum(text.get_window_extent().height for text in figure.texts)
-    gaps = 2 + len(figure.texts)
-    figure.set_figheight((panels.height + text_height) / figure.dpi + gaps * _GAP)
+    # In a much higher figure, rows of panels are far apart, so the first height can be too large.
+    for _ in range(2):
+        figure.draw_without_rendering()
+        panels = Bbox.union([box for axes in figure.axes if (box := axes.get_tightbbox()) is not None])
+        text_height = sum(text.get_window_extent().height for text in figure.texts)
+        gaps = 2 + 2 * len(figure.texts)
+        figure.set_figheight((panels.height + text_height) / figure.dpi + gaps * _GAP)
 
 
 def label_axes(axes: Axes, x_label: str, y_label: str, style: FigureStyle = SCREEN) -> None:
@@ -121,6 +126,11 @@ def style_axes(
         label_axes(axes, *labels, style)
     if title:
         set_title(axes, title, style)
+
+
+def label_width(label: str) -> float:
+    """Return the approximate width of a tick label with the space around it, in units of its font size."""
+    return _LETTER_WIDTH * len(label) + _BETWEEN_LABELS
 
 
 def set_title(axes: Axes, title: str, style: FigureStyle = SCREEN) -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from engine import EscapeMap, Potential, Window, compute_statistics
 from engine.results import Sweep
-from plots.layers.map_analyses import NO_ANALYSES, MapAnalyses
+from plots.layers.layer import NO_ANALYSES, Analyses
 from plots.pictures.orbit_curves import OrbitCurves, initial_state
 from plots.pictures.palette import Palette
 from plots.pictures.time_scale import TimeScale
@@ -24,7 +24,7 @@ def map_figure_bytes(
     format: FigureFormat,
     style: FigureStyle,
     *,
-    analyses: MapAnalyses = NO_ANALYSES,
+    analyses: Analyses = NO_ANALYSES,
     starts: Sequence[tuple[float, float]] = (),
     times: TimeScale | None = None,
 ) -> bytes:

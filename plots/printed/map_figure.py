@@ -14,9 +14,9 @@ from matplotlib.colors import ListedColormap, LogNorm, Normalize
 from matplotlib.figure import Figure
 
 from engine import EscapeMap
-from plots.layers.map_analyses import NO_ANALYSES, MapAnalyses
+from plots.layers.layer import NO_ANALYSES, Analyses
 from plots.layers.map_images import picture_pixels
-from plots.layers.picture import ColourScale, ShownMap
+from plots.layers.picture import ColourScale, Legend, ShownMap
 from plots.layers.table import LAYERS, TITLES, map_legend
 from plots.pictures.palette import Palette
 from plots.pictures.provenance import provenance_line
@@ -25,6 +25,7 @@ from plots.printed.figure_axes import (
     add_legend_below,
     figure_of,
     fit_height,
+    label_width,
     legend_handles,
     new_figure,
     set_font,
@@ -42,15 +43,18 @@ _BELOW_AXIS = 3.7
 _BELOW_BAR = 3.4
 # Distance from a map to the left edge of its legend, in units of the font size.
 _LEFT_OF_AXIS = 3.0
+# Width of the labels and gaps beside a map, in units of the font size.
+_BESIDE_MAP = 6.0
 # Height of a colour bar, as a share of the side of its map.
 _BAR_HEIGHT = 0.04
-# Initial height of a row of maps with legends, before the height is fitted, in units of the width of a map with labels.
-_ROW_HEIGHT = 2.0
+# Initial height of a row of maps with legends, before the height is fitted, in units of the width of a map with labels. With less
+# height, a long legend would make the maps small.
+_ROW_HEIGHT = 4.0
 # Width of a legend, as a share of the width of a map with its labels.
 _LEGEND_WIDTH = 0.9
 # Approximate number of letters of a title as wide as its font size.
 _LETTERS_PER_EM = 2.6
-# Smallest distance between ticks of a colour bar, as a share of its length.
+# Smallest distance between ticks of an upright colour bar, as a share of its length.
 _BETWEEN_TICKS = 0.15
 
 
@@ -60,11 +64,13 @@ def draw_map_figure(
     palette: Palette,
     style: FigureStyle,
     *,
-    analyses: MapAnalyses = NO_ANALYSES,
+    analyses: Analyses = NO_ANALYSES,
     starts: Sequence[tuple[float, float]] = (),
     times: TimeScale | None = None,
 ) -> Figure:
     """Draw pictures of a map in rows, each with title, axes, curves and legend. The provenance is below all pictures.
+
+    A legend has the entries that no legend before has.
 
     Parameters
     ----------
@@ -99,12 +105,14 @@ def draw_map_figure(
     panels = figure.subplots(rows, columns, squeeze=False).ravel().tolist()
     for axes in panels[len(pictures) :]:
         axes.remove()
+    explained: set[str] = set()
     for axes, picture in zip(panels, pictures, strict=False):
         axes.set_label(picture)
         axes.set_box_aspect(1.0)
         draw_picture(axes, frame, picture, palette, analyses, time_scale, style)
         mark_starts(axes, starts, palette, frame.spec.find_window(), style)
-        _explain_picture(axes, frame, picture, palette, analyses, time_scale, style.inches / columns, style)
+        legend = map_legend(picture, ShownMap.of(frame, palette, analyses, time_scale))
+        _explain_picture(axes, legend, explained, style.inches / columns, style)
     if style.titles:
         write_below(figure, [provenance_line(frame)], style, style.smallest_size)
     set_font(figure)
@@ -118,7 +126,7 @@ def draw_picture(
     frame: EscapeMap,
     picture: str,
     palette: Palette,
-    analyses: MapAnalyses = NO_ANALYSES,
+    analyses: Analyses = NO_ANALYSES,
     times: TimeScale | None = None,
     style: FigureStyle = SCREEN,
 ) -> None:
@@ -136,48 +144,66 @@ def draw_picture(
     set_title(axes, textwrap.fill(TITLES[picture], max(1, letters)), style)
 
 
-def _explain_picture(
-    axes: Axes,
-    frame: EscapeMap,
-    picture: str,
-    palette: Palette,
-    analyses: MapAnalyses,
-    times: TimeScale,
-    width: float,
-    style: FigureStyle,
-) -> None:
-    """Draw the colour bar and the legend below a map, in a column that is `width` inches wide."""
+def _explain_picture(axes: Axes, legend: Legend, explained: set[str], width: float, style: FigureStyle) -> None:
+    """Draw the colour bar and the legend below a map, in a column that is `width` inches wide.
+
+    The legend has the entries that are not in `explained`, which gets their labels.
+    """
     depth = _BELOW_AXIS * style.font_size
-    legend = map_legend(picture, ShownMap.of(frame, palette, analyses, times))
     if legend.scale is not None:
         bar_axes = axes.inset_axes((0.0, -_BAR_HEIGHT, 1.0, _BAR_HEIGHT), transform=transform_below(axes, depth))
-        add_colour_bar(figure_of(axes), legend.scale, style, cax=bar_axes, orientation="horizontal")
+        length = width * POINTS_PER_INCH - _BESIDE_MAP * style.font_size
+        # The last label ends at the end of the bar. A letter is about half of the label before it.
+        last_label = _tick_labels(legend.scale, [legend.scale.high])[0]
+        between_ticks = label_width(f"{last_label}0") * style.small_size / length
+        add_colour_bar(figure_of(axes), legend.scale, style, between_ticks, cax=bar_axes, orientation="horizontal")
         bar_axes.get_xticklabels()[-1].set_horizontalalignment("right")
         depth += _BELOW_BAR * style.font_size
     handles = legend_handles([*legend.entries, *legend.others])
     # Matplotlib gives curves without a label names such as "_child0".
     handles += [curve for curve in axes.collections if not str(curve.get_label()).startswith("_")]
     handles += legend_handles(legend.over)
-    add_legend_below(axes, handles, (_LEFT_OF_AXIS * style.font_size, depth), _LEGEND_WIDTH * width * POINTS_PER_INCH, style)
+    handles = [handle for handle in handles if handle.get_label() not in explained]
+    explained.update(str(handle.get_label()) for handle in handles)
+    if handles:
+        place = _LEFT_OF_AXIS * style.font_size, depth
+        add_legend_below(axes, handles, place, _LEGEND_WIDTH * width * POINTS_PER_INCH, style)
 
 
-def add_colour_bar(figure: Figure, scale: ColourScale, style: FigureStyle = SCREEN, **place: Any) -> Colorbar:
-    """Add the colour bar of a scale, with `place` passed to `matplotlib.figure.Figure.colorbar`."""
+def add_colour_bar(
+    figure: Figure, scale: ColourScale, style: FigureStyle = SCREEN, between_ticks: float = _BETWEEN_TICKS, **place: Any
+) -> Colorbar:
+    """Add the colour bar of a scale.
+
+    Parameters
+    ----------
+    figure, scale, style
+        Figure, scale, and style of the ticks.
+    between_ticks
+        Smallest distance between ticks, as a share of the length of the bar.
+    **place
+        Options of `matplotlib.figure.Figure.colorbar`.
+    """
     norm = LogNorm(scale.low, scale.high) if scale.is_logarithmic else Normalize(scale.low, scale.high)
     bar = figure.colorbar(ScalarMappable(norm, ListedColormap(list(scale.colours))), **place)
-    ticks = [scale.low, *_inner_ticks(scale), scale.high]
-    # The colours at the ends stand for all smaller and all larger numbers.
-    signs = {scale.low: "≤ ", scale.high: "≥ "}
-    bar.set_ticks(ticks, labels=[f"{signs.get(tick, '')}{tick:g}" for tick in ticks])
+    ticks = [scale.low, *_inner_ticks(scale, between_ticks), scale.high]
+    bar.set_ticks(ticks, labels=_tick_labels(scale, ticks))
     bar.ax.minorticks_off()
     bar.ax.tick_params(labelsize=style.small_size)
     return bar
 
 
-def _inner_ticks(scale: ColourScale) -> list[float]:
-    """Return the powers of ten inside a logarithmic scale, not too close to its ends, or the middle of a linear scale."""
+def _tick_labels(scale: ColourScale, ticks: Sequence[float]) -> list[str]:
+    # The colours at the ends stand for all smaller and all larger numbers.
+    signs = {scale.low: "≤ ", scale.high: "≥ "}
+    return [f"{signs.get(tick, '')}{tick:g}" for tick in ticks]
+
+
+def _inner_ticks(scale: ColourScale, between: float) -> list[float]:
+    """Return powers of ten inside a logarithmic scale, not too close to its ends, or the middle of a linear scale."""
     if not scale.is_logarithmic:
         return [float(f"{0.5 * (scale.low + scale.high):.3g}")]
-    powers = [10.0**k for k in range(math.ceil(math.log10(scale.low)), math.floor(math.log10(scale.high)) + 1)]
-    least_ratio = (scale.high / scale.low) ** _BETWEEN_TICKS
+    least_ratio = (scale.high / scale.low) ** between
+    step = max(1, math.ceil(math.log10(least_ratio)))
+    powers = [10.0**k for k in range(math.ceil(math.log10(scale.low)), math.floor(math.log10(scale.high)) + 1, step)]
     return [power for power in powers if scale.low * least_ratio < power < scale.high / least_ratio]

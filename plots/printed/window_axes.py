@@ -23,13 +23,9 @@ from engine.slices.limiting_curves import trace_zero_velocity_curve
 from plots.layers.layer import Stroke
 from plots.pictures.axis_labels import label_axis
 from plots.pictures.palette import LIGHT, MARK_EDGE, Palette
-from plots.printed.figure_axes import label_axes, size_in_points, style_axes
+from plots.printed.figure_axes import label_axes, label_width, size_in_points, style_axes
 from plots.printed.figure_style import SCREEN, FigureStyle
 
-# Width of a letter of a tick label, in units of the font size.
-_LETTER_WIDTH = 0.5
-# Space between tick labels, in units of the font size.
-_BETWEEN_LABELS = 1.0
 # Dashes of exits without colours.
 _EXIT_DASHES = (0, (2.0, 1.5))
 # Width of the curves of layers in a figure, relative to their width on the web page.
@@ -162,7 +158,7 @@ def show_window(
 
 def _thin_out(ticks: list[tuple[float, str]], width: float) -> list[tuple[float, str]]:
     """Return every k-th tick so that labels do not touch. The width of the axis is in units of the font size of the labels."""
-    needed_width = sum(_LETTER_WIDTH * len(label) + _BETWEEN_LABELS for _, label in ticks)
+    needed_width = sum(label_width(label) for _, label in ticks)
     return ticks[:: max(1, math.ceil(needed_width / width))]
 
 

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 from engine import CASES, EscapeMap, MapSpec, Orbit, Plane, Slice, System, judge_orbit
 from engine.results import OrbitVerdict, Sweep
 from engine.systems.system import TYPED
-from plots.layers.map_analyses import NO_ANALYSES, MapAnalyses
+from plots.layers.layer import NO_ANALYSES, Analyses
+from plots.layers.table import LAYERS
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -23,9 +24,10 @@ MOST_ROWS = 100_000
 _COLUMNS = ("t", "x", "y", "px", "py", "sali", "lyapunov_exponent", "r2")
 
 
-def netcdf_bytes(frame: EscapeMap, analyses: MapAnalyses = NO_ANALYSES) -> bytes:
-    """Return the NetCDF file of `EscapeMap.to_xarray` with the variables of `MapAnalyses.add_to`."""
-    dataset = analyses.add_to(frame.to_xarray())
+def netcdf_bytes(frame: EscapeMap, analyses: Analyses = NO_ANALYSES) -> bytes:
+    """Return the NetCDF file of `EscapeMap.to_xarray` with the variables of the results of layers, such as ``origin``."""
+    names = ((layer, name) for layer in analyses for name in LAYERS[layer].variables)
+    dataset = frame.to_xarray().assign({name: analyses[layer].to_xarray()[name].variable for layer, name in names})
     # Shuffling and compression reduce a map to a quarter of its size, and make writing faster.
     return dataset_bytes(dataset, {name: {"zlib": True, "complevel": 1, "shuffle": True} for name in dataset.data_vars})
 

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from engine import CASES, EscapeMap, Fate, Plane, Window
-from plots.layers.map_analyses import NO_ANALYSES, MapAnalyses
+from plots.layers.layer import NO_ANALYSES, Analyses
 from plots.layers.map_images import picture_pixels
 from plots.layers.picture import ColourScale
 from plots.pictures.palette import PAPER
@@ -72,7 +72,7 @@ def draw_map_panel(
     shown: Window,
     *,
     times: TimeScale | None = None,
-    analyses: MapAnalyses = NO_ANALYSES,
+    analyses: Analyses = NO_ANALYSES,
     equal: bool = True,
 ) -> None:
     """Draw a map with its limiting curve and exits.

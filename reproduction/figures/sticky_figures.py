@@ -10,7 +10,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from engine import Plane, sample_orbits
-from plots.layers.map_analyses import MapAnalyses
 from plots.layers.regularity import REGULARITY, entries
 from plots.pictures.palette import MEASURED, PAPER, THRESHOLD
 from plots.printed.figure_axes import (
@@ -52,7 +51,7 @@ def draw_characters(cache: MapCache) -> Figure:
     title = f"Case {STICKY_CASE}, {plane_label(Plane.X_PX)} plane, $h = {STICKY_ENERGY}$: bounded orbits"
     figure = new_figure(replace(SCREEN, width=17.3), 18.3, title, equal=True)
     axes = figure.subplots()
-    draw_map_panel(axes, frame, "characters", frame.spec.find_window(), analyses=MapAnalyses({REGULARITY.name: regularity}))
+    draw_map_panel(axes, frame, "characters", frame.spec.find_window(), analyses={REGULARITY.name: regularity})
     # The first code is of escaping orbits, and the last of orbits not judged yet.
     _, *character_entries, _ = entries(PAPER)
     add_figure_legend(figure, [*legend_handles(character_entries), *axes.collections])

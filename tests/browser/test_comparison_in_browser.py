@@ -10,7 +10,7 @@ from playwright.sync_api import expect
 
 from engine import CASES, MapSpec, Plane, compute_map
 from plots.pictures.image_columns import difference_column, map_columns
-from plots.pictures.palette import PAPER, rgba
+from plots.pictures.palette import DIFFERENCES, rgba
 from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 
@@ -51,5 +51,5 @@ def test_the_comparison_follows_the_slider_without_the_server(open_explorer: Cal
     explorer = open_explorer(link=f"{QUICK}&with_case=I&with_plane=x_px&with_h=0.19")
     explorer.wait_for_data("maps", "data.difference[0].length > 1")
     explorer.drag_energy_to(0.5, let_go=False)
-    explorer.page.wait_for_function(_DIFFERENCE_IN_PREVIEW, arg=rgba([PAPER.difference_entries[1].colour])[0].tolist())
+    explorer.page.wait_for_function(_DIFFERENCE_IN_PREVIEW, arg=rgba([DIFFERENCES[1].colour])[0].tolist())
     explorer.page.mouse.up()

@@ -29,19 +29,6 @@ def counted() -> EscapeMap:
     return compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19, (112, 112), t_max=100.0))
 
 
-def test_the_statistics_are_those_of_the_map(explorer: ExplorerPage, counted: EscapeMap) -> None:
-    statistics = compute_statistics(counted)
-    explorer.pick("Statistics")
-    table = explorer.page.get_by_role("table", name="statistics")
-    expect(table).to_contain_text("Interior starts in the whole view")
-    for text in (
-        format_share(statistics.shares[1], 2),
-        format_share(statistics.direct_share, 2),
-        f"{statistics.median_escape_time:.4g}",
-    ):
-        expect(table).to_contain_text(text)
-
-
 def test_a_box_opens_the_statistics_and_can_be_removed(explorer: ExplorerPage, counted: EscapeMap) -> None:
     expect(explorer.page.get_by_role("table", name="statistics")).to_have_count(0)
     explorer.set_drag("Count")

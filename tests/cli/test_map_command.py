@@ -26,7 +26,6 @@ from engine import (
     compute_trust,
     find_stable_manifolds,
 )
-from plots.layers.map_analyses import MapAnalyses
 from plots.pictures.palette import COLOUR_BLIND_SAFE
 from plots.printed.figure_files import map_figure_bytes
 from plots.printed.figure_style import FigureFormat, FigureStyle
@@ -108,7 +107,7 @@ def test_png_equals_the_download_of_the_page(run: Run, tmp_path: Path) -> None:
     style = ("--width", 9, "--dpi", 100, "--palette", "safe")
     assert run("map", *BOUNDED, *pictures, *style, "--output", tmp_path / "map")[0] == 0
     frame = compute_map(BOUNDED_SPEC)
-    analyses = MapAnalyses({"judge": compute_regularity(frame)})
+    analyses = {"judge": compute_regularity(frame)}
     wanted = map_figure_bytes(
         frame, ("times", "characters"), COLOUR_BLIND_SAFE, FigureFormat.PNG, FigureStyle(9.0, 100.0), analyses=analyses
     )

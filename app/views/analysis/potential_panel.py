@@ -10,13 +10,13 @@ from typing import Protocol
 import panel as pn
 
 from app.browser.inputs.counted_inputs import FormulaBox, ParameterSlider
-from app.views.components.texts import StatusPane, TextPane, plain_symbol
+from app.views.components.texts import StatusPane, TextPane, describe_outcomes, plain_symbol
 from app.views.components.widgets import button, flex_row
 from engine import System
 from engine.foundations.wording import format_number
 from engine.results import PotentialReview
 from engine.systems.catalogue.table import CATALOGUE
-from engine.systems.formulas.formula_parser import LARGEST_VALUE, LONGEST_TEXT, formula_letters
+from engine.systems.formulas.formula_parser import LARGEST_VALUE, LONGEST_TEXT
 from engine.systems.parameters import WELL_PARAMETERS
 from engine.systems.review.potential_review import SystemReview
 from engine.systems.system import TYPED
@@ -128,7 +128,7 @@ class PotentialPanel:
 
     def _show_letters(self, system: System) -> None:
         """Show a slider for each letter of the formula. The slider of a letter that remains keeps its range."""
-        letters = tuple(name for name in _parameter_names(system) if name not in WELL_PARAMETERS)
+        letters = tuple(name for name in system.parameter_names if name not in WELL_PARAMETERS)
         if letters != tuple(self.letter_sliders):
             previous_sliders = self.letter_sliders
             self.letter_sliders = {
@@ -148,7 +148,8 @@ class PotentialPanel:
         """Show the properties of the system of the widgets. Add a note, or the reason why the maps cannot show the system."""
         problem = refusal(reviewed)
         self.typeset.object = potential_formula(reviewed.potential)
-        accepted = f"<p>{_channels(reviewed)}</p><p class='quiet'>{escape(note)}</p>"
+        ends = "Orbits end at: " if reviewed.potential.ends else ""
+        accepted = f"<p>{ends}{describe_outcomes(reviewed.potential)}</p><p class='quiet'>{escape(note)}</p>"
         self._write(_alert(problem) if problem else accepted)
         self._offer(reviewed.well if problem else None)
         self.facts.object = _points(reviewed) + _remarks(reviewed)
@@ -188,7 +189,7 @@ class PotentialPanel:
         """Show a system in all widgets except the formula, which is being typed."""
         self.shown = system
         self.known.value = system.case
-        names = _parameter_names(system)
+        names = system.parameter_names
         for name, slider in self.sliders.items():
             slider.visible = name in names
             slider.show(system.value_of(name))
@@ -236,34 +237,12 @@ def _text(system: System) -> str:
 
 def _typed(text: str, previous: System) -> System:
     """Return the system of a typed formula. Its parameters have their values in the previous system."""
-    return System(TYPED, text, {name: previous.value_of(name) for name in (*WELL_PARAMETERS, *_letters(text))})
-
-
-def _letters(text: str) -> tuple[str, ...]:
-    """Return the letters of a formula; empty if it cannot be parsed."""
-    try:
-        return formula_letters(text)
-    except ValueError:
-        return ()
-
-
-def _parameter_names(system: System) -> tuple[str, ...]:
-    """Return the parameters of a system, even if its formula cannot be parsed."""
-    return (*WELL_PARAMETERS, *_letters(system.formula)) if system.case == TYPED else system.parameter_names
+    typed = System(TYPED, text)
+    return replace(typed, parameters={name: previous.value_of(name) for name in typed.parameter_names})
 
 
 def _alert(sentence: str) -> str:
     return f"<div class='alert'>{escape(sentence)}</div>"
-
-
-def _channels(review: PotentialReview) -> str:
-    if review.potential.ends:
-        labels = ", ".join(outcome.label for outcome in review.potential.outcomes)
-        opened = f"; exits open above h = {format_number(review.escape_energy)}" if review.channels else ""
-        return f"Orbits end at: {labels}{opened}"
-    if not review.channels:
-        return "no exits"
-    return f"{review.channels} exits above the escape energy h = {format_number(review.escape_energy)}"
 
 
 def _points(review: PotentialReview) -> str:

@@ -12,6 +12,7 @@ import param
 from panel.custom import JSComponent
 
 from app.job_clients.latest_request import Locked
+from app.state.navigation import WINDOW_MOVES
 from app.state.view import PICTURES
 from app.state.view_state import ViewState
 from plots.layers import table
@@ -21,22 +22,9 @@ _TITLES = {"well": "the well"} | {name: picture.title for name, picture in table
 PICTURE_KEYS: Mapping[str, str] = MappingProxyType({str(number): name for number, name in enumerate(PICTURES, 1)})
 """The picture that each key enlarges. A second press shows the picture at its usual size again."""
 
-WINDOW_KEYS: Mapping[str, str] = MappingProxyType(
-    {
-        "ArrowLeft": "move left",
-        "ArrowRight": "move right",
-        "ArrowUp": "move up",
-        "ArrowDown": "move down",
-        "+": "zoom in",
-        "-": "zoom out",
-        "h": "whole plane",
-    }
-)
-"""The action of each key that moves the window, by the key's name in `KeyboardEvent.key`."""
-
 KEYS: Mapping[str, str] = MappingProxyType(
     {
-        **WINDOW_KEYS,
+        **{key: move.words for key, move in WINDOW_MOVES.items()},
         "b": "back",
         "f": "forward",
         "p": "play or stop the energy",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable
 
 from app.runtime.capacity import Capacity, ProcessorTimes
@@ -9,6 +10,7 @@ from app.runtime.process_state import ProcessState, process_state
 from app.runtime.settings import Settings
 from engine.jobs.manager import Jobs
 from tests.app.clock import Clock
+from tests.app.other_loop import run_on_new_loop
 
 
 def test_settings_reach_the_jobs_of_the_process(start_state: Callable[..., ProcessState]) -> None:
@@ -39,3 +41,28 @@ def test_work_is_postponed_while_pages_may_take_more_processor_time_than_there_i
         state.adapt_to_load()
     assert jobs.preferences == [False, True, False]
     assert not state.is_crowded()
+
+
+class Iterations:
+    """Counts the iterations of the running event loop."""
+
+    def __init__(self) -> None:
+        self.count = 0
+        self._count_next()
+
+    def _count_next(self) -> None:
+        self.count += 1
+        asyncio.get_running_loop().call_soon(self._count_next)
+
+
+def test_pages_that_wait_at_once_have_their_turns_in_different_iterations_of_the_loop() -> None:
+    async def scenario() -> None:
+        state, iterations, pages = ProcessState(Settings()), Iterations(), 5
+
+        async def take_turn() -> int:
+            await state.next_turn()
+            return iterations.count
+
+        assert len({*await asyncio.gather(*(take_turn() for _ in range(pages)))}) == pages
+
+    run_on_new_loop(scenario)

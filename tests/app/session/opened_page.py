@@ -18,6 +18,7 @@ from panel.io.application import Application
 from panel.io.state import set_curdoc
 from tornado.httputil import HTTPHeaders, HTTPServerRequest, RequestStartLine
 
+from app.runtime.process_state import process_state
 from app.session.explorer import Explorer
 from app.session.page import explorer_page
 from tests.waiting import SECONDS
@@ -91,4 +92,5 @@ async def wait_for(watched: param.Parameterized, name: str, condition: Callable[
 async def run_callbacks(session: ServerSession) -> None:
     """Run the callbacks that wait for the session's lock, and the callbacks that these begin."""
     for _ in range(2):
+        await process_state().next_turn()
         await session.with_document_locked(lambda: None)

@@ -16,7 +16,7 @@ from app.state.view_state import ViewState
 from app.views.analysis.curves import REFINED_VALUES, SWEPT_VALUES
 from engine import CASES, EscapeMap, MapSpec, Plane, System, Trust, Window, compute_map
 from engine.jobs.manager import Jobs
-from plots.layers.map_analyses import MapAnalyses
+from plots.layers.layer import Analyses
 from plots.layers.table import LAYERS
 from plots.pictures.palette import CLEAR
 from tests.app.map_actions import make_maps
@@ -38,8 +38,8 @@ class Session:
         self.opened = system, values
 
     @property
-    def analyses(self) -> MapAnalyses:
-        found: MapAnalyses = self.context.results.analyses
+    def analyses(self) -> Analyses:
+        found: Analyses = self.context.results.analyses
         return found
 
     def show(self, frame: EscapeMap) -> None:
@@ -106,12 +106,12 @@ def test_doubtful_pixels_are_marked_until_the_layer_is_off_or_the_map_changes(
     np.testing.assert_array_equal(marks != CLEAR, session.analyses["trust"].trust == Trust.DOUBTFUL)
     assert "doubtful" in session.presenter.notes.object
     session.show(unfinished(frame, 0.26))
-    assert session.analyses == MapAnalyses()
+    assert session.analyses == {}
     session.show(frame)
     session.wait_for(lambda: "trust" in session.analyses)
     session.state.layers = frozenset()
     shown = session.maps.source.data["trust"][0].size
-    assert (session.analyses, shown, session.presenter.notes.object) == (MapAnalyses(), 1, "")
+    assert (session.analyses, shown, session.presenter.notes.object) == ({}, 1, "")
 
 
 def test_all_images_of_manifolds_or_one_are_drawn_over_their_section(begin: Callable[..., Session], frame: EscapeMap) -> None:
@@ -129,20 +129,6 @@ def test_all_images_of_manifolds_or_one_are_drawn_over_their_section(begin: Call
         numbers.append(len(shown))
         assert len(session.maps.overlays.curves["manifolds"].data["xs"]) == len(shown)
     assert 0 < numbers[0] < numbers[1] < numbers[2]
-
-
-def test_origins_and_regularity_have_pictures_while_they_are_switched_on(begin: Callable[..., Session], frame: EscapeMap) -> None:
-    session = begin(layers=frozenset({"origins", "judge"}))
-    session.maps.show(frame, {**session.maps.source.data})
-    session.show(frame)
-    session.wait_for(lambda: {*session.analyses} == {"origins", "judge"})
-    assert session.maps.source.data["passage"][0].shape == frame.fate.shape
-    grid = session.maps.grid.layout()
-    pictures = len(grid.objects)
-    session.state.layers = frozenset({"judge"})
-    assert len(grid.objects) == pictures - 1
-    session.state.layers = frozenset()
-    assert session.analyses == MapAnalyses()
 
 
 def test_a_picture_says_that_its_layer_is_being_computed_until_it_is(begin: Callable[..., Session]) -> None:

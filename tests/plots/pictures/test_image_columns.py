@@ -16,6 +16,7 @@ from engine import (
     Plane,
     compute_map,
 )
+from plots.layers.table import PICTURES
 from plots.pictures import palette
 from plots.pictures.image_columns import (
     difference_column,
@@ -34,7 +35,7 @@ def escape_map() -> EscapeMap:
 
 
 def test_every_pixel_has_the_colour_of_its_fate(escape_map: EscapeMap) -> None:
-    colours = np.array(PAPER.fate_colours)[map_columns(escape_map)["fate"][0]]
+    colours = np.array(PICTURES["basins"].colours(PAPER))[map_columns(escape_map)["fate"][0]]
     for channel in (1, 2, 3):
         assert set(colours[escape_map.fate == channel]) == {PAPER.channels[channel - 1]}
     for fate in (Fate.BOUNDED, Fate.FORBIDDEN, Fate.OUTSIDE):
@@ -43,7 +44,7 @@ def test_every_pixel_has_the_colour_of_its_fate(escape_map: EscapeMap) -> None:
 
 def test_a_collision_has_a_colour_and_words_of_its_own() -> None:
     columns, fate = map_columns(frame := disc_map()), frame.fate
-    assert set(np.array(PAPER.fate_colours)[columns["fate"][0]][fate == 3]) == {PAPER.of_kinds["collision"][0]}
+    assert set(np.array(PICTURES["basins"].colours(PAPER))[columns["fate"][0]][fate == 3]) == {PAPER.of_kinds["collision"][0]}
     (code,) = set(columns["fate"][0][fate == 3].tolist())
     assert columns["ends"][0][code - len(OUTCOMES)] == "collides with a disc"
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from io import BytesIO
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from matplotlib import ft2font
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties, findfont
 from PIL import Image, ImageColor
 
@@ -26,7 +28,6 @@ from engine import (
     compute_trust,
     find_stable_manifolds,
 )
-from plots.layers.map_analyses import MapAnalyses
 from plots.layers.map_images import picture_pixels
 from plots.layers.regularity import entries as entries_of_regularity
 from plots.layers.table import TITLES
@@ -127,6 +128,34 @@ def test_everything_is_inside_the_figure_and_nothing_overlaps(style: FigureStyle
         assert not any(box.overlaps(other) for other in boxes[:number])
 
 
+@pytest.fixture(scope="module")
+def three_maps() -> Figure:
+    """A figure as wide as a page, with many entries in its legends."""
+    whole = compute_map(MapSpec(CASES["III"], Plane.X_Y, 0.3, (30, 30), t_max=1000.0))
+    trust = {"trust": compute_trust(whole)}
+    figure = draw_map_figure(whole, ["basins", "times", "crossings"], PAPER, FigureStyle(), analyses=trust)
+    figure.draw_without_rendering()
+    return figure
+
+
+def test_long_legends_leave_maps_their_width(three_maps: Figure) -> None:
+    column = three_maps.bbox.width / 3
+    assert all(axes.get_window_extent().width > 0.65 * column for axes in three_maps.axes)
+
+
+def test_labels_of_a_narrow_colour_bar_do_not_touch(three_maps: Figure) -> None:
+    (bar,) = three_maps.axes[1].child_axes
+    boxes = [label.get_window_extent() for label in bar.get_xticklabels()]
+    assert all(left.x1 < right.x0 for left, right in pairwise(boxes))
+
+
+def test_an_entry_is_in_one_legend_of_a_figure(three_maps: Figure) -> None:
+    legends = [legend for axes in three_maps.axes if (legend := axes.get_legend())]
+    labels = [text.get_text() for legend in legends for text in legend.get_texts()]
+    assert {"exit 1", "bounded", "limiting curve", "> 10", "doubtful pixels"} < set(labels)
+    assert len(set(labels)) == len(labels)
+
+
 def test_a_figure_without_titles_has_no_provenance_either(escape_map: EscapeMap) -> None:
     figure = draw_map_figure(escape_map, ["basins"], PAPER, FigureStyle(titles=False))
     assert [axes.get_title(loc="left") for axes in figure.axes] == [""]
@@ -200,18 +229,18 @@ def test_the_fonts_have_every_character_of_the_texts(escape_map: EscapeMap) -> N
 def test_doubtful_pixels_are_marked_and_have_an_entry() -> None:
     whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.2, (60, 60), t_max=500.0))
     trust = compute_trust(whole)
-    pixels = picture_pixels(whole, "basins", PAPER, MapAnalyses({"trust": trust}))[::-1]
+    pixels = picture_pixels(whole, "basins", PAPER, {"trust": trust})[::-1]
     marked = [np.all(pixels == rgba(tone), axis=-1) for tone in TONES]
     np.testing.assert_array_equal(marked[0] | marked[1], trust.trust == Trust.DOUBTFUL)
     assert all(tone.any() for tone in marked)
-    legend = draw_map_figure(whole, ["basins"], PAPER, STYLE, analyses=MapAnalyses({"trust": trust})).axes[0].get_legend()
+    legend = draw_map_figure(whole, ["basins"], PAPER, STYLE, analyses={"trust": trust}).axes[0].get_legend()
     assert legend is not None
     assert "doubtful pixels" in [text.get_text() for text in legend.get_texts()]
 
 
 def draw_with_manifolds(picture: str) -> Axes:
     whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.3, (60, 60), t_max=100.0))
-    found = MapAnalyses({"manifolds": find_stable_manifolds(CASES["II"], 0.3, images=1)})
+    found = {"manifolds": find_stable_manifolds(CASES["II"], 0.3, images=1)}
     return draw_map_figure(whole, [picture], PAPER, STYLE, analyses=found).axes[0]
 
 
@@ -234,7 +263,7 @@ def test_manifolds_are_not_drawn_over_escape_times() -> None:
 
 
 def test_locked_limits_are_used_for_the_pixels_and_the_colour_bar(escape_map: EscapeMap) -> None:
-    figure = draw_map_figure(escape_map, ["times"], PAPER, STYLE, times=TimeScale(2.5, 5000.0))
+    figure = draw_map_figure(escape_map, ["times"], PAPER, FigureStyle(12.0), times=TimeScale(2.5, 5000.0))
     np.testing.assert_array_equal(
         figure.axes[0].images[0].get_array(), picture_pixels(escape_map, "times", PAPER, times=TimeScale(2.5, 5000.0))
     )

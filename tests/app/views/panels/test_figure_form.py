@@ -26,7 +26,6 @@ from engine import (
     compute_sweep,
     integrate_orbit,
 )
-from plots.layers.map_analyses import MapAnalyses
 from plots.pictures.orbit_curves import compute_orbit_curves
 from plots.printed.figure_style import FigureFormat, FigureStyle
 from tests.app.browser_messages import send
@@ -44,7 +43,7 @@ def shown(escape_map: EscapeMap) -> ShownResults:
     """Results of every kind that can be drawn."""
     curves = compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.2, 0.3), (12, 12), t_max=100.0, measures="shares"))
     orbit = compute_orbit_curves(CASES["I"], integrate_orbit(CASES["I"], (0.1, 0.0, 0.05, 0.6), 50.0))
-    analyses = MapAnalyses({"judge": compute_regularity(escape_map)})
+    analyses = {"judge": compute_regularity(escape_map)}
     return ShownResults(frame=escape_map, analyses=analyses, orbits=(ChosenOrbit((0.1, 0.05), orbit),), curves=curves)
 
 
