@@ -243,7 +243,7 @@ def test_figures_do_not_overlap(open_explorer: OpenExplorer, width: int, touch: 
     expect(explorer.page.get_by_role("heading", name="Escapes after n crossings")).to_be_visible()
     assert_apart(explorer, set(), width)
     explorer.pick("Measures")
-    explorer.wait_for_data("survival_steps", "data.t.length > 1")
+    explorer.wait_for_data("survival_lines", "data.xs.length && data.xs[0].length > 1")
     assert_apart(explorer, {"survival"}, width)
 
 

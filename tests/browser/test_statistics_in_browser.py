@@ -12,13 +12,12 @@ from tests.browser.explorer_page import ExplorerPage
 _BAR = """name => {
     for (const view of Bokeh.index.all_views()) {
         if (view.model.type !== 'Figure' || !view.model.elements.some(one => one.html?.includes(`help-${name}`))) continue
-        const renderer = view.model.renderers[0]
+        const renderer = view.model.renderers.at(-1)
         view.el.scrollIntoView({block: "center"})
         const box = view.canvas_view.el.getBoundingClientRect()
         const {data} = renderer.data_source
         const tall = values => [...values].indexOf(Math.max(...values))
-        const bar = tall(data.top ?? data.p)
-        const x = data.left ? Math.sqrt(data.left[bar] * data.right[bar]) : data.n[bar]
+        const x = data.x[tall(data.y)]
         return [box.left + view.frame.x_scale.compute(x), box.top + view.frame.bbox.bottom - 8]
     }
 }"""

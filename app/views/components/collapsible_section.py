@@ -1,8 +1,9 @@
-"""Parts of the page whose content is built when it is first shown: stacks, folds and drawers."""
+"""Parts of the page that are built when they are first shown: stacks, folds and drawers, and parts that are built one by one."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections import deque
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import panel as pn
@@ -12,6 +13,9 @@ from app.views.components.widgets import FULL_HEIGHT, button
 
 Build = Callable[[], Sequence[pn.viewable.Viewable]]
 """Makes the content of a section."""
+
+Later = Callable[[Callable[[], None]], Callable[[], None]]
+"""Wraps a function so that it runs in a later iteration of the event loop."""
 
 
 class Stack:
@@ -132,3 +136,31 @@ class Drawers(Stack):
             return [pn.Row(head, close, sizing_mode="stretch_width", margin=0), *build()]
 
         return build_all
+
+
+class InTurns:
+    """Makes parts when they are needed. Between two parts, the server can serve other pages.
+
+    Parameters
+    ----------
+    makes
+        Functions that make the parts.
+    add
+        Adds a new part to the page.
+    later
+        Wraps a function to run in a later iteration of the event loop.
+    """
+
+    def __init__(self, makes: Iterable[Build], add: Callable[[Sequence[pn.viewable.Viewable]], None], later: Later) -> None:
+        self._missing, self._add = deque(makes), add
+        self._continue = later(self._make_next)
+
+    def begin(self) -> None:
+        """Make the parts that do not exist yet."""
+        if self._missing:
+            self._continue()
+
+    def _make_next(self) -> None:
+        if self._missing:
+            self._add(self._missing.popleft()())
+            self.begin()

@@ -10,7 +10,7 @@ import pytest
 from app.state.view_state import ViewState
 from app.views.analysis.basin_measures import BasinMeasuresView
 from engine import CASES, MapSpec, Window, compute_basin_entropy, compute_map
-from engine.sweeps.points import measure_map
+from engine.sweeps.measures import measure_map
 from tests.results import result_of
 
 
@@ -61,7 +61,7 @@ def test_a_measure_without_numbers_has_its_sentence_in_view(state: ViewState) ->
 def test_a_measured_exponent_has_its_chart_until_there_is_another_map(view: BasinMeasuresView) -> None:
     view.show("uncertainty_exponent", result_of("exponent"))
     assert "α" in view.text.object
-    assert len(view.uncertainty.pairs.data["share"]) > 5
+    assert len(view.uncertainty.points.data["y"]) > 5
     assert view.uncertainty.view.visible
     view.begin()
     assert not view.uncertainty.view.visible
