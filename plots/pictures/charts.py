@@ -185,7 +185,7 @@ def probabilities_chart(statistics: EscapeStatistics) -> Chart:
     """Return the chart of the escape probability after each number of crossings."""
     probabilities = statistics.escape_probabilities[: MOST_CROSSINGS + 1]
     n = np.arange(probabilities.size, dtype=float)
-    bars = Series("", MEASURED, n, probabilities, Shape.BARS, (n - 0.4, n + 0.4))
+    bars = Series("", MEASURED, n, probabilities, Shape.BARS, (n - 0.5, n + 0.5))
     highest = max(probabilities, default=0.0) or 1.0
     return Chart(PROBABILITIES, [bars], ((-0.6, MOST_CROSSINGS + 0.6), (0.0, 1.05 * float(highest))))
 

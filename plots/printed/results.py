@@ -99,33 +99,17 @@ def to_holoviews(result: Result) -> Any:
     require_package("holoviews", "page")
     import holoviews as hv
 
+    from plots.pictures.holoviews_elements import chart_elements
+
     if isinstance(result, EscapeMap | PixelAnalysis):
         return hv.Dataset(result.to_xarray()).to(hv.Image, list(result.spec.plane.axis_names))
     if charts := _find_charts(result, PAPER):
-        return hv.Layout([hv.Overlay(_list_elements(chart)) for chart in charts]).cols(2)
+        return hv.Layout([hv.Overlay(chart_elements(chart)) for chart in charts]).cols(2)
     table = result.to_pandas()
     if result.row_dimension:
         table = table.rename_axis(result.row_dimension).reset_index()
     index, *value_names = table.columns
     return hv.Overlay([hv.Curve(table, index, name, label=name) for name in value_names if table[name].dtype.kind in "if"])
-
-
-def _list_elements(chart: Chart) -> list[Any]:
-    """Return HoloViews elements of the series of a chart."""
-    import holoviews as hv
-
-    x, y = chart.frame.labels
-    elements: list[Any] = []
-    for series in chart.series:
-        low, high = series.bars or (series.y, series.y)
-        if series.shape is Shape.BARS:
-            elements.append(hv.Histogram((np.append(low, high[-1:]), series.y), kdims=x, vdims=y))
-            continue
-        kind = hv.Scatter if series.shape is Shape.POINTS else hv.Curve
-        elements.append(kind(series.curve, x, y, label=series.label))
-        if series.bars is not None:
-            elements.append(hv.ErrorBars((series.x, series.y, series.y - low, high - series.y), x, [y, "below", "above"]))
-    return elements
 
 
 def _find_charts(result: Result, palette: Palette) -> list[Chart]:

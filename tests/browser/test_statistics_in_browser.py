@@ -17,7 +17,8 @@ _BAR = """name => {
         const box = view.canvas_view.el.getBoundingClientRect()
         const {data} = renderer.data_source
         const tall = values => [...values].indexOf(Math.max(...values))
-        const x = data.x[tall(data.y)]
+        const bar = tall(data.top)
+        const x = 0.5 * (data.left[bar] + data.right[bar])
         return [box.left + view.frame.x_scale.compute(x), box.top + view.frame.bbox.bottom - 8]
     }
 }"""

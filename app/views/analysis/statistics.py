@@ -10,7 +10,7 @@ import panel as pn
 from app.job_clients.shown_results import ShownResults
 from app.state.view import Analysis
 from app.state.view_state import ViewState
-from app.views.components.charts import ChartView
+from app.views.components.histograms import HistogramView
 from app.views.components.legends import patch
 from app.views.components.texts import TextPane, escape_facts
 from app.views.components.widgets import COUNT_WHOLE, button, copy_button
@@ -18,14 +18,12 @@ from engine import EscapeMap, Fate, compute_statistics
 from engine.foundations.wording import format_share, format_share_range
 from engine.propagation.fates import UNRESOLVED
 from engine.results import EscapeStatistics
-from plots.pictures.charts import PROBABILITIES, TIMES, Shape, probabilities_chart, times_chart
+from plots.pictures.charts import PROBABILITIES, TIMES, probabilities_chart, times_chart
 
-_TIMES_TEXT = "<b>@y{count} starts</b> escape<br>from t = @low{number} to @high{number}"
+_TIMES_TEXT = "<b>@top{count} starts</b> escape<br>from t = @left{number} to @right{number}"
 _PROBABILITIES_TEXT = (
-    "n = @x{count} upward crossings:<br><b>@y{percent}</b> of the orbits still inside<br>escape before the next one"
+    "n = $x{count} upward crossings:<br><b>@top{percent}</b> of the orbits still inside<br>escape before the next one"
 )
-# Width of the charts over their height.
-_ASPECT = 1.6
 
 
 class StatisticsView:
@@ -45,8 +43,8 @@ class StatisticsView:
         self._state = state
         self._frame: EscapeMap | None = None
         self._is_built = False
-        self._times = ChartView(TIMES, _TIMES_TEXT, Shape.BARS, aspect_ratio=_ASPECT)
-        self._probabilities = ChartView(PROBABILITIES, _PROBABILITIES_TEXT, Shape.BARS, aspect_ratio=_ASPECT)
+        self._times = HistogramView(TIMES, _TIMES_TEXT)
+        self._probabilities = HistogramView(PROBABILITIES, _PROBABILITIES_TEXT)
         self.table = TextPane("", name="statistics", sizing_mode="stretch_width")
         self.whole = button(COUNT_WHOLE, lambda: state.param.update(box=None))
         self.copy = copy_button(self._rows, on_copy)

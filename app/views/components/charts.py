@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
@@ -10,11 +9,9 @@ from typing import Any
 import numpy as np
 import panel as pn
 from bokeh.events import Event
-from bokeh.models import ColumnDataSource, CustomJSTickFormatter, FixedTicker, MultiLine, Quad, Range1d, Scatter, Segment, Span
+from bokeh.models import ColumnDataSource, MultiLine, Range1d, Scatter, Segment, Span
 from bokeh.plotting import figure
 
-from app.browser.javascript import callback_code
-from app.browser.module_files import NUMBERS
 from app.views.components.legends import legend
 from app.views.components.plots import FigurePane, chart_hover, set_range, square_figure
 from app.views.components.texts import TextPane
@@ -24,11 +21,6 @@ from plots.pictures.palette import THRESHOLD
 _POINT_COLUMNS = ("x", "y", "low", "high", "colour", "label")
 _LINE_COLUMNS = ("xs", "ys", "colour", "dash", "label")
 _DASHES = {Shape.DASHED: "8 8"}
-# Shapes that are not drawn as lines.
-_WITHOUT_LINE = (Shape.POINTS, Shape.BARS)
-_TICK = callback_code(NUMBERS, "number(tick)")
-# Largest number of labels of the axis of a histogram.
-_MOST_TICKS = 5
 
 
 class ChartView:
@@ -41,7 +33,7 @@ class ChartView:
     text
         Text of the points or lines under the mouse, see `chart_hover`; its columns are x, y, low, high and label.
     described
-        The described shapes: Shape.LINE for all lines, Shape.POINTS for all points, or Shape.BARS.
+        The described shapes: Shape.LINE for all lines, or Shape.POINTS for all points.
     x_range
         The range of x; None for a range of the chart's own.
     **options
@@ -56,7 +48,6 @@ class ChartView:
         self.y_range = _first_range("y" in frame.logarithmic)
         self.lines = ColumnDataSource({name: [] for name in _LINE_COLUMNS}, name=f"{frame.name}_lines")
         self.points = ColumnDataSource({name: [] for name in _POINT_COLUMNS}, name=f"{frame.name}_points")
-        self._ticker = FixedTicker(ticks=[])
         self._key = TextPane(margin=(0, 10))
         self._labels = frame.labels
         self.plot: figure | None = None
@@ -71,7 +62,6 @@ class ChartView:
         for edges, limits in zip((self.x_range, self.y_range), chart.limits, strict=True):
             if limits is not None:
                 set_range(edges, *limits)
-        self._ticker.ticks = _few_ticks(self.x_range.start, self.x_range.end) if "x" in self.frame.logarithmic else []
         entries = chart.legend()
         self._key.param.update(object=legend(entries), visible=bool(entries))
         self._labels = chart.frame.labels
@@ -90,15 +80,9 @@ class ChartView:
         ranges = {"x_range": self.x_range, "y_range": self.y_range}
         plot = square_figure(frame.name, frame.title, x_axis_label=" ", **ranges, **scales, **self._options)
         lines = plot.add_glyph(self.lines, MultiLine(line_color="colour", line_dash="dash", line_width=2))
-        if self._described is Shape.BARS:
-            bars = Quad(left="low", right="high", bottom=0.0, top="y", fill_color="colour", line_color=None)
-            points = plot.add_glyph(self.points, bars)
-            if "x" in frame.logarithmic:
-                plot.xaxis.update(ticker=self._ticker, formatter=CustomJSTickFormatter(code=_TICK))
-        else:
-            ends = {"x0": "x", "x1": "x", "y0": "low", "y1": "high"}
-            plot.add_glyph(self.points, Segment(**ends, line_color="colour", line_alpha=0.6))
-            points = plot.add_glyph(self.points, Scatter(x="x", y="y", size=6, fill_color="colour", line_color="colour"))
+        ends = {"x0": "x", "x1": "x", "y0": "low", "y1": "high"}
+        plot.add_glyph(self.points, Segment(**ends, line_color="colour", line_alpha=0.6))
+        points = plot.add_glyph(self.points, Scatter(x="x", y="y", size=6, fill_color="colour", line_color="colour"))
         if self._described is Shape.LINE:
             plot.add_tools(chart_hover(self._text, [lines], line_policy="nearest"))
         else:
@@ -119,7 +103,7 @@ def _first_range(is_logarithmic: bool) -> Range1d:
 
 
 def _line_columns(series: Sequence[Series]) -> dict[str, list[Any]]:
-    lines = sorted((one for one in series if one.shape not in _WITHOUT_LINE), key=lambda one: one.shape is Shape.DASHED)
+    lines = sorted((one for one in series if one.shape is not Shape.POINTS), key=lambda one: one.shape is Shape.DASHED)
     x, y = ([one.curve[axis] for one in lines] for axis in (0, 1))
     dashes = [_DASHES.get(one.shape, "solid") for one in lines]
     return {"xs": x, "ys": y, "colour": [one.colour for one in lines], "dash": dashes, "label": [one.label for one in lines]}
@@ -132,10 +116,3 @@ def _point_columns(series: Sequence[Series]) -> dict[str, Any]:
     counts = [one.x.size for one in drawn]
     colours, labels = (np.repeat([getattr(one, name) for one in drawn], counts).tolist() for name in ("colour", "label"))
     return {"x": x, "y": y, "low": low, "high": high, "colour": colours, "label": labels}
-
-
-def _few_ticks(low: float, high: float) -> list[float]:
-    """Return 1, 2 and 5 times the powers of ten from `low` to `high`; only the powers if these would be too many labels."""
-    decades = [10.0**k for k in range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)]
-    fine_ticks, powers = ([m * ten for ten in decades for m in steps if low <= m * ten <= high] for steps in ((1, 2, 5), (1,)))
-    return fine_ticks if len(fine_ticks) <= _MOST_TICKS else powers

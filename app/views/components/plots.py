@@ -135,17 +135,21 @@ def square_figure(name: str, title: str, **options: Any) -> figure:
         Options of `bokeh.plotting.figure`.
     """
     defaults = {"tools": "", "toolbar_location": None, "aspect_ratio": 1, **_CHART_BORDERS}
-    plot = figure(name=name, title=None, sizing_mode="scale_width", **(defaults | options))
-    plot.center = []
+    plot = figure(title=None, **(defaults | options))
+    style_chart(plot, name, title)
+    return plot
+
+
+def style_chart(plot: figure, name: str, title: str) -> None:
+    """Give a figure the style of all charts, its name, and its title with a help text; see `square_figure`."""
+    plot.update(name=name, sizing_mode="scale_width", center=[], background_fill_alpha=0.0, border_fill_alpha=0.0)
     # `plot.axis` would search all models of the figure for each attribute.
     for axis in (*plot.below, *plot.left):
         axis.update(axis_label_text_font_size="12px", major_label_text_font_size="12px", axis_label_text_font_style="normal")
         axis.update(major_tick_line_color=None, major_tick_out=2, minor_tick_line_color=None, minor_tick_out=0)
-    plot.background_fill_alpha = plot.border_fill_alpha = 0.0
     plot.css_classes = [name]
     plot.html_attributes = {"role": "group", "aria-label": title}
     plot.elements = [HTML(html=title_with_help(title, name))]
-    return plot
 
 
 class FigurePane(pn.pane.Bokeh):

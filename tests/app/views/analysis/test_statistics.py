@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import panel as pn
 import pytest
 from bokeh.plotting import figure
 
@@ -43,7 +42,7 @@ def view(state: ViewState, results: ShownResults, frame: EscapeMap) -> Statistic
 @pytest.fixture(autouse=True)
 def charts(view: StatisticsView) -> list[figure]:
     """The figures of the section after building it."""
-    return [part.objects[0].object for part in view.build()[1:] if isinstance(part, pn.Column)]
+    return [part.get_root().children[0] for part in view.build()[1:]]
 
 
 def test_the_charts_count_every_escape(state: ViewState, view: StatisticsView, charts: list[figure], frame: EscapeMap) -> None:
@@ -52,8 +51,8 @@ def test_the_charts_count_every_escape(state: ViewState, view: StatisticsView, c
     state.analysis = Analysis.STATISTICS
     statistics = compute_statistics(frame)
     times, probabilities = (chart.renderers[-1].data_source.data for chart in charts)
-    assert times["y"].sum() == statistics.escaped
-    assert probabilities["y"][0] == pytest.approx(statistics.direct_share)
+    assert times["top"].sum() == statistics.escaped
+    assert probabilities["top"][0] == pytest.approx(statistics.direct_share)
 
 
 @pytest.mark.parametrize("box", [None, BOX])

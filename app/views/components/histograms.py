@@ -1,0 +1,95 @@
+"""Histograms of the page, which HoloViews draws from `plots.pictures.charts.Chart`."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import holoviews as hv
+import numpy as np
+import panel as pn
+from bokeh.models import CustomJSTickFormatter
+
+from app.browser.javascript import callback_code
+from app.browser.module_files import NUMBERS
+from app.views.components.plots import chart_hover, style_chart
+from plots.pictures.charts import Chart, Frame, Series, Shape
+from plots.pictures.holoviews_elements import chart_elements
+from plots.pictures.palette import MEASURED
+
+_TICK = callback_code(NUMBERS, "number(tick)")
+# Largest number of labels of a logarithmic axis.
+_MOST_TICKS = 5
+# Width of a histogram over its height.
+_ASPECT = 1.6
+
+
+class HistogramView:
+    """A histogram, which changes with its chart.
+
+    Parameters
+    ----------
+    frame
+        Frame of the charts.
+    text
+        Text of the bar under the mouse, see `chart_hover`; its columns are left, right and top.
+    """
+
+    def __init__(self, frame: Frame, text: str) -> None:
+        self._frame, self._text = frame, text
+        self._charts = hv.streams.Pipe(data=_empty_chart(frame))
+
+    def show(self, chart: Chart) -> None:
+        """Show a chart."""
+        self._charts.send(chart)
+
+    def build(self) -> pn.pane.HoloViews:
+        """Return the pane with the histogram."""
+        return pn.pane.HoloViews(hv.DynamicMap(self._draw, streams=[self._charts]), margin=0, sizing_mode="stretch_width")
+
+    def _draw(self, data: Chart) -> hv.Histogram:
+        (element,) = chart_elements(data)
+        x_limits, y_limits = data.limits
+        scale: dict[str, Any] = {}
+        if "x" in self._frame.logarithmic and x_limits is not None:
+            scale = {"logx": True, "xticks": _few_ticks(*x_limits), "xformatter": CustomJSTickFormatter(code=_TICK)}
+        return element.opts(
+            color=MEASURED,
+            line_color=None,
+            xlim=x_limits,
+            ylim=y_limits,
+            framewise=True,
+            responsive=True,
+            aspect=_ASPECT,
+            title="",
+            toolbar=None,
+            default_tools=[],
+            hooks=[self._style],
+            **scale,
+        )
+
+    def _style(self, drawing: Any, _element: hv.Element) -> None:
+        """Style a new figure as the other charts."""
+        plot = drawing.state
+        if plot.name != self._frame.name:
+            style_chart(plot, self._frame.name, self._frame.title)
+            # The hover tool describes a bar also while the mouse is above its top.
+            plot.add_tools(chart_hover(self._text, [drawing.handles["glyph_renderer"]], mode="vline"))
+
+
+def prepare() -> None:
+    """Load the part of HoloViews that draws with Bokeh. Loading it on the event loop would delay other sessions."""
+    hv.renderer("bokeh")
+
+
+def _empty_chart(frame: Frame) -> Chart:
+    """Return a chart before there are numbers, with one bar of height 0."""
+    bar = Series("", MEASURED, np.array([1.5]), np.zeros(1), Shape.BARS, (np.array([1.0]), np.array([2.0])))
+    return Chart(frame, [bar], ((1.0, 2.0), (0.0, 1.0)))
+
+
+def _few_ticks(low: float, high: float) -> list[float]:
+    """Return 1, 2 and 5 times the powers of ten from `low` to `high`; only the powers if these would be too many labels."""
+    decades = [10.0**k for k in range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)]
+    fine_ticks, powers = ([m * ten for ten in decades for m in steps if low <= m * ten <= high] for steps in ((1, 2, 5), (1,)))
+    return fine_ticks if len(fine_ticks) <= _MOST_TICKS else powers

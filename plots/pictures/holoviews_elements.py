@@ -1,0 +1,30 @@
+"""HoloViews elements of charts."""
+
+from __future__ import annotations
+
+import holoviews as hv
+import numpy as np
+
+from plots.pictures.charts import Chart, Series, Shape
+
+
+def chart_elements(chart: Chart) -> list[hv.Element]:
+    """Return the HoloViews elements of the series of a chart."""
+    x, y = chart.frame.labels
+    elements: list[hv.Element] = []
+    for series in chart.series:
+        if series.shape is Shape.BARS:
+            elements.append(_histogram(series, x, y))
+            continue
+        kind = hv.Scatter if series.shape is Shape.POINTS else hv.Curve
+        elements.append(kind(series.curve, x, y, label=series.label))
+        if series.bars is not None:
+            low, high = series.bars
+            elements.append(hv.ErrorBars((series.x, series.y, series.y - low, high - series.y), x, [y, "below", "above"]))
+    return elements
+
+
+def _histogram(series: Series, x: str, y: str) -> hv.Histogram:
+    assert series.bars is not None
+    low, high = series.bars
+    return hv.Histogram((np.append(low, high[-1:]), series.y), kdims=x, vdims=y)
