@@ -55,10 +55,10 @@ class PairsChart:
         if is_positive.any():
             set_decades(self._y_range, float(shares[is_positive].min()), float(shares.max()))
 
-    def build(self) -> pn.viewable.Viewable:
+    def build(self) -> list[pn.viewable.Viewable]:
         """Fill the view with the chart and return the view."""
         self.view.objects = [pn.pane.Bokeh(self.draw(), margin=0)]
-        return self.view
+        return [self.view]
 
     def draw(self) -> figure:
         """Return a new Bokeh figure of the chart."""
@@ -99,11 +99,11 @@ class SurvivalChart:
             set_range(self._x_range, min(1.0, 0.1 * latest), 1.5 * latest)
             set_decades(self._y_range, float(laws.survival[is_positive].min()), 1.0)
 
-    def build(self) -> pn.viewable.Viewable:
+    def build(self) -> list[pn.viewable.Viewable]:
         """Fill the view with the chart and its legend, and return the view."""
         entries = [Entry("starts", MEASURED), *(Entry(law, colour) for law, colour in LAW_COLOURS.items())]
         self.view.objects = [pn.pane.Bokeh(self.draw(), margin=0), TextPane(legend(entries), margin=(0, 10))]
-        return self.view
+        return [self.view]
 
     def draw(self) -> figure:
         """Return a new Bokeh figure of the chart."""

@@ -19,6 +19,7 @@ from app.job_clients.shown_results import ShownResults
 from app.state.help_texts import title_with_help
 from app.state.view import Analysis
 from app.state.view_state import ViewState
+from app.views.components.in_turns import Make
 from app.views.components.legends import patch
 from app.views.components.plots import chart_hover
 from app.views.components.texts import TextPane
@@ -64,6 +65,7 @@ class StatisticsView:
     def __init__(self, state: ViewState, results: ShownResults, on_copy: Callable[[str], None]) -> None:
         self._state = state
         self._frame: EscapeMap | None = None
+        # Whether the charts are on the page.
         self._is_built = False
         self.table = TextPane("", name="statistics", sizing_mode="stretch_width")
         self.whole = button(COUNT_WHOLE, lambda: state.param.update(box=None))
@@ -78,18 +80,24 @@ class StatisticsView:
             self._frame = frame
             self._count()
 
-    def build(self) -> list[pn.viewable.Viewable]:
-        """Return the content of the section."""
-        prepare()
+    def parts(self) -> list[Make]:
+        """Return functions that make the parts of the section."""
+        return [self._build_table, self._build_times, self._build_probabilities]
+
+    def _build_table(self) -> list[pn.viewable.Viewable]:
+        return [pn.Column(self.whole, self.table, self.copy, margin=0, css_classes=["plot"])]
+
+    def _build_times(self) -> list[pn.viewable.Viewable]:
         self._times = _plot(_draw_times(), "histogram", "Escape times")
         _describe(self._times, _TIMES_TEXT)
+        return [pn.pane.Bokeh(self._times.state, margin=0)]
+
+    def _build_probabilities(self) -> list[pn.viewable.Viewable]:
         self._probabilities = _plot(_draw_probabilities(), "probabilities", "Escapes after n crossings")
         _describe(self._probabilities, _PROBABILITIES_TEXT)
-        histogram, probabilities = (pn.pane.Bokeh(plot.state, margin=0) for plot in (self._times, self._probabilities))
         self._is_built = True
         self._count()
-        left = pn.Column(self.whole, self.table, self.copy, margin=0, css_classes=["plot"])
-        return [left, histogram, probabilities]
+        return [pn.pane.Bokeh(self._probabilities.state, margin=0)]
 
     def _count(self) -> None:
         """Count and show the pixels of the last frame, if the tab is open."""
@@ -214,5 +222,6 @@ def _number(value: float) -> str:
 
 
 def prepare() -> None:
-    """Load the part of HoloViews that draws with Bokeh. Loading it on the event loop would delay other sessions."""
-    hv.renderer("bokeh")
+    """Draw both charts once. The first charts of a process load what HoloViews needs, which delays the event loop by 0.3 s."""
+    for element in (_draw_times(), _draw_probabilities()):
+        _plot(element, "", "")

@@ -10,6 +10,12 @@ import panel as pn
 Later = Callable[[Callable[[], None]], Callable[[], None]]
 """Wraps a function so that it runs in a later iteration of the event loop."""
 
+
+def at_once(function: Callable[[], None]) -> Callable[[], None]:
+    """Return the function itself, which is then not called later."""
+    return function
+
+
 Make = Callable[[], Sequence[pn.viewable.Viewable]]
 """Makes a part of the page."""
 

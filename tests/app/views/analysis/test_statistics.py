@@ -43,7 +43,7 @@ def view(state: ViewState, results: ShownResults, frame: EscapeMap) -> Statistic
 @pytest.fixture(autouse=True)
 def charts(view: StatisticsView) -> list[figure]:
     """The figures of the section after building it."""
-    return [part.object for part in view.build() if isinstance(part, pn.pane.Bokeh)]
+    return [part.object for make in view.parts() for part in make() if isinstance(part, pn.pane.Bokeh)]
 
 
 def test_the_charts_count_every_escape(state: ViewState, view: StatisticsView, charts: list[figure], frame: EscapeMap) -> None:
