@@ -33,7 +33,7 @@ from app.views.components.texts import TextPane
 from app.views.orbits.ensemble_player import EnsemblePlayer
 from app.views.panels.analysis_choice import analysis_tabs
 from app.views.panels.browser_events import KEYS, PICTURE_KEYS, BrowserEvents
-from app.views.panels.controls import ControlActions, Controls
+from app.views.panels.controls import Controls
 from app.views.panels.downloads import Downloads
 from app.views.panels.embedding import embed_code, page_address
 from app.views.panels.gallery import Gallery
@@ -94,7 +94,8 @@ class Explorer:
         self.gallery = Gallery(state, locked(self._show_preset))
         keys = WINDOW_MOVES if self.links.embedded else KEYS
         self.browser = BrowserEvents(state, keys, locked, self._press, self.links.navigate, self._copied)
-        self.controls = self._make_controls()
+        lock_times = lambda on: state.param.update(lock_times=self.maps.view.times if on else None)  # noqa: E731
+        self.controls = Controls(state, self.engine, self._toggle_drawer, self.comparison.swap_views, lock_times)
         self.drawers = Drawers(
             {
                 "potential": ("", "Potential", lambda: self.potential.panel.build()),
@@ -124,28 +125,15 @@ class Explorer:
         run_later = self._locked(function)
         return lambda: run_later() if pn.state.loaded else function()
 
+    def _toggle_drawer(self, name: str) -> None:
+        self.drawers.toggle(name)
+        if self.drawers.shown == "potential":
+            # The process that reviews a formula starts while the visitor types.
+            process_state().limited.start()
+
     def _build_watch(self) -> list[pn.viewable.Viewable]:
         title = TextPane(title_with_help("Many orbits at once", "watch"), margin=(0, 10))
         return [title, EnsemblePlayer(self.state, self.results, self._client, self._locked)]
-
-    def _make_controls(self) -> Controls:
-        state, maps = self.state, self.maps.view
-        actions = ControlActions(
-            play=self.engine.play,
-            choose_potential=self._choose_potential,
-            choose_slice=lambda: self.drawers.toggle("slice"),
-            swap=self.comparison.swap_views,
-            lock_times=self._locked(lambda on: state.param.update(lock_times=maps.times if on else None)),
-        )
-        controls = Controls(state, actions)
-        self.engine.param.watch(lambda event: controls.show_playing(event.new), "playing")
-        return controls
-
-    def _choose_potential(self) -> None:
-        """Open or close the drawer of the potential. The process that reviews a formula starts while the visitor types."""
-        self.drawers.toggle("potential")
-        if self.drawers.shown == "potential":
-            process_state().limited.start()
 
     def close(self, *_: Any) -> None:
         """Cancel all requests at the end of the session."""

@@ -61,3 +61,17 @@ def test_all_steps_of_the_wheel_are_one_entry(explorer: ExplorerPage) -> None:
     explorer.page.go_back()
     explorer.wait_for_view(HOME)
     expect(explorer.button("Whole plane")).to_be_hidden()
+
+
+def test_a_move_at_the_moment_of_going_back_does_not_part_the_pictures_from_their_map(explorer: ExplorerPage) -> None:
+    home, width = explorer.ranges("basins"), explorer.column("dw")
+    zoom(explorer)
+    # The handler runs after the page's own, which tells the server, and before the server can answer.
+    explorer.page.evaluate("""() => addEventListener("popstate", () => {
+        const range = Bokeh.documents[0].get_model_by_name("basins").x_range
+        range.setv({start: 0.1 * range.start, end: 0.1 * range.end})
+    }, {once: true})""")
+    explorer.page.go_back()
+    explorer.wait_for_data("maps", f"data.complete[0] && data.dw[0] == {width}")
+    expect(explorer.button("Whole plane")).to_be_hidden()
+    assert explorer.ranges("basins") == home

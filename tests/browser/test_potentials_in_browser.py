@@ -36,7 +36,7 @@ def test_the_maps_follow_the_text_and_an_error_leaves_them(explorer: ExplorerPag
     box = open_box(explorer)
     box.fill(WEAKER)
     explorer.wait_for_view("case=typed")
-    expect(explorer.text("2 exits above the escape energy h = 0.5")).to_be_visible()
+    expect(explorer.text("2 exits above h = 0.5")).to_be_visible()
     explorer.forget_pixels()
     box.press_sequentially("<y")
     expect(explorer.text("'<' is not understood")).to_be_visible()

@@ -10,7 +10,7 @@ from typing import Protocol
 import panel as pn
 
 from app.browser.inputs.counted_inputs import FormulaBox, ParameterSlider
-from app.views.components.texts import StatusPane, TextPane, plain_symbol
+from app.views.components.texts import StatusPane, TextPane, describe_outcomes, plain_symbol
 from app.views.components.widgets import button, flex_row
 from engine import System
 from engine.foundations.wording import format_number
@@ -148,7 +148,8 @@ class PotentialPanel:
         """Show the properties of the system of the widgets. Add a note, or the reason why the maps cannot show the system."""
         problem = refusal(reviewed)
         self.typeset.object = potential_formula(reviewed.potential)
-        accepted = f"<p>{_channels(reviewed)}</p><p class='quiet'>{escape(note)}</p>"
+        ends = "Orbits end at: " if reviewed.potential.ends else ""
+        accepted = f"<p>{ends}{describe_outcomes(reviewed.potential)}</p><p class='quiet'>{escape(note)}</p>"
         self._write(_alert(problem) if problem else accepted)
         self._offer(reviewed.well if problem else None)
         self.facts.object = _points(reviewed) + _remarks(reviewed)
@@ -242,16 +243,6 @@ def _typed(text: str, previous: System) -> System:
 
 def _alert(sentence: str) -> str:
     return f"<div class='alert'>{escape(sentence)}</div>"
-
-
-def _channels(review: PotentialReview) -> str:
-    if review.potential.ends:
-        labels = ", ".join(outcome.label for outcome in review.potential.outcomes)
-        opened = f"; exits open above h = {format_number(review.escape_energy)}" if review.channels else ""
-        return f"Orbits end at: {labels}{opened}"
-    if not review.channels:
-        return "no exits"
-    return f"{review.channels} exits above the escape energy h = {format_number(review.escape_energy)}"
 
 
 def _points(review: PotentialReview) -> str:

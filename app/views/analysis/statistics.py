@@ -22,10 +22,10 @@ from app.state.view_state import ViewState
 from app.views.components.in_turns import Make
 from app.views.components.legends import patch
 from app.views.components.plots import chart_hover
-from app.views.components.texts import TextPane
+from app.views.components.texts import TextPane, escape_facts
 from app.views.components.widgets import COUNT_WHOLE, button, copy_button
 from engine import EscapeMap, Fate, compute_statistics
-from engine.foundations.wording import format_number, format_share, format_share_range, format_whole
+from engine.foundations.wording import format_share, format_share_range
 from engine.propagation.fates import UNRESOLVED
 from engine.results import EscapeStatistics
 from plots.pictures.charts import BINS, MOST_CROSSINGS
@@ -136,7 +136,7 @@ class StatisticsView:
             f"<td class='quiet'>{format_share_range(*intervals[code])}</td></tr>"
             for name, colour, code in self._shares(statistics)
         )
-        body += "".join(f"<tr><td>{name}</td><td>{value}</td></tr>" for name, value in _facts(statistics).items())
+        body += "".join(f"<tr><td>{name}</td><td>{value}</td></tr>" for name, value in escape_facts(statistics).items())
         place = "the whole view" if self._state.box is None else "the box drawn on the maps"
         caption = f"Interior starts in {place}"
         head = "<tr><td></td><th scope=col>share</th><th scope=col>95 % interval</th></tr>"
@@ -152,16 +152,7 @@ class StatisticsView:
         for name, _, code in self._shares(statistics):
             low, high = intervals[code]
             rows.append((name, repr(shares[code]), repr(low), repr(high)))
-        return rows + [(name, value, "", "") for name, value in _facts(statistics).items()]
-
-
-def _facts(statistics: EscapeStatistics) -> dict[str, str]:
-    return {
-        "interior starts": format_whole(statistics.starts),
-        "direct escapes": format_share(statistics.direct_share, 2),
-        "mean escape time": _number(statistics.mean_escape_time),
-        "median escape time": _number(statistics.median_escape_time),
-    }
+        return rows + [(name, value, "", "") for name, value in escape_facts(statistics).items()]
 
 
 def _draw_times() -> hv.Histogram:
@@ -215,10 +206,6 @@ def _plot(element: hv.Element, name: str, title: str) -> Any:
 def _describe(plot: Any, text: str) -> None:
     """Make the plot describe the bar under the mouse, also while the mouse is above the top of the bar."""
     plot.state.add_tools(chart_hover(text, [plot.handles["glyph_renderer"]], mode="vline"))
-
-
-def _number(value: float) -> str:
-    return format_number(value) if np.isfinite(value) else "nothing escaped"
 
 
 def prepare() -> None:

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import math
 import re
 from typing import Any
 
 import panel as pn
 from bokeh.document import Document
+
+from engine import Potential
+from engine.foundations.wording import format_number, format_share, format_whole
+from engine.results import EscapeStatistics
 
 # Spaces beside a sign such as = or ×, where a line must not break.
 _AROUND_SIGN = re.compile(r"(?<=\w) (?=(?:=|≈) [−-]?\d)|(?<=[=≤×]) (?=[−-]?\d)|(?<=\d) (?=×)")
@@ -40,6 +45,26 @@ def breakable(formula: str) -> str:
 def plain_symbol(symbol: str) -> str:
     """Return the symbol of a parameter with subscripts, for labels that are not HTML."""
     return symbol.translate(_SUBSCRIPT_DIGITS)
+
+
+def describe_outcomes(potential: Potential) -> str:
+    """Describe the ends of orbits, and the energy above which exits are open."""
+    above = f"above h = {format_number(potential.escape_energy)}" if potential.channels else ""
+    if not potential.ends:
+        return f"{potential.channels} exits {above}" if above else "no exits"
+    labels = ", ".join(outcome.label for outcome in potential.outcomes)
+    return f"{labels}; exits open {above}" if above else labels
+
+
+def escape_facts(statistics: EscapeStatistics) -> dict[str, str]:
+    """Return the numbers that describe the escapes of all starts, by name."""
+    mean, median = statistics.mean_escape_time, statistics.median_escape_time
+    times = (format_number(time) if math.isfinite(time) else "nothing escaped" for time in (mean, median))
+    return {
+        "interior starts": format_whole(statistics.starts),
+        "direct escapes": format_share(statistics.direct_share, 2),
+        **dict(zip(("mean escape time", "median escape time"), times, strict=True)),
+    }
 
 
 class TextPane(pn.pane.HTML):

@@ -9,6 +9,8 @@ import panel as pn
 import param
 from bokeh.document import Document
 
+from app.state.view_state import ViewState
+
 COUNT_WHOLE = "Count the whole view"
 """Label of the buttons that remove the box."""
 
@@ -43,6 +45,30 @@ class Switches(_NamedGroup, pn.widgets.CheckBoxGroup):
 
     def __init__(self, **options: Any) -> None:
         super().__init__(inline=True, css_classes=["switches"], **options)
+
+
+def switch(
+    title: str,
+    option: str,
+    state: ViewState,
+    name: str,
+    is_on: Callable[[Any], bool],
+    turn: Callable[[bool], object],
+    **options: Any,
+) -> Switches:
+    """Return a switch that follows a field of the view state: `is_on` reads the field, and `turn` switches on or off."""
+    control = Switches(label=title, options=[option], **options)
+
+    def take(event: Any) -> None:
+        on = bool(event.new)
+        if on != is_on(getattr(state, name)):
+            # `hold` provides the session's lock, as in `button`.
+            with pn.io.hold():
+                turn(on)
+
+    state.follow(lambda value: control.param.update(value=[option] if is_on(value) else []), name)
+    control.param.watch(take, "value")
+    return control
 
 
 def button(label: str, on_click: Callable[[], Any], *, kind: str = "default", **options: Any) -> pn.widgets.Button:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import astuple
 from functools import partial
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +34,9 @@ Edges = tuple[float, float, float, float]
 class MapRanges:
     """The ranges of x and of the ordinate, which all maps share.
 
+    The browser and the server both move the ranges. If they do so at the same time, the move of the server counts: the browser
+    answers each of its moves, and until the answer, moves of the browser start from an outdated window.
+
     Parameters
     ----------
     on_zoom
@@ -50,7 +54,12 @@ class MapRanges:
         self._rest_pause = _Pause(REST_MS, self._report)
         self._gesture_pause = _Pause(GESTURE_PAUSE_MS, on_rest)
         self._is_following = False
+        self._numbers = count(1)
         self._open_reports = 0
+        # The server numbers its moves in the tags of x. The browser answers by copying the tags to the ordinate.
+        self.answer = CustomJS(args={"x": self.x, "ordinate": self.ordinate}, code="ordinate.tags = x.tags")
+        self.x.js_on_change("tags", self.answer)
+        self.ordinate.on_change("tags", self._note_answer)
         for edges in (self.x, self.ordinate):
             edges.on_change("start", self._note_move)
             edges.on_change("end", self._note_move)
@@ -64,7 +73,7 @@ class MapRanges:
         if is_near(self._edges, window):
             return
         self._is_following = True
-        self.x.update(start=window.x_low, end=window.x_high)
+        self.x.update(start=window.x_low, end=window.x_high, tags=[next(self._numbers)])
         self.ordinate.update(start=window.ordinate_low, end=window.ordinate_high)
         self._is_following = False
 
@@ -104,13 +113,26 @@ class MapRanges:
     def _note_move(self, _name: str, _old: float, _new: float) -> None:
         """Wait until the ranges stop changing."""
         document = self.x.document
-        if not self._is_following and document is not None:
+        if not self._is_following and not self._awaits_answer and document is not None:
             self._gesture_pause.cancel()
             self._rest_pause.start(document)
+
+    @property
+    def _awaits_answer(self) -> bool:
+        """Whether the browser has not answered the last move of the server. Before the page is open, it answers nothing."""
+        answered = self.ordinate.tags
+        return bool(answered) and answered != self.x.tags
+
+    def _note_answer(self, _name: str, _old: list[int], _new: list[int]) -> None:
+        """Undo moves of the browser from an outdated window."""
+        if not self._awaits_answer and self._window is not None:
+            self.follow(self._window)
 
     def _report(self) -> None:
         """Report the window to which the ranges were moved, if it is new."""
         self._rest_pause.cancel()
+        if self._awaits_answer:
+            return
         edges = self._edges
         x_low, x_high, ordinate_low, ordinate_high = edges
         # The server and the browser may change a range at the same time.

@@ -11,7 +11,7 @@ import panel as pn
 from app.state.view import Analysis, View
 from app.state.view_state import ViewState
 from app.views.components.texts import TextPane
-from app.views.components.widgets import SegmentedControl, Switches, bind, button
+from app.views.components.widgets import SegmentedControl, Switches, bind, button, switch
 from plots.layers.layer import Layer, Setting
 from plots.layers.table import LAYERS
 
@@ -46,11 +46,10 @@ class LayerSwitches:
 
     def _make(self, layer: Layer) -> Switches:
         """Make the switch of a layer."""
-        options = [layer.title]
-        switch = Switches(label="Layer", options=options, margin=(0, 10, 4, 10))
-        self._state.follow(lambda layers: switch.param.update(value=options if layer.name in layers else []), "layers")
-        switch.param.watch(lambda event: self._write(layer.name, on=bool(event.new)), "value")
-        return switch
+        turn = lambda on: self._state.switch_layer(layer.name, on=on)  # noqa: E731
+        return switch(
+            "Layer", layer.title, self._state, "layers", lambda layers: layer.name in layers, turn, margin=(0, 10, 4, 10)
+        )
 
     def _choice(self, setting: Setting) -> SegmentedControl:
         """Return the choice of a setting."""
@@ -62,10 +61,6 @@ class LayerSwitches:
             self._state.follow(lambda settings: choice.param.update(value=settings[setting.name]), "settings")
             choice.param.watch(lambda event: self._write_setting(setting, event.new), "value")
         return self._choices[setting.name]
-
-    def _write(self, name: str, *, on: bool) -> None:
-        with pn.io.hold():
-            self._state.switch_layer(name, on=on)
 
     def _write_setting(self, setting: Setting, value: Any) -> None:
         # Without a chosen option, the widget only follows the state.
@@ -81,30 +76,25 @@ class ComparisonSwitch:
     ----------
     state
         The view state.
-    swap
+    swap_views
         Exchanges the two views.
     """
 
-    def __init__(self, state: ViewState, swap: Callable[[], None]) -> None:
+    def __init__(self, state: ViewState, swap_views: Callable[[], None]) -> None:
         self._state = state
-        self._options = ["Compare with this view"]
-        self.switch = Switches(label="Comparison", options=self._options, margin=(0, 10, 4, 10))
+        turn = lambda on: state.compare(on=on)  # noqa: E731
+        self.switch = switch(
+            "Comparison", "Compare with this view", state, "compared", lambda view: view is not None, turn, margin=(0, 10, 4, 10)
+        )
         self.view = TextPane("", sizing_mode="stretch_width", margin=(0, 10), css_classes=["quiet"])
-        self.swap = button("Swap the views", swap, kind="light", margin=0)
+        self.swap = button("Swap the views", swap_views, kind="light", margin=0)
         state.follow(self._show, "compared")
-        self.switch.param.watch(lambda event: self._take(bool(event.new)), "value")
 
     def parts(self) -> list[pn.viewable.Viewable]:
         """Return the switch. While it is on, also return the title of the other view and the button."""
         return [self.switch, *([self.view, self.swap] if self._state.compared is not None else [])]
 
-    def _take(self, on: bool) -> None:
-        if on != (self._state.compared is not None):
-            with pn.io.hold():
-                self._state.compare(on=on)
-
     def _show(self, compared: View | None) -> None:
-        self.switch.value = [] if compared is None else self._options
         self.view.object = escape(compared.title) if compared is not None else ""
 
 

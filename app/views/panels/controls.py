@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from functools import partial
 from html import escape as escape_text
 from typing import Any
 
 import panel as pn
 
+from app.browser.engine_component import BrowserEngine
 from app.browser.inputs.counted_inputs import SHOWN, EnergySlider, NumberBox
 from app.state.system_review import review_catalogue_entry
 from app.state.view import allowed_resolutions, allowed_t_max
 from app.state.view_state import ViewState
 from app.views.components.collapsible_section import Fold
-from app.views.components.texts import TextPane, breakable
-from app.views.components.widgets import SegmentedControl, Switches, bind, button, set_value
+from app.views.components.texts import TextPane, breakable, describe_outcomes
+from app.views.components.widgets import SegmentedControl, bind, button, set_value, switch
 from app.views.panels.analysis_choice import ComparisonSwitch, LayerSwitches
-from engine import CASES, Plane, Potential, Slice
+from engine import CASES, Plane, Slice
 from engine.foundations.wording import format_number
 from engine.systems.catalogue.entry import EnergyRange
 from plots.pictures.palette import PALETTES
@@ -50,37 +51,33 @@ _TICK_LABEL = (
 )
 
 
-@dataclass(frozen=True)
-class ControlActions:
-    """Actions of the controls that are not changes of the view state.
+class Controls:
+    """Widgets that write to the view state and follow it.
 
-    Attributes
+    Parameters
     ----------
-    play
-        Starts or stops the animation over all energies.
-    choose_potential
-        Opens the choice of other potentials.
-    choose_slice
-        Opens the choice of other slices.
-    swap
+    state
+        The view state.
+    engine
+        Animates the energy.
+    toggle_drawer
+        Opens or closes the drawer "potential" or "slice".
+    swap_views
         Exchanges the two views.
     lock_times
         Locks (True) or unlocks (False) the scale of escape times.
     """
 
-    play: Callable[[], None]
-    choose_potential: Callable[[], None]
-    choose_slice: Callable[[], None]
-    swap: Callable[[], None]
-    lock_times: Callable[[bool], None]
-
-
-class Controls:
-    """Widgets that write to the view state and follow it."""
-
-    def __init__(self, state: ViewState, actions: ControlActions) -> None:
+    def __init__(
+        self,
+        state: ViewState,
+        engine: BrowserEngine,
+        toggle_drawer: Callable[[str], None],
+        swap_views: Callable[[], None],
+        lock_times: Callable[[bool], None],
+    ) -> None:
         self.state = state
-        self._actions = actions
+        self._lock_times = lock_times
         self.case = SegmentedControl(
             label="Case",
             options=list(CASES),
@@ -89,7 +86,7 @@ class Controls:
             margin=(0, 0, 0, 10),
         )
         self.other = button(
-            "Other …", actions.choose_potential, kind="light", css_classes=["half", "choice"], margin=(0, 10, 0, 4)
+            "Other …", partial(toggle_drawer, "potential"), kind="light", css_classes=["half", "choice"], margin=(0, 10, 0, 4)
         )
         self.plane = SegmentedControl(
             label="Plane", options={plane.title: plane for plane in _PLANES}, margin=(8, 0, 8, 10),
@@ -97,12 +94,14 @@ class Controls:
         )  # fmt: skip
         # Panel replaces a value of None by the first option when it makes a widget.
         self.plane.value = self._listed_plane()
-        self.axes = button(AXES, actions.choose_slice, kind="light", css_classes=["half", "choice"], margin=(8, 10, 8, 4))
+        self.axes = button(
+            AXES, lambda: toggle_drawer("slice"), kind="light", css_classes=["half", "choice"], margin=(8, 10, 8, 4)
+        )
         self.ticks = TextPane(sizing_mode="stretch_width", height=24, margin=(0, 10), css_classes=["ticks"])
         self.energy = EnergySlider(
             self._take_energy, state.energy, name="energy", sizing_mode="stretch_width", margin=(0, 10), css_classes=["energy"]
         )
-        self.play = button(PLAY, actions.play, min_width=84, css_classes=["half", "play-energy"], margin=(0, 10), align="end")
+        self.play = button(PLAY, engine.play, min_width=84, css_classes=["half", "play-energy"], margin=(0, 10), align="end")
         self.exact_energy = NumberBox(
             self._take_energy,
             state.energy,
@@ -114,10 +113,11 @@ class Controls:
         )
         self.facts = TextPane(margin=(6, 10), sizing_mode="stretch_width", css_classes=["facts"])
         self.layers = LayerSwitches(state)
-        self.comparison = ComparisonSwitch(state, actions.swap)
+        self.comparison = ComparisonSwitch(state, swap_views)
         layers = Fold("Layers", lambda: [*self.layers.parts(), *self.comparison.parts()], is_open=True)
         state.param.watch(lambda *events: layers.rebuild(), ["layers", "compared"])
         self._folds = [Fold("Quality and colours", self._build_quality), layers]
+        engine.param.watch(lambda event: self.play.param.update(label=STOP if event.new else PLAY), "playing")
         self._follow_system()
         self._connect()
 
@@ -138,25 +138,15 @@ class Controls:
             self._make_list("t_max", "t_max", allowed_t_max()),
             self._make_list("resolution", "Resolution", allowed_resolutions()),
             self._make_list("palette", "Colours", {palette.name: key for key, palette in PALETTES.items()}),
-            self._make_lock(),
+            switch(
+                "Escape times", LOCK, self.state, "lock_times", lambda times: times is not None, self._lock_times, margin=(0, 10)
+            ),
         ]
 
     def _make_list(self, name: str, label: str, options: dict[str, Any]) -> pn.viewable.Viewable:
         """Return a drop-down list for an attribute of the view state."""
         box = pn.widgets.Select(label=label, options=options, sizing_mode="stretch_width", margin=(0, 10, 8, 10))
         return bind(box, self.state, name)
-
-    def _make_lock(self) -> pn.viewable.Viewable:
-        """Make the switch that locks the scale of escape times."""
-        options = [LOCK]
-        lock = Switches(label="Escape times", options=options, margin=(0, 10))
-        self.state.follow(lambda times: lock.param.update(value=options if times is not None else []), "lock_times")
-        lock.param.watch(lambda event: self._take_lock(bool(event.new)), "value")
-        return lock
-
-    def _take_lock(self, locked: bool) -> None:
-        if locked != (self.state.lock_times is not None):
-            self._actions.lock_times(locked)
 
     def _connect(self) -> None:
         state = self.state
@@ -166,10 +156,6 @@ class Controls:
         state.param.watch(lambda *events: self._follow_energy(), ["energy", "plane"])
         state.param.watch(lambda event: self._follow_plane(), "plane")
         state.param.watch(lambda event: self._begin_touch(), "touch")
-
-    def show_playing(self, playing: bool) -> None:
-        """Label the button with its next action."""
-        self.play.label = STOP if playing else PLAY
 
     def _take_case(self, case: str | None) -> None:
         # With None, or with the case of the state, the widget only follows the state.
@@ -219,12 +205,13 @@ class Controls:
         """Write the formula, the outcomes, and the title of the slice (HTML); the title is empty if a button has it."""
         reviewed = self.state.reviewed
         formula, _, _ = reviewed.formula.partition(";")
-        mass = reviewed.potential.mass
+        mass, rotation = reviewed.potential.mass, reviewed.potential.rotation
+        frame = f"rotates at Ω = {format_number(rotation, 6)}; " if rotation else ""
         masses = [] if mass == 1.0 else [f"Masses {format_number(mass)}: H = (px² + py²)/{format_number(2.0 * mass)} + V"]
         facts = "<br>".join(["", *masses, *([f"Slice {plane}"] if plane else [])])
         self.facts.object = (
             f"<div title='H = (px² + py²)/2m + V(x, y)'><b>{escape_text(reviewed.system.title)}</b>: "
-            f"<span class='quiet'>{_outcomes(reviewed.potential)}</span><br>"
+            f"<span class='quiet'>{frame}{escape_text(describe_outcomes(reviewed.potential))}</span><br>"
             f"{escape_text(breakable(f'V = {formula}'))}<span class='quiet'>{facts}</span></div>"
         )
 
@@ -242,16 +229,6 @@ class Controls:
         for control in (self.energy, self.exact_energy):
             control.show(state.energy)
         self.play.disabled = is_energy_axis
-
-
-def _outcomes(potential: Potential) -> str:
-    """Describe the ends of orbits, and the energy above which exits are open."""
-    frame = f"rotates at Ω = {format_number(potential.rotation, 6)}; " if potential.rotation else ""
-    if not potential.ends:
-        return f"{frame}{potential.channels} exits above h = {format_number(potential.escape_energy)}"
-    labels = escape_text(", ".join(outcome.label for outcome in potential.outcomes))
-    opened = f"; exits open above h = {format_number(potential.escape_energy)}" if potential.channels else ""
-    return f"{frame}{labels}{opened}"
 
 
 def _ticks(escape: float, energies: EnergyRange) -> str:

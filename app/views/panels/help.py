@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from html import escape
-from math import isfinite
 
 import panel as pn
 
@@ -11,10 +10,10 @@ from app.job_clients.shown_results import ShownResults
 from app.state.glossary import glossary_list
 from app.state.view_state import ViewState
 from app.views.components.collapsible_section import Fold
-from app.views.components.texts import TextPane
+from app.views.components.texts import TextPane, escape_facts
 from app.views.panels.browser_events import key_legend
 from engine import Fate, System, compute_statistics
-from engine.foundations.wording import format_number, format_share, format_time, format_whole
+from engine.foundations.wording import format_number, format_share, format_whole
 from engine.propagation.fates import UNRESOLVED
 from plots.texts.mathml import equations
 
@@ -78,16 +77,10 @@ class AccessibleTable:
         shares = statistics.shares
         rows = [(end.action, format_share(shares[fate], 2)) for fate, end in enumerate(statistics.outcomes, 1)]
         rows += [(UNRESOLVED, format_share(shares[Fate.FAILED], 2))] if statistics.failed else []
-        rows += [("bounded", format_share(shares[Fate.BOUNDED], 2)), ("direct escapes", format_share(statistics.direct_share, 2))]
-        rows += [("mean escape time", _time(statistics.mean_escape_time))]
-        return [*rows, ("median escape time", _time(statistics.median_escape_time))]
+        return [*rows, ("bounded", format_share(shares[Fate.BOUNDED], 2)), *escape_facts(statistics).items()]
 
     def _chosen(self) -> list[tuple[str, str]]:
         return [
             (f"orbit {place + 1}, from {format_number(one.start[0], 6)}, {format_number(one.start[1], 6)}", one.describe())
             for place, one in enumerate(self._results.orbits)
         ]
-
-
-def _time(value: float) -> str:
-    return format_time(value, digits=5) if isfinite(value) else "nothing escaped"

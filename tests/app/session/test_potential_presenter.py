@@ -69,7 +69,7 @@ def test_a_text_is_used_while_it_is_typed_unless_it_needs_another_integrator(ses
     watcher = session.state.param.watch(lambda event: send(session.panel.formula, newer), "system")
     session.type(WEAKER, enter=False)
     session.wait_for(lambda: session.state.system.formula == WEAKER)
-    assert "2 exits above the escape energy h = 0.5" in session.panel.message.object
+    assert "2 exits above h = 0.5" in session.panel.message.object
     # The text that was typed meanwhile stays.
     assert session.panel.formula.shown == {"value": WEAKER, "count": 2}
     session.state.param.unwatch(watcher)

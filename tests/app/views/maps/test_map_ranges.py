@@ -26,6 +26,10 @@ class RangesOnPage:
     def _end(self) -> None:
         self.ends += 1
 
+    def answer(self) -> None:
+        """Answer the last move of the server as a browser does."""
+        self.ranges.ordinate.tags = self.ranges.x.tags
+
 
 def test_reversed_ranges_do_not_give_a_window() -> None:
     zooms: list[Window | None] = []
@@ -74,6 +78,25 @@ def test_a_chosen_window_drops_a_move_that_is_not_reported() -> None:
     ranges.end_gesture()
     assert page.zooms == []
     assert ranges.x.start == home.x_low
+
+
+def test_a_move_that_the_browser_makes_before_it_has_the_window_is_undone() -> None:
+    page = RangesOnPage()
+    ranges, closer = page.ranges, Window(-0.1, 0.1, -0.1, 0.1)
+
+    def move_closer() -> None:
+        ranges.x.update(start=-0.05, end=0.05)
+        ranges.end_gesture()
+
+    page.answer()
+    ranges.go_to(closer)
+    move_closer()
+    assert page.zooms == []
+    page.answer()
+    assert ranges.x.end == closer.x_high
+    page.answer()
+    move_closer()
+    assert [zoom.x_high for zoom in page.zooms if zoom] == [0.05]
 
 
 def test_a_window_that_is_shown_late_does_not_undo_later_gestures() -> None:

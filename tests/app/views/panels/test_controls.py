@@ -6,10 +6,13 @@ import panel as pn
 import pytest
 from panel.widgets import Widget
 
+from app.browser.engine_component import BrowserEngine
+from app.job_clients.shown_results import ShownResults
 from app.state.view_state import ViewState
 from app.views.components.widgets import Switches
-from app.views.panels.controls import LOCK, ControlActions, Controls
+from app.views.panels.controls import LOCK, Controls
 from engine import Plane, System
+from engine.jobs.manager import Jobs
 from engine.systems.review.potential_review import review_system
 from engine.systems.system import TYPED
 from plots.pictures.time_scale import TimeScale
@@ -21,16 +24,8 @@ class Page:
     def __init__(self) -> None:
         self.locks: list[bool] = []
         self.state = ViewState(system=System("I"), energy=0.19)
-        self.controls = Controls(
-            self.state,
-            ControlActions(
-                play=lambda: None,
-                choose_potential=lambda: None,
-                choose_slice=lambda: None,
-                swap=lambda: None,
-                lock_times=self.locks.append,
-            ),
-        )
+        engine = BrowserEngine(self.state, ShownResults(), Jobs(), lambda call: call)
+        self.controls = Controls(self.state, engine, lambda name: None, lambda: None, self.locks.append)
 
 
 @pytest.fixture
