@@ -88,12 +88,12 @@ class StatisticsView:
         return [pn.Column(self.whole, self.table, self.copy, margin=0, css_classes=["plot"])]
 
     def _build_times(self) -> list[pn.viewable.Viewable]:
-        self._times = _plot(_draw_times(), "histogram", "Escape times")
+        self._times = _plot(_draw_times, "histogram", "Escape times")
         _describe(self._times, _TIMES_TEXT)
         return [pn.pane.Bokeh(self._times.state, margin=0)]
 
     def _build_probabilities(self) -> list[pn.viewable.Viewable]:
-        self._probabilities = _plot(_draw_probabilities(), "probabilities", "Escapes after n crossings")
+        self._probabilities = _plot(_draw_probabilities, "probabilities", "Escapes after n crossings")
         _describe(self._probabilities, _PROBABILITIES_TEXT)
         self._is_built = True
         self._count()
@@ -196,9 +196,11 @@ def _few_ticks(low: float, high: float) -> list[float]:
     return fine_ticks if len(fine_ticks) <= _MOST_TICKS else powers
 
 
-def _plot(element: hv.Element, name: str, title: str) -> Any:
+def _plot(draw: Callable[[], hv.Element], name: str, title: str) -> Any:
     """Return the plot of an element with its help text. New data for a plot are 20 times faster than a new plot."""
-    plot = hv.renderer("bokeh").get_plot(element)
+    # Elements cannot be made before their renderer is loaded.
+    renderer = hv.renderer("bokeh")
+    plot = renderer.get_plot(draw())
     plot.state.elements = [HTML(html=title_with_help(title, name))]
     return plot
 
@@ -210,5 +212,5 @@ def _describe(plot: Any, text: str) -> None:
 
 def prepare() -> None:
     """Draw both charts once. The first charts of a process load what HoloViews needs, which delays the event loop by 0.3 s."""
-    for element in (_draw_times(), _draw_probabilities()):
-        _plot(element, "", "")
+    for draw in (_draw_times, _draw_probabilities):
+        _plot(draw, "histogram", "")
