@@ -36,7 +36,7 @@ ENERGIES = {
     "Star cluster": -2.2,
     "Barred galaxy": -3300.0,
     "Logarithmic bar": -0.6,
-    "Two Yukawa centres": -0.5,
+    "Two Yukawa centres": -0.2,
 }
 BELOW_ESCAPE = 0.96
 ORBITS = 64
@@ -45,8 +45,8 @@ REPEATS = 3
 DURATION = 1e4
 # Duration before the comparison of states, in exact units of time.
 SHORT = 20.0
-# Smallest distance of the orbits from a body, in radii of the body.
-KEPT_APART = 20.0
+# Smallest distance of the orbits from a body, in units of the potential.
+KEPT_APART = 0.02
 # Largest energy error of heyoka with its loosest tolerance.
 PERMITTED_ERROR = 1e-11
 USUAL_TOLERANCE = 1e-13
@@ -92,7 +92,7 @@ def pose(name: str) -> Problem:
 
 def bounded_starts(potential: Potential, energy: float) -> np.ndarray:
     """Return (ORBITS, 4) starts of orbits that do not end."""
-    wide = [type(c)(c.x, c.y, KEPT_APART * c.radius, c.name) for c in potential.centres]
+    wide = [type(c)(c.x, c.y, KEPT_APART, c.name) for c in potential.centres]
     kept_apart, t_max = potential.with_outcomes(wide, potential.escape_radius), DURATION * potential.well.exact_time_unit
     found = np.empty((0, 4))
     for seed in itertools.count():

@@ -47,7 +47,7 @@ def fit_decay_laws(
 
     Rates are maximum-likelihood estimates from the escape times inside the window, on condition that a time lies inside.
     Therefore neither regular orbits, which never escape, nor the cutoff at t_max cause a bias. Bit-identical escape times belong
-    to mirror images and count once. All times are treated as independent draws although the starts form a grid: where a law held,
+    to mirror images and count once. All times count as independent draws although the starts form a grid: in a given window,
     rates from shifted grids scattered 0.8 to 1.1 times as much as the interval implies (docs/measures.md). A law is ruled out by
     Neyman's smooth test, with the fitted rate taken into account (Thomas & Pierce 1979, J. Am. Stat. Assoc. 74, 441).
 

@@ -1,16 +1,18 @@
-"""Limits, colours and curves of the charts of statistics and sweeps.
-
-A sweep has a panel for the shares, and one for each other measure.
-"""
+"""Charts of measures as data: series of points with their colours, axes and limits. The page and figures draw them."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import Enum, auto
 
 import numpy as np
 
 from engine import MEASURES, Measure
-from engine.measures.decay_laws import LawFit
-from engine.results import Sweep
-from plots.pictures.palette import LAW_COLOURS, MEASURED
+from engine.foundations.wording import format_number
+from engine.results import DecayLaws, EscapeStatistics, LawFit, Sweep, UncertaintyExponent
+from plots.pictures.histories import find_decades
+from plots.pictures.palette import LAW_COLOURS, MEASURED, SET_ASIDE, THRESHOLD, Entry, Palette
 
 BINS = 40
 """Number of bins of the histogram of escape times."""
@@ -19,31 +21,212 @@ MOST_CROSSINGS = 15
 """Largest number of crossings for which the escape probability is shown."""
 
 SHARES = MEASURES["shares"]
-"""The measure of the first panel, with a curve for each outcome."""
+"""The measure of a sweep with a curve for each outcome."""
 
 CURVE_PANELS = tuple(measure for measure in MEASURES.values() if measure.labels)
-"""The measures of the other panels, in order."""
+"""The other measures of a sweep with a chart, in order."""
 
-NUMBER_COLOURS = MEASURED, LAW_COLOURS["exponential"]
-"""Colours of the numbers of a measure, in order."""
-
+# Colours of the numbers of a measure, in order.
+_NUMBER_COLOURS = MEASURED, LAW_COLOURS["exponential"]
 # Number of points of the curve of a law.
 _LAW_POINTS = 200
+# Symbols of the rates of decay laws.
+_RATE_SYMBOLS = {"exponential": "κ", "power law": "γ"}
+
+Limits = tuple[float, float]
+"""Ends of an axis."""
 
 
-def is_measured(measure: Measure, curves: Sweep) -> bool:
-    """Return whether a sweep contains a measure."""
-    return set(measure.labels) <= set(curves.dataset)
+class Shape(Enum):
+    """How a series is drawn. The points of a series of steps have the same y until the next x."""
+
+    LINE = auto()
+    DASHED = auto()
+    STEPS = auto()
+    POINTS = auto()
+    JOINED_POINTS = auto()
+    BARS = auto()
 
 
-def find_numbers(measure: Measure, curves: Sweep) -> np.ndarray:
-    """Return all numbers of a panel without NaN, including the ends of error bars."""
-    values = np.concatenate([np.concatenate([curves[name], *curves.interval(name)]) for name in measure.labels])
-    return values[np.isfinite(values)]
+@dataclass(frozen=True, eq=False)
+class Series:
+    """Points of one colour.
+
+    Attributes
+    ----------
+    label
+        Label in the legend; empty for a series without an entry.
+    colour
+        Colour of the points.
+    x, y
+        Coordinates of the points, of shape (n,).
+    shape
+        How the points are drawn.
+    bars
+        Ends of the error bars in y, or, for `Shape.BARS`, of the bars in x; None without bars.
+    """
+
+    label: str
+    colour: str
+    x: np.ndarray
+    y: np.ndarray
+    shape: Shape = Shape.LINE
+    bars: tuple[np.ndarray, np.ndarray] | None = None
+
+    @property
+    def curve(self) -> tuple[np.ndarray, np.ndarray]:
+        """x and y of the line through the points."""
+        return (np.repeat(self.x, 2)[1:], np.repeat(self.y, 2)[:-1]) if self.shape is Shape.STEPS else (self.x, self.y)
 
 
-def law_curve(fit: LawFit) -> tuple[np.ndarray, np.ndarray]:
-    """Return the times and the shares above 0 of a fitted law, each of shape (n,). A logarithmic axis cannot show 0."""
+@dataclass(frozen=True)
+class Frame:
+    """What charts of different results have in common.
+
+    Attributes
+    ----------
+    name
+        Name of the chart and of its help text.
+    title
+        Title above the chart.
+    labels
+        Labels of both axes.
+    logarithmic
+        Letters of the logarithmic axes, such as "xy".
+    level
+        Value of a marked horizontal line with its label; None for no line.
+    """
+
+    name: str
+    title: str
+    labels: tuple[str, str]
+    logarithmic: str = ""
+    level: tuple[float, str] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Chart:
+    """Series in a frame, from back to front. `limits` are those of x and y; None for limits that fit the points."""
+
+    frame: Frame
+    series: Sequence[Series]
+    limits: tuple[Limits | None, Limits | None] = (None, None)
+
+    def legend(self) -> list[Entry]:
+        """Return the entries of the legend."""
+        level = [] if self.frame.level is None else [Entry(self.frame.level[1], THRESHOLD)]
+        return [*(Entry(one.label, one.colour) for one in self.series if one.label), *level]
+
+
+TIMES = Frame("histogram", "Escape times", ("escape time", "starts"), "x")
+PROBABILITIES = Frame("probabilities", "Escapes after n crossings", ("upward crossings n", "p"))
+SURVIVAL = Frame("survival", "Still inside", ("t", "share of the starts"), "xy")
+PAIRS = Frame("uncertainty", "Uncertain pairs of starts", ("separation", "uncertain share"), "xy")
+
+
+def measure_frame(measure: Measure, symbol: str = "") -> Frame:
+    """Return the frame of a measure of sweeps along an axis with this symbol."""
+    curve = measure.curve
+    return Frame(measure.name, measure.title, (symbol, curve.axis), "y" if curve.logarithmic else "", curve.level)
+
+
+def sweep_charts(curves: Sweep, palette: Palette) -> list[Chart]:
+    """Return the charts of the measures that a sweep contains, the shares first."""
+    shares = [_shares_chart(curves, palette)] if "share" in curves.dataset else []
+    measures = (measure for measure in CURVE_PANELS if set(measure.labels) <= set(curves.dataset))
+    return [*shares, *(_measure_chart(measure, curves) for measure in measures)]
+
+
+def _measure_chart(measure: Measure, curves: Sweep) -> Chart:
+    """Return the chart of the numbers of a measure with their error bars, against the energy or a parameter."""
+    series = [
+        Series(label, colour, curves.values, curves[name], Shape.JOINED_POINTS, curves.interval(name))
+        for (name, label), colour in zip(measure.labels.items(), _NUMBER_COLOURS, strict=False)
+    ]
+    numbers = np.concatenate([values for one in series for values in (one.y, *(one.bars or ()))])
+    numbers = numbers[np.isfinite(numbers)]
+    limits: Limits | None = None
+    if numbers.size and measure.curve.logarithmic:
+        limits = find_decades(float(numbers.min()), float(numbers.max()))
+    elif numbers.size:
+        limits = 0.0, 1.05 * max([*numbers, measure.curve.least_top])
+    return Chart(measure_frame(measure, curves.symbol), series, (_swept_limits(curves), limits))
+
+
+def _shares_chart(curves: Sweep, palette: Palette) -> Chart:
+    """Return the chart of the percentages of bounded starts and of each outcome."""
+    entries = [Entry("bounded", palette.bounded), *palette.end_entries(curves.outcomes)]
+    # Symmetric exits have equal shares: dashed curves, drawn last, leave the solid curves below visible.
+    order = sorted(range(len(entries)), key=_is_dashed)
+    series = [
+        Series(entries[k].label, entries[k].colour, curves.values, 100.0 * share, Shape.DASHED if _is_dashed(k) else Shape.LINE)
+        for k, share in ((k, curves["share"][:, k]) for k in order)
+    ]
+    return Chart(measure_frame(SHARES, curves.symbol), series, (_swept_limits(curves), (0.0, 100.0)))
+
+
+def _is_dashed(code: int) -> bool:
+    """Whether the curve of a fate is dashed; code 0 stands for bounded starts."""
+    return code > 0 and code % 2 == 0
+
+
+def _swept_limits(curves: Sweep) -> Limits | None:
+    requested = curves.dataset.attrs["requested"]
+    return (requested[0], requested[-1]) if len(requested) > 1 else None
+
+
+def times_chart(statistics: EscapeStatistics) -> Chart:
+    """Return the histogram of the escape times."""
+    edges, counts = statistics.time_histogram(BINS)
+    bars = Series("", MEASURED, np.sqrt(edges[:-1] * edges[1:]), counts, Shape.BARS, (edges[:-1], edges[1:]))
+    return Chart(TIMES, [bars], ((edges[0], edges[-1]), (0.0, 1.05 * max(float(counts.max()), 1.0))))
+
+
+def probabilities_chart(statistics: EscapeStatistics) -> Chart:
+    """Return the chart of the escape probability after each number of crossings."""
+    probabilities = statistics.escape_probabilities[: MOST_CROSSINGS + 1]
+    n = np.arange(probabilities.size, dtype=float)
+    bars = Series("", MEASURED, n, probabilities, Shape.BARS, (n - 0.4, n + 0.4))
+    highest = max(probabilities, default=0.0) or 1.0
+    return Chart(PROBABILITIES, [bars], ((-0.6, MOST_CROSSINGS + 0.6), (0.0, 1.05 * float(highest))))
+
+
+def survival_chart(laws: DecayLaws, t_end: float | None = None) -> Chart:
+    """Return the chart of the share of survivors S(t) with the fitted laws, until `t_end` or a little beyond the last escape."""
+    # A logarithmic axis cannot show 0.
+    is_positive = (laws.survival > 0.0) & (laws.times > 0.0)
+    times, shares = laws.times[is_positive], laws.survival[is_positive]
+    latest = float(times[-1]) if times.size else 10.0
+    begin = min(1.0, 0.1 * latest)
+    steps = np.vstack([[begin, 1.0], np.column_stack([times, shares])])
+    if t_end is not None:
+        steps = np.vstack([steps, [t_end, steps[-1, 1]]])
+    fits = [fit for fit in (laws.exponential, laws.power_law) if fit is not None]
+    survivors = Series("starts", MEASURED, steps[:, 0], steps[:, 1], Shape.STEPS)
+    series = [survivors, *(_law(fit, preferred=laws.preferred is fit.law) for fit in fits)]
+    return Chart(SURVIVAL, series, ((begin, t_end or 1.5 * latest), find_decades(float(steps[:, 1].min()), 1.0)))
+
+
+def _law(fit: LawFit, *, preferred: bool) -> Series:
     t = np.geomspace(fit.t_low, fit.t_high, _LAW_POINTS)
     share = fit.curve(t)
-    return t[share > 0.0], share[share > 0.0]
+    label = f"{fit.law}, {_RATE_SYMBOLS[fit.law]} = {format_number(fit.rate, 3)}{' (preferred)' if preferred else ''}"
+    return Series(label, LAW_COLOURS[fit.law], t[share > 0.0], share[share > 0.0], Shape.DASHED)
+
+
+def pairs_chart(fit: UncertaintyExponent) -> Chart:
+    """Return the chart of the uncertain share against separation, with the fitted power law."""
+    separations, shares = fit.separations, fit.shares
+    is_positive = shares > 0.0
+    low, high = fit.share_intervals
+    series: list[Series] = []
+    if np.isfinite(fit.exponent):
+        fitted = separations[fit.used]
+        law = fit.amplitude * fitted**fit.exponent
+        series.append(Series(f"α = {format_number(fit.exponent, 3)}", LAW_COLOURS["power law"], fitted, law))
+    for label, colour, members in (("used", MEASURED, fit.used), ("not used", SET_ASIDE, ~fit.used)):
+        of = is_positive & members
+        points = Series(f"{label} for the exponent", colour, separations[of], shares[of], Shape.POINTS, (low[of], high[of]))
+        series += [points] if of.any() else []
+    limits = find_decades(float(shares[is_positive].min()), float(shares.max())) if is_positive.any() else None
+    return Chart(PAIRS, series, ((0.5 * float(separations.min()), 2.0 * float(separations.max())), limits))

@@ -10,8 +10,11 @@ import numpy as np
 ENVELOPE_ALPHA = 0.3
 """Opacity of envelopes, low enough to see the mean through them."""
 
-# Number of intervals of a history, of equal length in log t: about one for each pixel of a plot.
+# Number of intervals of a history, of equal length on the axis of time: about one for each pixel of a plot.
 _BINS = 300
+
+# Time up to which values on a linear axis are drawn against linear time, which shows their oscillations.
+_SHORT = 1000.0
 
 # Largest number of minima and maxima in an interval whose curve is drawn. Other intervals are drawn as an envelope.
 _MOST_TURNS = 2
@@ -52,8 +55,13 @@ def find_decades(low: float, high: float) -> tuple[float, float]:
     return 10.0 ** math.floor(math.log10(low)), 1.3 * high
 
 
+def has_log_time(end: float, *, logarithmic: bool) -> bool:
+    """Return whether histories until the time `end` are drawn against log t; `logarithmic` describes the axis of the values."""
+    return logarithmic or end > _SHORT
+
+
 def reduce_history(t: np.ndarray, values: np.ndarray, *, logarithmic: bool) -> History:
-    """Reduce a history for an axis of log t.
+    """Reduce a history for the axis of time that `has_log_time` determines.
 
     Parameters
     ----------
@@ -64,7 +72,8 @@ def reduce_history(t: np.ndarray, values: np.ndarray, *, logarithmic: bool) -> H
     """
     if t.size <= _BINS:
         return History((t, values), (t[:0], values[:0], values[:0]))
-    edges = np.unique(np.searchsorted(t, np.geomspace(t[0], t[-1], _BINS + 1)[:-1]))
+    space = np.geomspace if has_log_time(float(t[-1]), logarithmic=logarithmic) else np.linspace
+    edges = np.unique(np.searchsorted(t, space(t[0], t[-1], _BINS + 1)[:-1]))
     fast_intervals = np.flatnonzero(np.add.reduceat(_turns(values), edges) > _MOST_TURNS)
     # The envelope replaces the curve in the first fast interval and in all later intervals.
     split = int(fast_intervals[0]) if fast_intervals.size else edges.size

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from engine import Potential, Window
 from engine.slices.planes import SPACE
-from plots.pictures.histories import ENVELOPE_ALPHA, History
+from plots.pictures.histories import ENVELOPE_ALPHA, History, has_log_time
 from plots.pictures.orbit_curves import OrbitCurves, find_well_window
 from plots.pictures.orbit_quantities import ORBIT_QUANTITIES, OrbitQuantity
 from plots.pictures.palette import THRESHOLD, Palette
@@ -115,12 +115,13 @@ def _draw_paths(axes: Axes, orbits: Sequence[OrbitCurves], window: Window, palet
 def draw_quantity(
     axes: Axes, quantity: OrbitQuantity, orbits: Sequence[OrbitCurves], palette: Palette, style: FigureStyle = SCREEN
 ) -> None:
-    """Draw a quantity of orbits against the logarithm of time."""
+    """Draw a quantity of orbits against time, or against its logarithm as `has_log_time` says."""
     histories = [curves.histories[quantity.name] for curves in orbits]
     for history, colour, number in zip(histories, cycle(palette.orbits), count(1), strict=False):
         _draw_history(axes, history, colour, f"orbit {number}")
-    axes.set_xscale("log")
-    axes.set_xlim(_EARLIEST_TIME, max(10.0 * _EARLIEST_TIME, *(float(curves.orbit.t[-1]) for curves in orbits)))
+    end = max(10.0 * _EARLIEST_TIME, *(float(curves.orbit.t[-1]) for curves in orbits))
+    axes.set_xscale("log" if has_log_time(end, logarithmic=quantity.logarithmic) else "linear")
+    axes.set_xlim(_EARLIEST_TIME, end)
     if quantity.logarithmic:
         axes.set_yscale("log")
     histories_with_samples = [history for history in histories if history.line[0].size]

@@ -23,12 +23,22 @@ from engine.slices.planes import SPACE
 from plots.layers.layer import Layer
 from plots.layers.picture import ShownMap
 from plots.layers.table import LAYERS, map_legend
-from plots.pictures.charts import CURVE_PANELS, SHARES, is_measured
+from plots.pictures.charts import (
+    Chart,
+    Frame,
+    Series,
+    Shape,
+    pairs_chart,
+    probabilities_chart,
+    survival_chart,
+    sweep_charts,
+    times_chart,
+)
 from plots.pictures.orbit_curves import compute_orbit_curves
 from plots.pictures.orbit_quantities import ORBIT_QUANTITIES
-from plots.pictures.palette import LIGHT, PALETTES, Entry, Palette, rgba
-from plots.printed.curve_figures import draw_decay_laws, draw_escape_times, draw_line, draw_measure, draw_shares
-from plots.printed.figure_axes import RENDER_LOCK, add_panel_legend, label_axes, legend_handles, set_font, set_title, style_axes
+from plots.pictures.palette import LIGHT, MEASURED, PALETTES, PAPER, Entry, Palette, rgba
+from plots.printed.curve_figures import draw_chart
+from plots.printed.figure_axes import RENDER_LOCK, legend_handles, set_font, set_title, style_axes
 from plots.printed.map_figure import draw_picture
 from plots.printed.orbit_figure import draw_path, draw_quantity
 from plots.printed.potential_figure import draw_equipotentials, enlarge
@@ -44,6 +54,8 @@ _BELOW_AXES = (0.5, -0.13)
 _SIDE_BY_SIDE = "display:flex;gap:1em;flex-wrap:wrap;align-items:flex-start"
 # Smallest value drawn on a logarithmic axis, which cannot show 0. Smaller values are drawn there.
 _LOG_FLOOR = 1e-16
+# Largest number of points of a line with markers.
+_MOST_MARKERS = 60
 # Number of parameters of each `_draw…` function before its options: the result, the axes and the palette.
 _FIXED_PARAMETERS = 3
 
@@ -89,11 +101,45 @@ def to_holoviews(result: Result) -> Any:
 
     if isinstance(result, EscapeMap | PixelAnalysis):
         return hv.Dataset(result.to_xarray()).to(hv.Image, list(result.spec.plane.axis_names))
+    if charts := _find_charts(result, PAPER):
+        return hv.Layout([hv.Overlay(_list_elements(chart)) for chart in charts]).cols(2)
     table = result.to_pandas()
     if result.row_dimension:
         table = table.rename_axis(result.row_dimension).reset_index()
     index, *value_names = table.columns
     return hv.Overlay([hv.Curve(table, index, name, label=name) for name in value_names if table[name].dtype.kind in "if"])
+
+
+def _list_elements(chart: Chart) -> list[Any]:
+    """Return HoloViews elements of the series of a chart."""
+    import holoviews as hv
+
+    x, y = chart.frame.labels
+    elements: list[Any] = []
+    for series in chart.series:
+        low, high = series.bars or (series.y, series.y)
+        if series.shape is Shape.BARS:
+            elements.append(hv.Histogram((np.append(low, high[-1:]), series.y), kdims=x, vdims=y))
+            continue
+        kind = hv.Scatter if series.shape is Shape.POINTS else hv.Curve
+        elements.append(kind(series.curve, x, y, label=series.label))
+        if series.bars is not None:
+            elements.append(hv.ErrorBars((series.x, series.y, series.y - low, high - series.y), x, [y, "below", "above"]))
+    return elements
+
+
+def _find_charts(result: Result, palette: Palette) -> list[Chart]:
+    """Return the charts of a result; empty if it has other pictures."""
+    match result:
+        case Sweep():
+            return sweep_charts(result, palette)
+        case DecayLaws():
+            return [survival_chart(result)]
+        case EscapeStatistics():
+            return [times_chart(result), probabilities_chart(result)]
+        case UncertaintyExponent():
+            return [pairs_chart(result)]
+    return []
 
 
 def _picture_html(result: Result) -> str:
@@ -117,6 +163,9 @@ def _draw(result: Result, axes: Axes, palette: Palette) -> None:
         if layer.result is type(result):
             _draw_layer(layer, result, axes, palette)
             return
+    if charts := _find_charts(result, palette):
+        draw_chart(axes, charts[0])
+        return
     chart = result.chart
     if chart is None:
         raise NoPictureError(f"{type(result).__name__} has no picture; its numbers are in to_pandas()")
@@ -128,7 +177,9 @@ def _draw(result: Result, axes: Axes, palette: Palette) -> None:
         style_axes(axes, labels=(chart.x_label, chart.y_label))
     else:
         drawn_y = np.maximum(y, _LOG_FLOOR) if "y" in chart.logarithmic else y
-        draw_line(axes, x, drawn_y, chart.x_label, chart.y_label, logarithmic=chart.logarithmic)
+        shape = Shape.JOINED_POINTS if x.size <= _MOST_MARKERS else Shape.LINE
+        frame = Frame("", "", (chart.x_label, chart.y_label), chart.logarithmic)
+        draw_chart(axes, Chart(frame, [Series("", MEASURED, x, drawn_y, shape)]))
     if chart.title:
         set_title(axes, chart.title.format(**result.numbers()))
 
@@ -239,38 +290,10 @@ def _draw_review(result: PotentialReview, axes: Axes, palette: Palette) -> None:
 
 @_draw.register
 def _draw_sweep(result: Sweep, axes: Axes, palette: Palette, *, measure: str | None = None) -> None:
-    measures = {panel.name: panel for panel in CURVE_PANELS if is_measured(panel, result)}
-    if "share" in result.dataset:
-        measures = {SHARES.name: SHARES} | measures
-    if not measures:
+    charts = {chart.frame.name: chart for chart in sweep_charts(result, palette)}
+    if not charts:
         raise NoPictureError("a sweep without numbers against the energy or a parameter has no picture")
-    if measure is not None and measure not in measures:
-        raise ValueError(f"measure={measure!r}: must be one of {', '.join(measures)}")
+    if measure is not None and measure not in charts:
+        raise ValueError(f"measure={measure!r}: must be one of {', '.join(charts)}")
     # By default, the first measure.
-    chosen_name = measure or next(iter(measures))
-    if chosen_name != SHARES.name:
-        draw_measure(axes, result, measures[chosen_name])
-        return
-    draw_shares(axes, result.values, result["share"], result.outcomes)
-    label_axes(axes, result.symbol, "percentage of starts")
-    add_panel_legend(axes, "center right")
-
-
-@_draw.register
-def _draw_laws(result: DecayLaws, axes: Axes, palette: Palette) -> None:
-    # The time axis ends at the last escape; without escapes, at 10.
-    t_max = float(result.times[-1]) if result.times.size else 10.0
-    draw_decay_laws(axes, result, t_max)
-    label_axes(axes, "t", "S(t)")
-
-
-@_draw.register
-def _draw_statistics(result: EscapeStatistics, axes: Axes, palette: Palette) -> None:
-    draw_escape_times(axes, result)
-
-
-@_draw.register
-def _draw_uncertainty(result: UncertaintyExponent, axes: Axes, palette: Palette) -> None:
-    draw_line(axes, result.separations, result.shares, "ε", "share of uncertain pairs", logarithmic="xy")
-    fitted_shares = result.amplitude * result.separations**result.exponent
-    axes.plot(result.separations, fitted_shares, "--", color=LIGHT.text, linewidth=1.2)
+    draw_chart(axes, charts[measure or next(iter(charts))])

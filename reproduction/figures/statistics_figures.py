@@ -12,8 +12,9 @@ from matplotlib.figure import Figure
 
 from engine import Plane, compute_statistics, fit_decay_laws
 from engine.results import EscapeStatistics
+from plots.pictures.charts import survival_chart, sweep_charts
 from plots.pictures.palette import LIGHT, MEASURED, PAPER, THRESHOLD
-from plots.printed.curve_figures import draw_decay_laws, draw_shares
+from plots.printed.curve_figures import draw_chart
 from plots.printed.figure_axes import add_panel_legend, label_axes, new_figure, set_titles, style_axes
 from plots.printed.figure_style import SCREEN
 from reproduction.analyses.share_fits import CaseFit, fit_case
@@ -90,7 +91,8 @@ def draw_percentages(case: str, cache: MapCache) -> Figure:
     planes = (Plane.X_Y, Plane.X_PX)
     for axes, plane in zip(panels, planes, strict=True):
         table = cache.curves(case, plane)
-        draw_shares(axes, table.values, table["share"], table.outcomes)
+        shares, *_ = sweep_charts(table, PAPER)
+        draw_chart(axes, shares, corner=None)
         label_axes(axes, "$h$", "percentage of starts" if axes is panels[0] else "")
     set_titles(panels, [f"the {plane_label(plane)} plane" for plane in planes])
     add_panel_legend(panels[1], "center right")
@@ -106,7 +108,7 @@ def draw_survival(case: str, cache: MapCache) -> Figure:
     panels = list(figure.subplots(1, len(energies), sharex=True))
     for axes, energy in zip(panels, energies, strict=True):
         statistics = compute_statistics(cache.map(case, Plane.X_PX, energy))
-        draw_decay_laws(axes, fit_decay_laws(statistics), cache.quality.t_max)
+        draw_chart(axes, survival_chart(fit_decay_laws(statistics), cache.quality.t_max))
         label_axes(axes, "$t$", "$S(t)$" if axes is panels[0] else "")
     set_titles(panels, [f"$h = {energy:.2f}$" for energy in energies])
     return figure

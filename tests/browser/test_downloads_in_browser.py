@@ -10,11 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from PIL import Image
 from playwright.sync_api import expect
 
 from engine import CASES, MapSpec, Plane, compute_map
-from plots.printed.figure_style import FigureStyle
 from tests.browser.explorer_page import ExplorerPage
 
 SMALL = "?case=III&plane=x_px&h=0.45&t_max=1000&resolution=112&orbits=0.1,0.2;0.1,-0.3"
@@ -42,14 +40,6 @@ def download_file(explorer: ExplorerPage, label: str) -> tuple[str, bytes]:
     return download.value.suggested_filename, Path(download.value.path()).read_bytes()
 
 
-def test_a_figure_of_all_maps_can_be_downloaded(small: ExplorerPage) -> None:
-    name, data = download_file(small, "Save figure")
-    assert name == "escapes-III-x_px-h0.45-t1000.png"
-    picture = Image.open(io.BytesIO(data))
-    assert picture.width == int(FigureStyle().inches * FigureStyle().dpi)
-    assert picture.text["potential"] == "III"  # type: ignore[attr-defined]
-
-
 def test_a_figure_can_be_downloaded_as_pdf_of_a_given_width(small: ExplorerPage) -> None:
     small.page.get_by_label("What to draw").select_option("Orbits")
     small.page.get_by_role("radiogroup", name="Format").get_by_label("PDF").check()
@@ -69,13 +59,6 @@ def test_the_maps_can_be_downloaded_as_netcdf(small: ExplorerPage) -> None:
     expected = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.45, (112, 112), t_max=1e3))
     with xr.open_dataset(io.BytesIO(data), engine="h5netcdf") as dataset:
         np.testing.assert_array_equal(dataset["fate"], expected.fate)
-
-
-def test_a_downloaded_script_computes_the_map(small: ExplorerPage) -> None:
-    name, data = download_file(small, "Python script")
-    assert name.endswith(".py")
-    assert "0.45" in data.decode()
-    compile(data, name, "exec")
 
 
 def test_the_link_is_copied(small: ExplorerPage) -> None:

@@ -12,7 +12,6 @@ from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 
 HEADINGS = {"Gallery": "Gallery", "Share": "Share and download", "Help": "Help"}
-ZOOMED = next(preset for preset in PRESETS if preset.view.window is not None and preset.view.system.case == "III")
 
 
 def heading(explorer: ExplorerPage, drawer: str) -> Locator:
@@ -66,20 +65,6 @@ def test_every_preset_has_a_card_and_pictures_are_loaded(explorer: ExplorerPage)
     close(explorer, "Gallery")
 
 
-@pytest.mark.slow
-def test_a_card_opens_its_view(explorer: ExplorerPage) -> None:
-    view = ZOOMED.view
-    window = view.window
-    assert window is not None
-    explorer.press("Gallery")
-    card(explorer, ZOOMED).click()
-    explorer.wait_for_view(f"case=III&plane={view.plane.key}&h={view.energy!r}", "window=")
-    assert explorer.ranges("basins")[0] == window.x_low
-    expect(explorer.radio("III")).to_be_checked()
-    expect(explorer.page.locator("p").filter(has_text=ZOOMED.caption)).to_be_visible()
-    close(explorer, "Gallery")
-
-
 def test_the_equations_are_those_of_the_system(explorer: ExplorerPage) -> None:
     explorer.press("Help")
     expect(explorer.text("Equations: Case I")).to_be_visible()
@@ -114,12 +99,32 @@ def test_the_energy_and_the_maps_stay_in_view_beside_a_drawer(open_explorer: Cal
         assert_beside_a_drawer(explorer)
 
 
+_SHIFTS = """() => {
+    window.shifts = 0
+    const add = list => list.getEntries().forEach(entry => (window.shifts += entry.value))
+    new PerformanceObserver(add).observe({type: "layout-shift"})
+}"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("size", [(420, 850), (768, 1024)])
+def test_nothing_moves_when_a_drawer_opens_or_closes(open_explorer: Callable[..., ExplorerPage], size: tuple[int, int]) -> None:
+    explorer = open_explorer(*size, QUICK)
+    explorer.page.evaluate(_SHIFTS)
+    explorer.press("Share")
+    expect(heading(explorer, "Share")).to_be_visible()
+    explorer.press("Close")
+    expect_open(explorer, None)
+    assert explorer.page.evaluate("shifts") == 0
+
+
 def assert_beside_a_drawer(explorer: ExplorerPage) -> None:
     drawer = explorer.page.locator(".drawer").bounding_box()
     slider = explorer.page.get_by_role("slider", name="Energy h", exact=True).bounding_box()
     assert drawer is not None
     assert slider is not None
-    assert slider["y"] + slider["height"] <= drawer["y"] or slider["x"] + slider["width"] <= drawer["x"]
+    is_above, is_below = slider["y"] + slider["height"] <= drawer["y"], slider["y"] >= drawer["y"] + drawer["height"]
+    assert is_above or is_below or slider["x"] + slider["width"] <= drawer["x"]
     centre = explorer.point("basins", 0.0, 0.0)
     in_drawer = "([x, y]) => Boolean(document.elementFromPoint(x, y).closest('.drawer'))"
     assert centre[1] < drawer["y"] or not explorer.page.evaluate(in_drawer, centre)

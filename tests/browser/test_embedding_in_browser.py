@@ -87,18 +87,6 @@ def test_a_wheel_zooms_without_an_entry_of_the_page_around_and_the_link_opens_th
     expect(whole.get_by_role("button", name="Share", exact=True)).to_be_visible()
 
 
-@pytest.mark.slow
-def test_the_code_of_the_drawer_embeds_the_picture(page: Page, host: str, server: str) -> None:
-    page.goto(f"{server}?case=II&t_max=100&resolution=112&focus=times")
-    wait_until_complete(page.main_frame)
-    page.get_by_role("button", name="Share", exact=True).click()
-    page.get_by_role("button", name="Copy embed code").click()
-    expect(page.get_by_text("Copied.")).to_be_visible()
-    frame = embed(page, host, page.evaluate("navigator.clipboard.readText()"))
-    wait_until_complete(frame)
-    assert frame.evaluate(_SEEN).keys() == {"times"}
-
-
 def test_pages_of_other_origins_cannot_embed_it(page: Page, server: str) -> None:
     refused: list[str] = []
     page.on("console", lambda message: refused.append(message.text) if message.type == "error" else None)

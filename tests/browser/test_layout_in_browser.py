@@ -162,7 +162,7 @@ _SHIFTS = """() => new Promise(done => {
 })"""
 
 
-@pytest.mark.parametrize(("width", "touch"), [(420, True), pytest.param(768, True, marks=pytest.mark.slow), (1280, False)])
+@pytest.mark.parametrize(("width", "touch"), [(420, True), (1280, False)])
 def test_the_parts_of_the_page_stay_in_their_places_while_it_opens(open_explorer: OpenExplorer, width: int, touch: bool) -> None:
     # Below this, browsers call the layout of a page stable.
     assert open_explorer(width, 900, QUICK, touch=touch).page.evaluate(_SHIFTS) < 0.1
@@ -177,13 +177,6 @@ def test_on_a_phone_the_rest_scrolls_over_the_map(phone: ExplorerPage) -> None:
     above = phone.page.evaluate("([x, y]) => document.elementFromPoint(x, y).className", [hint["x"] + 5, hint["y"] + 5])
     assert "controls" not in above
     phone.page.evaluate("window.scrollTo(0, 0)")
-
-
-def test_on_a_phone_one_map_is_shown_and_can_be_chosen(phone: ExplorerPage) -> None:
-    for name in ("times", "basins"):
-        phone.pick(SHORT_TITLES[name])
-        phone.page.wait_for_function(f"name => {{ const shown = ({_FIGURES})(); return shown[name] }}", arg=name)
-        assert set(figures(phone)) == {name}
 
 
 def test_a_window_that_is_made_narrow_has_the_layout_of_a_phone(open_explorer: OpenExplorer) -> None:
@@ -250,7 +243,7 @@ def test_figures_do_not_overlap(open_explorer: OpenExplorer, width: int, touch: 
     expect(explorer.page.get_by_role("heading", name="Escapes after n crossings")).to_be_visible()
     assert_apart(explorer, set(), width)
     explorer.pick("Measures")
-    explorer.wait_for_data("survival_steps", "data.t.length > 1")
+    explorer.wait_for_data("survival_lines", "data.xs.length && data.xs[0].length > 1")
     assert_apart(explorer, {"survival"}, width)
 
 

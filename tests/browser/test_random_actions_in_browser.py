@@ -39,7 +39,7 @@ QUICK = [
     for preset in PRESETS
     if preset.view.t_max <= 1e4 and preset.view.system.case in CASES and preset.view.resolution <= 224
 ]
-ACTIONS, SEEDS = 80, range(200, 206)
+ACTIONS, SEEDS = 50, range(200, 206)
 ROUNDS = 20
 """Most states that follow each other after an action."""
 

@@ -66,17 +66,6 @@ def test_one_finger_scrolls_the_page_and_leaves_the_map(open_explorer: Callable[
     assert phone.page.url == address
 
 
-@pytest.mark.slow
-def test_two_fingers_that_move_the_same_way_move_the_map(explorer: ExplorerPage) -> None:
-    before, middle = window(explorer), middle_of(explorer)
-    move_fingers(explorer, ((-50, 0), (-10, -60)), ((50, 0), (90, -60)))
-    explorer.wait_for_view("window=")
-    np.testing.assert_allclose(window(explorer)[:, 1], before[:, 1], rtol=1e-6)
-    # The same region is still between the fingers.
-    np.testing.assert_allclose(explorer.point("basins", *before[:, 0]), np.add(middle, (40, -60)), atol=1.0)
-    assert explorer.page.evaluate("() => window.scrollY") == 0
-
-
 def test_two_fingers_that_part_zoom_the_map(explorer: ExplorerPage) -> None:
     before, middle = window(explorer), middle_of(explorer)
     move_fingers(explorer, ((-40, 0), (-80, 0)), ((40, 0), (80, 0)))

@@ -161,12 +161,6 @@ def test_options_have_the_defaults_of_the_request(run: Run) -> None:
     assert f"[default: {FigureStyle().dpi}]" in out
 
 
-def test_flags_are_shown_without_a_value(run: Run) -> None:
-    _, out, _ = run("map", "--help")
-    assert "--trust" in out
-    assert "<bool>" not in out
-
-
 @pytest.mark.parametrize("before", [(), ("--json",), ("--json", "--")])
 def test_formula_may_begin_with_a_minus(before: tuple[str, ...], run: Run) -> None:
     code, out, err = run("potential", *before, "-x^3/3+0.5(x^2+y^2)")

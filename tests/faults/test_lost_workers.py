@@ -22,7 +22,7 @@ from engine import CASES, Plane, SweepSpec, compute_sweep
 from engine.foundations.execution import Execution
 from engine.propagation.fixed_step_batches import map_tiles
 from tests.forgetful_pool import ForgetfulPool
-from tests.forked import Finished, run
+from tests.forked import run
 
 SPEC = SweepSpec(CASES["III"], Plane.X_PX, (0.36, 0.4), (15, 15), t_max=2e4)
 SWEEP = (
@@ -74,14 +74,14 @@ def test_losses_of_workers_and_schedulers_are_described(error: Exception, expect
         raise error
 
 
-def sweep_and_lose(folder: Path, lose: Callable[[Any], None] | None) -> None:
+def sweep_and_lose(folder: Path, lose: Callable[[Any], None]) -> None:
     """Run the command on a cluster of two processes, with a loss after the first map."""
     os.chdir(folder)
     with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address="127.0.0.1:0") as cluster:
         lost: list[float] = []
 
         def on_progress(share: float) -> None:
-            if share > 0.0 and lose is not None and not lost:
+            if share > 0.0 and not lost:
                 lost.append(share)
                 lose(cluster)
 
@@ -100,38 +100,17 @@ def close_scheduler(cluster: Any) -> None:
     cluster.sync(cluster.scheduler.close)
 
 
-@pytest.fixture(scope="module")
-def without_loss(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
-    """The files of a sweep on a cluster that loses nothing."""
-    folder = tmp_path_factory.mktemp("without loss")
-    assert run(folder, sweep_and_lose, folder, None).code == 0
-    return files_of(folder)
+@pytest.mark.slow
+def test_a_sweep_continues_when_a_worker_is_killed(tmp_path: Path, straight: dict[str, bytes]) -> None:
+    killed = run(tmp_path, sweep_and_lose, tmp_path, kill_worker)
+    assert killed.code == 0, killed.err
+    assert files_of(tmp_path / "store.zarr") == straight
 
 
 @pytest.mark.slow
-class TestDask:
-    """The workers are processes."""
-
-    @pytest.fixture
-    def sweep(self, tmp_path: Path) -> Callable[..., Finished]:
-        def run_in(name: str, lose: Callable[[Any], None] | None) -> Finished:
-            (tmp_path / name).mkdir(exist_ok=True)
-            return run(tmp_path, sweep_and_lose, tmp_path / name, lose)
-
-        return run_in
-
-    def test_a_sweep_continues_when_a_worker_is_killed(
-        self, tmp_path: Path, sweep: Callable[..., Finished], without_loss: dict[str, bytes]
-    ) -> None:
-        killed = sweep("killed", kill_worker)
-        assert killed.code == 0, killed.err
-        assert files_of(tmp_path / "killed") == without_loss
-
-    def test_sweep_resumes_on_another_scheduler(
-        self, tmp_path: Path, sweep: Callable[..., Finished], without_loss: dict[str, bytes]
-    ) -> None:
-        lost = sweep("lost", close_scheduler)
-        assert lost.code == FAILED
-        assert "escape-explorer: the scheduler of the cluster is lost; start it" in lost.err
-        assert sweep("lost", None).code == 0
-        assert files_of(tmp_path / "lost") == without_loss
+def test_a_sweep_whose_scheduler_is_lost_resumes_without_it(tmp_path: Path, straight: dict[str, bytes]) -> None:
+    lost = run(tmp_path, sweep_and_lose, tmp_path, close_scheduler)
+    assert lost.code == FAILED
+    assert "escape-explorer: the scheduler of the cluster is lost; start it" in lost.err
+    compute_sweep(SPEC, tmp_path / "store.zarr")
+    assert files_of(tmp_path / "store.zarr") == straight

@@ -8,9 +8,8 @@ from tornado.httpclient import AsyncHTTPClient
 
 from tests.browser.served_app import RunningApp
 from tests.page_channel import Channel
-from tests.waiting import wait_until
+from tests.waiting import SECONDS, wait_until
 
-ANSWER_SECONDS = 60.0
 LINK = "?case=I&h=0.3&resolution=48&t_max=100"
 """A map that takes little time."""
 
@@ -19,7 +18,7 @@ SETTINGS = {"CACHE_BYTES": str(32 * 2**20), "PAGES_PER_ADDRESS": "10", "COMPILED
 
 async def fetch_page(address: str) -> str:
     """Return the page of a map that takes little time."""
-    page = await AsyncHTTPClient().fetch(address + LINK, request_timeout=ANSWER_SECONDS)
+    page = await AsyncHTTPClient().fetch(address + LINK, request_timeout=SECONDS)
     return page.body.decode()
 
 
@@ -38,7 +37,7 @@ async def open_page(address: str) -> None:
 
 def resting_memory(app: RunningApp) -> float:
     """Return the resident memory in bytes, without pages and running jobs."""
-    wait_until(lambda: app.figure("sessions_open") + app.figure("jobs_in_flight") == 0, ANSWER_SECONDS)
+    wait_until(lambda: app.figure("sessions_open") + app.figure("jobs_in_flight") == 0, SECONDS)
     return app.figure("resident_memory_bytes")
 
 

@@ -53,20 +53,6 @@ monomials = st.builds("{:.3g}*x^{}*y^{}".format, st.floats(-9.0, 9.0), st.intege
 polynomials = st.lists(monomials, min_size=1, max_size=4).map(lambda terms: "0.5*(x^2+y^2)+" + "+".join(terms))
 KNOWN_FORMULAS = ("½(x² + y²) − x²y²", "0.5(x^2+y^2) - x^2 y + y^3/3", "r^2/2 - x^4 - y^4", "x^2+y^2", "V(x,y) = x - y")
 formulas = st.one_of(polynomials, st.sampled_from(KNOWN_FORMULAS), random_formulas, texts)
-NAMED = ("I", "III", "C5", "HH", "One exit", "typed", "")
-
-
-def _parameter_suffix(parameters: list[tuple[str, str]]) -> str:
-    return ("@" + ",".join(f"{name}={value}" for name, value in parameters)) if parameters else ""
-
-
-_parameters = st.lists(
-    st.tuples(
-        st.sampled_from(("omega_1", "omega_2", "epsilon", "mass", "")), st.floats(0.1, 2.0).map(repr) | floats.map(repr) | texts
-    ),
-    max_size=3,
-).map(_parameter_suffix)
-case_strings = st.builds("{}{}".format, st.sampled_from(NAMED) | formulas, _parameters)
 """Potentials as arguments of the command line: a name or a formula, then parameters after @."""
 
 

@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 
 from app.state.permalink import linked_view, read_link, write_link
 from app.state.view_state import ViewState
-from cli.arguments import file_name_part, find_potential
 from engine import Potential, System, parse_formula, review_potential, write_formula
 from engine.results import PotentialReview
 from engine.systems.parameters import WELL_PARAMETERS
@@ -21,7 +20,7 @@ from engine.systems.system import TYPED
 from plots.texts.accepted_potentials import refusal
 from tests.app.state.opened_link import open_link
 from tests.contracts.potentials import WELLS
-from tests.fuzz.hostile import LONGEST_MESSAGE, anything, case_strings, formulas, mostly, result_or_error
+from tests.fuzz.hostile import LONGEST_MESSAGE, formulas, mostly, result_or_error
 from tests.fuzz.random_formulas import random_link
 
 LONGEST_REVIEW = 3.0
@@ -89,15 +88,3 @@ def test_a_known_potential_with_any_parameters_is_displayed_or_refused(
         check_display(
             System(name, "", {"omega_1": float(omega_1), "omega_2": float(omega_2), "epsilon": float(epsilon)}), reviewed(changed)
         )
-
-
-@given(case_strings)
-def test_any_potential_argument_is_found_or_refused(case: str) -> None:
-    result_or_error(lambda: find_potential(case), ["case", *WELL_PARAMETERS])
-    assert not set(file_name_part(case)) & set("/\\\0 \n")
-
-
-@given(anything)
-def test_formula_must_be_text(text: Any) -> None:
-    if not isinstance(text, str):
-        assert result_or_error(lambda: parse_formula(text), ["text", "formula"]) is None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Collection
 from concurrent.futures import ProcessPoolExecutor
 from functools import cache
 
@@ -15,7 +16,7 @@ from tests.peers.exits_by_heyoka import compare
 from tests.peers.random_systems import FACTORS, HIGHEST_DEGREE, random_formula, random_scaling, random_system, random_well
 from tests.peers.well_comparison import Comparison, compare_with_heyoka
 
-CHUNK = 10
+CHUNK = 5
 # Refusals of wells that are not open, as no orbit escapes or the escape energy is not defined, and of energies of merged exits.
 EXPECTED = ("No saddle leads out", "The well is open without a saddle", "are one exit above V")
 # Largest number of other refusals in a chunk.
@@ -26,6 +27,16 @@ STARTS, DURATION = 40, 40.0
 # at its high energy, this is true of all orbits.
 LEAST_ROBUST = 0.5
 CHAOTIC_SEEDS = {39}
+# Numbers of slow tests: wells of all forms with most functions, and all combinations of exits, bodies and escape radii.
+WITH_FUNCTIONS, ROTATING = range(3, 10), (1, 2, 3, 8)
+
+
+def slow_for(numbers: Collection[int]) -> pytest.MarkDecorator:
+    """Return a mark that repeats a test for 40 numbers: these ones are slow, the others exhaustive."""
+    marks = (pytest.mark.slow if number in numbers else pytest.mark.exhaustive for number in range(40))
+    return pytest.mark.parametrize("number", [pytest.param(number, marks=mark) for number, mark in enumerate(marks)])
+
+
 chunks = pytest.mark.parametrize(
     "chunk", [pytest.param(k, marks=pytest.mark.exhaustive if k else pytest.mark.slow) for k in range(1000 // CHUNK)]
 )
@@ -81,17 +92,15 @@ def test_exits_of_several_channels_agree_with_heyoka(seed: int) -> None:
 
 
 @cache
-def open_wells() -> tuple[tuple[int, Potential], ...]:
-    """Return the first wells with exits, with their seeds."""
-    wells: list[tuple[int, Potential]] = []
-    seed = 0
-    while len(wells) < 40:
+def open_well(number: int) -> tuple[int, Potential]:
+    """Of the wells with exits, in the order of their seeds: the seed and the potential."""
+    first = open_well(number - 1)[0] + 1 if number else 0
+    for seed in itertools.count(first):
         text, values = random_formula(seed)
         potential = parse_formula(text, parameters=values)
         if review_potential(potential).refusal is None:
-            wells.append((seed, potential))
-        seed += 1
-    return tuple(wells)
+            return seed, potential
+    raise AssertionError
 
 
 def energy_of(seed: int, potential: Potential) -> float:
@@ -100,18 +109,15 @@ def energy_of(seed: int, potential: Potential) -> float:
     return min(energy, potential.escape_energy + 0.5 * (highest - potential.escape_energy))
 
 
-@pytest.mark.parametrize(
-    "number", [pytest.param(k, marks=pytest.mark.slow if k < 10 else pytest.mark.exhaustive) for k in range(40)]
-)
+@slow_for(WITH_FUNCTIONS)
 def test_wells_with_functions_agree_with_heyoka(number: int) -> None:
-    seed, potential = open_wells()[number]
+    seed, potential = open_well(number)
     assert not compare_with_heyoka(potential, energy_of(seed, potential), seed).wrong, potential.name
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("number", range(0, 40, 5))
+@slow_for(WITH_FUNCTIONS)
 def test_the_energy_is_constant_in_wells_with_functions(number: int) -> None:
-    _, potential = open_wells()[number]
+    _, potential = open_well(number)
     energy = potential.well.energy_at(0.9)
     x = 0.1 * potential.units.length * np.linspace(-1.0, 1.0, 8)
     states = start_states(potential, Plane.X_Y, energy, x, np.zeros(8))
@@ -134,9 +140,7 @@ def accepted_system(number: int) -> tuple[int, Potential, float, np.ndarray]:
     raise AssertionError
 
 
-@pytest.mark.parametrize(
-    "number", [pytest.param(k, marks=pytest.mark.slow if k < 8 else pytest.mark.exhaustive) for k in range(40)]
-)
+@slow_for(ROTATING)
 def test_rotating_systems_bodies_and_escape_radii_agree_with_heyoka(number: int) -> None:
     seed, potential, energy, starts = accepted_system(number)
     comparison = compare(potential, energy, starts, DURATION * potential.well.exact_time_unit)

@@ -11,7 +11,6 @@ from functools import partial
 import numpy as np
 
 from app.runtime.process_state import ProcessState
-from app.views.analysis import statistics
 from app.views.orbits import orbit_plots
 from engine import CASES, Potential, integrate_orbit, start_states
 from engine.foundations.execution import DEFAULT_EXECUTION
@@ -69,7 +68,6 @@ STEPS: Mapping[str, Callable[[], object]] = {
     "the kernels of browsers": kernel_module,
     **_prepare_cases("evidence", "orbits", "layers"),
     "the panes of an orbit": orbit_plots.prepare,
-    "the charts of statistics": statistics.prepare,
     "the integrators of the catalogue, to be compiled when they are needed": reserve_catalogue,
 }
 """Functions that compile kernels or load them from the disk cache, in the order of need. The keys say what they prepare."""

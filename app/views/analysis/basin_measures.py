@@ -12,7 +12,7 @@ import panel as pn
 
 from app.state.glossary import with_terms
 from app.state.view_state import ViewState
-from app.views.analysis.measure_charts import PairsChart, SurvivalChart
+from app.views.components.charts import ChartView
 from app.views.components.in_turns import Make
 from app.views.components.texts import TextPane
 from app.views.components.widgets import COUNT_WHOLE, button, copy_button, number_rows
@@ -20,6 +20,7 @@ from engine import MEASURES, Measure, Result, Window
 from engine.foundations.wording import format_decimals, format_number
 from engine.measures.measure import Quantity
 from engine.results import DecayLaws, UncertaintyExponent
+from plots.pictures.charts import PAIRS, SURVIVAL, Shape, pairs_chart, survival_chart
 
 DESCRIBED_MEASURES: tuple[Measure, ...] = tuple(measure for measure in MEASURES.values() if measure.sentence is not None)
 """The measures that the page describes in words, in order."""
@@ -30,6 +31,11 @@ def counts_in_box(measure: Measure) -> bool:
     return not measure.place
 
 
+_PAIRS_TEXT = (
+    "<b>@y{percent}</b> of the pairs have different fates<br>at a separation of @x{number}, @label<br>"
+    "95 % interval @low{percent} to @high{percent}"
+)
+_SURVIVAL_TEXT = "<b>$snap_y{percent}</b> are still inside<br>at t = $snap_x{number}: @label"
 _COMPUTING_ORBITS = "Computing further orbits …"
 _UNDEFINED = "Not defined for this map."
 
@@ -55,9 +61,8 @@ class BasinMeasuresView:
         self.copy = copy_button(self._rows, on_copy)
         self._sentences: dict[str, str] = {}
         self._results: dict[str, Result] = {}
-        self.survival = SurvivalChart()
-        self.uncertainty = PairsChart()
-        self._charts: dict[type, Any] = {DecayLaws: self.survival, UncertaintyExponent: self.uncertainty}
+        self.survival = ChartView(SURVIVAL, _SURVIVAL_TEXT, Shape.LINE)
+        self.uncertainty = ChartView(PAIRS, _PAIRS_TEXT)
         state.follow(self._follow_box, "box")
 
     def begin(self) -> None:
@@ -79,8 +84,7 @@ class BasinMeasuresView:
         sentence = MEASURES[name].sentence
         assert sentence is not None
         self._results[name] = result
-        if type(result) in self._charts:
-            self._charts[type(result)].show(result)
+        self._draw(result)
         self._put(name, sentence(result))
 
     def wait_for(self, name: str) -> None:
@@ -95,7 +99,7 @@ class BasinMeasuresView:
 
     def parts(self) -> list[Make]:
         """Return functions that make the parts of the section."""
-        return [self._build_texts, self.survival.build, self.uncertainty.build]
+        return [self._build_texts, lambda: [self.survival.build()], lambda: [self.uncertainty.build()]]
 
     def _build_texts(self) -> list[pn.viewable.Viewable]:
         return [pn.Column(self.text, self.whole, self.copy, *self.buttons.values(), margin=0)]
@@ -103,12 +107,18 @@ class BasinMeasuresView:
     def _remove(self, names: list[str]) -> None:
         for name in names:
             self._sentences.pop(name, None)
-            result = self._results.pop(name, None)
-            if type(result) in self._charts:
-                self._charts[type(result)].show(None)
+            if isinstance(self._results.pop(name, None), UncertaintyExponent):
+                self.uncertainty.show(None)
             if name in self.buttons:
                 self.buttons[name].disabled = False
         self._write()
+
+    def _draw(self, result: Result) -> None:
+        """Draw a result that has a chart. The survival of the last map stays until that of the next map arrives."""
+        if isinstance(result, UncertaintyExponent):
+            self.uncertainty.show(pairs_chart(result))
+        elif isinstance(result, DecayLaws):
+            self.survival.show(survival_chart(result) if result.times.size else None)
 
     def _put(self, name: str, sentence: str) -> None:
         self._sentences[name] = sentence

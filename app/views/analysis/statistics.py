@@ -2,51 +2,31 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from html import escape
-from typing import Any
 
-import holoviews as hv
-import numpy as np
 import panel as pn
-from bokeh.models import CustomJSTickFormatter, FixedTicker, LogAxis
-from bokeh.models.dom import HTML
 
-from app.browser.javascript import callback_code
-from app.browser.module_files import NUMBERS
 from app.job_clients.shown_results import ShownResults
-from app.state.help_texts import title_with_help
 from app.state.view import Analysis
 from app.state.view_state import ViewState
+from app.views.components.charts import ChartView
 from app.views.components.in_turns import Make
 from app.views.components.legends import patch
-from app.views.components.plots import chart_hover
 from app.views.components.texts import TextPane, escape_facts
 from app.views.components.widgets import COUNT_WHOLE, button, copy_button
 from engine import EscapeMap, Fate, compute_statistics
 from engine.foundations.wording import format_share, format_share_range
 from engine.propagation.fates import UNRESOLVED
 from engine.results import EscapeStatistics
-from plots.pictures.charts import BINS, MOST_CROSSINGS
+from plots.pictures.charts import PROBABILITIES, TIMES, Shape, probabilities_chart, times_chart
 
-CROSSINGS = "n"
-"""Column of the numbers of crossings in the second chart."""
-
-PROBABILITY = "p"
-"""Column of the escape probabilities in the second chart."""
-
-_TIMES_TEXT = "<b>@top{count} starts</b> escape<br>from t = @left{number} to @right{number}"
+_TIMES_TEXT = "<b>@y{count} starts</b> escape<br>from t = @low{number} to @high{number}"
 _PROBABILITIES_TEXT = (
-    f"n = @{CROSSINGS} upward crossings:<br><b>@{PROBABILITY}{{percent}}</b> of the orbits still inside<br>"
-    "escape before the next one"
+    "n = @x{count} upward crossings:<br><b>@y{percent}</b> of the orbits still inside<br>escape before the next one"
 )
-# Numbers of crossings, as categories of an axis.
-_CROSSING_LABELS = [str(n) for n in range(MOST_CROSSINGS + 1)]
-_BAR_COLOUR = "#5b8db8"
-_TICK = callback_code(NUMBERS, "number(tick)")
-# Largest number of labels of the axis of time.
-_MOST_TICKS = 5
+# Width of the charts over their height.
+_ASPECT = 1.6
 
 
 class StatisticsView:
@@ -67,6 +47,8 @@ class StatisticsView:
         self._frame: EscapeMap | None = None
         # Whether the charts are on the page.
         self._is_built = False
+        self._times = ChartView(TIMES, _TIMES_TEXT, Shape.BARS, aspect_ratio=_ASPECT)
+        self._probabilities = ChartView(PROBABILITIES, _PROBABILITIES_TEXT, Shape.BARS, aspect_ratio=_ASPECT)
         self.table = TextPane("", name="statistics", sizing_mode="stretch_width")
         self.whole = button(COUNT_WHOLE, lambda: state.param.update(box=None))
         self.copy = copy_button(self._rows, on_copy)
@@ -82,22 +64,16 @@ class StatisticsView:
 
     def parts(self) -> list[Make]:
         """Return functions that make the parts of the section."""
-        return [self._build_table, self._build_times, self._build_probabilities]
+        return [self._build_table, lambda: [self._times.build()], self._build_probabilities]
 
     def _build_table(self) -> list[pn.viewable.Viewable]:
         return [pn.Column(self.whole, self.table, self.copy, margin=0, css_classes=["plot"])]
 
-    def _build_times(self) -> list[pn.viewable.Viewable]:
-        self._times = _plot(_draw_times, "histogram", "Escape times")
-        _describe(self._times, _TIMES_TEXT)
-        return [pn.pane.Bokeh(self._times.state, margin=0)]
-
     def _build_probabilities(self) -> list[pn.viewable.Viewable]:
-        self._probabilities = _plot(_draw_probabilities, "probabilities", "Escapes after n crossings")
-        _describe(self._probabilities, _PROBABILITIES_TEXT)
+        chart = self._probabilities.build()
         self._is_built = True
         self._count()
-        return [pn.pane.Bokeh(self._probabilities.state, margin=0)]
+        return [chart]
 
     def _count(self) -> None:
         """Count and show the pixels of the last frame, if the tab is open."""
@@ -105,21 +81,8 @@ class StatisticsView:
             return
         statistics = compute_statistics(self._frame, self._state.box)
         self.table.object = self._table(statistics)
-        self._show_times(*statistics.time_histogram(BINS))
-        self._show_probabilities(statistics.escape_probabilities[: len(_CROSSING_LABELS)])
-
-    def _show_times(self, edges: np.ndarray, counts: np.ndarray) -> None:
-        handles = self._times.handles
-        handles["source"].data = {"left": edges[:-1], "right": edges[1:], "top": counts}
-        handles["x_range"].update(start=edges[0], end=edges[-1])
-        handles["xaxis"].ticker.ticks = _few_ticks(*edges[[0, -1]].tolist())
-        handles["y_range"].update(start=0.0, end=1.05 * max(float(counts.max()), 1.0))
-
-    def _show_probabilities(self, probabilities: np.ndarray) -> None:
-        heights = np.zeros(len(_CROSSING_LABELS))
-        heights[: len(probabilities)] = probabilities
-        self._probabilities.handles["source"].data = {CROSSINGS: _CROSSING_LABELS, PROBABILITY: heights}
-        self._probabilities.handles["y_range"].end = 1.05 * float(heights.max()) if heights.any() else 1.0
+        self._times.show(times_chart(statistics))
+        self._probabilities.show(probabilities_chart(statistics))
 
     def _shares(self, statistics: EscapeStatistics) -> list[tuple[str, str, int]]:
         """Return name, colour and code of each fate in the table."""
@@ -153,64 +116,3 @@ class StatisticsView:
             low, high = intervals[code]
             rows.append((name, repr(shares[code]), repr(low), repr(high)))
         return rows + [(name, value, "", "") for name, value in escape_facts(statistics).items()]
-
-
-def _draw_times() -> hv.Histogram:
-    style = {"color": _BAR_COLOUR, "line_color": None, "logx": True, "xlabel": "escape time (logarithmic)", "ylabel": "starts"}
-    return hv.Histogram((np.array([1.0, 10.0]), np.zeros(1))).opts(**style, **_frame())
-
-
-def _draw_probabilities() -> hv.Bars:
-    bars = hv.Bars([(number, 0.0) for number in _CROSSING_LABELS], (CROSSINGS, "upward crossings n"), (PROBABILITY, "p"))
-    style = {"color": _BAR_COLOUR, "line_color": None, "ylabel": "p", "ylim": (0.0, 1.0)}
-    return bars.opts(**style, **_frame())
-
-
-def _frame() -> dict[str, Any]:
-    fonts = {"labels": "12px", "ticks": "12px"}
-    return {
-        "responsive": True,
-        "aspect": 1.6,
-        "title": "",
-        "fontsize": fonts,
-        "toolbar": None,
-        "default_tools": [],
-        "hooks": [_simplify],
-    }
-
-
-def _simplify(plot: Any, _element: Any) -> None:
-    """Remove background and tick marks, as `square_figure` does."""
-    plot.state.min_border_top = 28
-    plot.state.sizing_mode = "scale_width"
-    plot.state.background_fill_alpha = plot.state.border_fill_alpha = 0.0
-    plot.state.axis.major_tick_line_color = plot.state.axis.minor_tick_line_color = None
-    for axis in plot.state.select(LogAxis):
-        axis.update(ticker=FixedTicker(ticks=[]), formatter=CustomJSTickFormatter(code=_TICK))
-
-
-def _few_ticks(low: float, high: float) -> list[float]:
-    """Return 1, 2 and 5 times the powers of ten from `low` to `high`; only the powers if these would be too many labels."""
-    decades = [10.0**k for k in range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)]
-    fine_ticks, powers = ([m * ten for ten in decades for m in steps if low <= m * ten <= high] for steps in ((1, 2, 5), (1,)))
-    return fine_ticks if len(fine_ticks) <= _MOST_TICKS else powers
-
-
-def _plot(draw: Callable[[], hv.Element], name: str, title: str) -> Any:
-    """Return the plot of an element with its help text. New data for a plot are 20 times faster than a new plot."""
-    # Elements cannot be made before their renderer is loaded.
-    renderer = hv.renderer("bokeh")
-    plot = renderer.get_plot(draw())
-    plot.state.elements = [HTML(html=title_with_help(title, name))]
-    return plot
-
-
-def _describe(plot: Any, text: str) -> None:
-    """Make the plot describe the bar under the mouse, also while the mouse is above the top of the bar."""
-    plot.state.add_tools(chart_hover(text, [plot.handles["glyph_renderer"]], mode="vline"))
-
-
-def prepare() -> None:
-    """Draw both charts once. The first charts of a process load what HoloViews needs, which delays the event loop by 0.3 s."""
-    for draw in (_draw_times, _draw_probabilities):
-        _plot(draw, "histogram", "")

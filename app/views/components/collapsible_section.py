@@ -128,9 +128,7 @@ class Drawers(Stack):
         }
         super().__init__(makes, "drawer", later=later)
         options = {label: name for name, (label, _, _) in drawers.items() if label}
-        self.buttons = pn.widgets.CheckButtonGroup(
-            options=options, color="light", margin=0, css_classes=self._classes(is_open=False)
-        )
+        self.buttons = pn.widgets.CheckButtonGroup(options=options, color="light", margin=0, css_classes=["solid"])
         self.buttons.param.watch(self._press, "value")
 
     def show(self, name: str | None) -> None:
@@ -139,7 +137,7 @@ class Drawers(Stack):
         # Send all changes in one message. Between two messages, the user could press a button while the old button is marked.
         with pn.io.hold():
             super().show(name)
-            self.buttons.param.update(value=self._marked_buttons(), css_classes=self._classes(is_open=name is not None))
+            self.buttons.value = self._marked_buttons()
             if name != previous_name:
                 self._on_toggle(name is not None)
 
@@ -152,11 +150,6 @@ class Drawers(Stack):
     def _marked_buttons(self) -> list[str]:
         """Return the buttons to mark: the button of the open drawer, if it has one."""
         return [name for name in self.buttons.options.values() if name == self.shown]
-
-    @staticmethod
-    def _classes(*, is_open: bool) -> list[str]:
-        """Return the CSS classes of the buttons; in a narrow window, the maps shrink while a drawer is open."""
-        return ["solid", "drawer-buttons", *(["drawer-open"] if is_open else [])]
 
     def _make_head(self, title: str) -> list[pn.viewable.Viewable]:
         head = TextPane(f"<h2>{title}</h2>", sizing_mode="stretch_width", margin=0, align="center")

@@ -18,7 +18,7 @@ from app.views.components.widgets import button, keep_place
 from engine import EscapeMap, Evidence, Fate
 from engine.foundations.wording import format_number, format_share, format_whole
 from plots.layers.table import LAYERS
-from plots.pictures.palette import Entry, Palette
+from plots.pictures.palette import Palette
 
 STOP = "Stop"
 """Label of the button while the map is computed."""
@@ -126,7 +126,7 @@ class ProgressView:
 def _shares(frame: EscapeMap, palette: Palette) -> str:
     """Return a bar and a line with the share of each outcome of the interior starts, in the colours of the basins."""
     shares = frame.fractions()
-    entries = palette.legend_entries(frame.spec.outcomes) | {Fate.BOUNDED: Entry("stay", palette.bounded)}
+    entries = palette.legend_entries(frame.spec.outcomes) | {Fate.BOUNDED: palette.outcomes[Fate.BOUNDED]}
     if shares[Fate.FAILED]:
         entries[Fate.FAILED] = palette.outcomes[Fate.FAILED]
     entry_shares = [(entry, shares[fate]) for fate, entry in entries.items()]
@@ -168,4 +168,4 @@ def _share_on_evidence(frame: EscapeMap) -> str:
     """Return the share of the bounded orbits that are known to be bounded before t_max; empty if there are none."""
     evidence = frame.evidence[frame.fate == Fate.BOUNDED]
     is_early = ~np.isin(evidence, (Evidence.NONE, Evidence.INTEGRATED))
-    return f"; {format_share(np.mean(is_early), 0)} of those that stay do so on evidence" if is_early.any() else ""
+    return f"; {format_share(np.mean(is_early), 0)} of the bounded orbits are known by evidence" if is_early.any() else ""

@@ -9,8 +9,14 @@ from typing import Any
 import numpy as np
 from bokeh.events import DoubleTap, SelectionGeometry
 from bokeh.models import (
+    BasicTicker,
+    BasicTickFormatter,
     BoxSelectTool,
     FixedTicker,
+    LinearScale,
+    LogScale,
+    LogTicker,
+    LogTickFormatter,
     MultiLine,
     Patches,
     Range1d,
@@ -33,6 +39,7 @@ from app.views.components.orbit_lines import (
 from app.views.components.plots import FigurePane, history_figure, set_range
 from engine import CASES, integrate_orbit, start_states
 from engine.slices.planes import SECTION
+from plots.pictures.histories import has_log_time
 from plots.pictures.orbit_curves import OrbitCurves, compute_orbit_curves
 from plots.pictures.orbit_quantities import ORBIT_QUANTITIES, OrbitQuantity
 from plots.pictures.palette import MARK_EDGE, THRESHOLD
@@ -60,6 +67,7 @@ class OrbitPlots:
         self._mapper = orbit_colours(state)
         self._histories = {name: lines(f"{name}_histories") for name in self._y_ranges}
         self._bands = {name: lines(f"{name}_bands") for name in self._y_ranges}
+        self._plots: dict[str, figure] = {}
         self._time_mark = Span(location=0.0, dimension="height", line_color=MARK_EDGE, line_dash="dotted", visible=False)
         self._orbits: list[tuple[int, OrbitCurves]] = []
 
@@ -103,6 +111,8 @@ class OrbitPlots:
         if quantity.threshold is not None:
             style = {"line_color": THRESHOLD, "line_dash": "dashed", "line_width": 1.5}
             plot.add_layout(Span(location=quantity.threshold, dimension="width", **style))
+        self._plots[name] = plot
+        self._scale_time(quantity)
         return plot
 
     def _select_interval(self, event: SelectionGeometry) -> None:
@@ -122,6 +132,17 @@ class OrbitPlots:
         for quantity in ORBIT_QUANTITIES:
             histories = [curves.histories[quantity.name] for curves in drawn]
             set_range(self._y_ranges[quantity.name], *quantity.limits(histories))
+            self._scale_time(quantity)
+
+    def _scale_time(self, quantity: OrbitQuantity) -> None:
+        """Give the figure of a quantity, if it is made, a linear or a logarithmic axis of time."""
+        plot = self._plots.get(quantity.name)
+        is_log = has_log_time(self._x_range.end, logarithmic=quantity.logarithmic)
+        if plot is None or is_log == isinstance(plot.x_scale, LogScale):
+            return
+        plot.x_scale = LogScale() if is_log else LinearScale()
+        plot.xaxis.ticker = LogTicker() if is_log else BasicTicker()
+        plot.xaxis.formatter = LogTickFormatter() if is_log else BasicTickFormatter()
 
 
 def prepare() -> None:

@@ -56,8 +56,8 @@ TOLERANCE = 3e-15
 _EARLIER_WEIGHT = 0.3
 # Size of the steps for which this weight was found.
 _USUAL_STEP = 0.35
-# Factor of the norm where frequencies differ: a power of 10 with which energies are conserved to 1e-11. It is above 1 because
-# coefficients of functions with singularities decrease more slowly than those of polynomials.
+# Factor of the norm in potentials with centres: a power of 10 with which energies are conserved to 1e-11. It is above 1 because
+# coefficients near singularities decrease more slowly than elsewhere.
 _CAUTION = 10.0
 # Speed that is added to the speed that limits a step, so that no step is longer than 16.
 _LEAST_SPEED = 1.0 / 16.0
@@ -146,7 +146,8 @@ def _step_size(program: StraightLine, x: Series, y: Series, structure: Structure
         unit = h * (1.0 / _USUAL_STEP)
         scaled_norm = _EARLIER_WEIGHT * third_last + unit * (second_last + unit * last)
         speed, force = abs(x[1]) + abs(y[1]), abs(x[2]) + abs(y[2])
-        h = _root_of_tolerance(program, _CAUTION * program.apply("/", scaled_norm, speed + unit * force))
+        relative_norm = program.apply("/", scaled_norm, speed + unit * force)
+        h = _root_of_tolerance(program, _CAUTION * relative_norm if structure.carries_remainders else relative_norm)
         longest = 1.0 / (speed + program.apply("sqrt", force) + _LEAST_SPEED)
     h = where(h < longest, h, longest)
     return where(norm < structure.largest_norm, h, math.nan)

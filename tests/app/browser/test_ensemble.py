@@ -32,6 +32,8 @@ from tests.peers.taylor_heyoka import equations
 
 COUNT, FRAMES, LONGEST = 200, 50, 40.0
 SYSTEMS = [("II", 0.22), ("III", 0.45)]
+FALSE_ALARM = 1e-7
+"""Probability that a comparison of two random samples fails though both have the same distribution."""
 # The browser paints places to a thousandth of a pixel; the steps are those of the server.
 PLACE_ERROR = 1e-8
 
@@ -178,7 +180,7 @@ def test_equal_seeds_give_equal_starts(drawn: dict[str, np.ndarray]) -> None:
 def test_starts_in_the_well_are_spread_evenly_over_the_energy_surface(drawn: dict[str, np.ndarray]) -> None:
     states, expected = drawn["well"], sample_starts(System("III").potential, 0.45, 4000, seed=9)
     for column in (lambda each: each[:, 0], lambda each: each[:, 1], lambda each: np.arctan2(each[:, 3], each[:, 2])):
-        assert stats.ks_2samp(column(states), column(expected)).pvalue > 1e-3
+        assert stats.ks_2samp(column(states), column(expected)).pvalue > FALSE_ALARM
 
 
 @needs_node
@@ -188,7 +190,7 @@ def test_starts_on_a_disc_are_spread_evenly_around_its_point(drawn: dict[str, np
     share = np.hypot(x / (window.x_high - window.x_low), px / (window.ordinate_high - window.ordinate_low)) / 0.005
     assert share.max() <= 1.0 + 1e-12
     # Half of the area lies within 1/√2 of the radius.
-    assert np.mean(share < 1.0 / math.sqrt(2.0)) == pytest.approx(0.5, abs=0.04)
+    assert np.mean(share < 1.0 / math.sqrt(2.0)) == pytest.approx(0.5, abs=0.045)
 
 
 @needs_node
@@ -196,7 +198,7 @@ def test_starts_of_a_box_fill_it_evenly(drawn: dict[str, np.ndarray]) -> None:
     x, px = drawn["box"][:, 0], drawn["box"][:, 2]
     assert (x.min(), x.max(), px.min(), px.max()) == pytest.approx((0.1, 0.3, -0.2, 0.1), abs=1e-3)
     counts = np.histogram2d(x, px, bins=4)[0]
-    np.testing.assert_allclose(counts, 250.0, atol=4.5 * math.sqrt(250.0))
+    np.testing.assert_allclose(counts, 250.0, atol=6.0 * math.sqrt(250.0))
 
 
 @needs_node
@@ -208,7 +210,7 @@ def test_entering_orbits_stay_as_long_as_entering_orbits_of_the_library(drawn: d
         for states in (drawn["exits"], sample_entrances(potential, 0.45, 4000, seed=8))
     )
     assert (found == t_max).any()
-    assert stats.ks_2samp(found, wanted).pvalue > 1e-3
+    assert stats.ks_2samp(found, wanted).pvalue > FALSE_ALARM
     # The mean time until t_max is volume over flux times the share of all starts that leave until then.
     leave = classify_orbits(potential, 0.45, sample_starts(potential, 0.45, 4000, seed=9), t_max).fate > 0
     assert found.mean() == pytest.approx(compute_flux(potential, 0.45).mean_passage_time * leave.mean(), rel=0.1)
@@ -219,7 +221,7 @@ def test_half_of_the_orbits_at_the_tubes_leaves_where_the_other_half_turns_back(
     potential, states = System("III").potential, drawn["tubes"]
     outcomes = classify_orbits(potential, 0.45, states, 100.0)
     leave = np.abs(outcomes.escape_time - BEFORE_EXIT) < 1.0
-    assert leave.mean() == pytest.approx(0.5, abs=0.03)
+    assert leave.mean() == pytest.approx(0.5, abs=0.055)
     path = sample_orbits(potential, states[~leave], [BEFORE_EXIT])
     exits = np.concatenate([orbit.half_path for orbit in find_lyapunov_orbits(potential, 0.45)])
     gaps = np.hypot(path.x - exits[:, 0], path.y - exits[:, 1]).min(axis=1)

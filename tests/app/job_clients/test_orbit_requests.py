@@ -120,12 +120,6 @@ def test_the_divergent_start_has_another_fate_and_is_chosen(session: Session) ->
     assert "divergent start is" in recorder.messages[-1]
 
 
-def test_without_a_start_there_is_no_search(session: Session) -> None:
-    state, _, recorder, jobs = session
-    DivergentStartRequests(state, jobs, recorder.notify, unlocked).search()
-    assert recorder.messages == ["Click a start first. The nearest start that escapes elsewhere is then searched for."]
-
-
 def test_a_divergent_start_that_arrives_too_late_is_not_added(session: Session) -> None:
     state, _, recorder, jobs = session
     search = DivergentStartRequests(state, jobs, recorder.notify, unlocked)

@@ -13,7 +13,7 @@ import pytest
 from app.session.analysis_presenter import AnalysisPresenter
 from app.state.view import Analysis, default_settings
 from app.state.view_state import ViewState
-from app.views.analysis.curves import REFINED_VALUES, SWEPT_VALUES
+from app.views.analysis.curves import REFINED_VALUES, SWEPT_VALUES, CurvesView
 from engine import CASES, EscapeMap, MapSpec, Plane, System, Trust, Window, compute_map
 from engine.jobs.manager import Jobs
 from plots.layers.layer import Analyses
@@ -131,20 +131,6 @@ def test_all_images_of_manifolds_or_one_are_drawn_over_their_section(begin: Call
     assert 0 < numbers[0] < numbers[1] < numbers[2]
 
 
-def test_origins_and_regularity_have_pictures_while_they_are_switched_on(begin: Callable[..., Session], frame: EscapeMap) -> None:
-    session = begin(layers=frozenset({"origins", "judge"}))
-    session.maps.show(frame, {**session.maps.source.data})
-    session.show(frame)
-    session.wait_for(lambda: {*session.analyses} == {"origins", "judge"})
-    assert session.maps.source.data["passage"][0].shape == frame.fate.shape
-    grid = session.maps.grid.layout()
-    pictures = len(grid.objects)
-    session.state.layers = frozenset({"judge"})
-    assert len(grid.objects) == pictures - 1
-    session.state.layers = frozenset()
-    assert session.analyses == {}
-
-
 def test_a_picture_says_that_its_layer_is_being_computed_until_it_is(begin: Callable[..., Session]) -> None:
     session = begin(layers=frozenset({"origins", "trust"}))
     # No other test has the results of this map.
@@ -182,13 +168,11 @@ def test_basins_are_measured_and_laws_are_fitted_in_the_box(begin: Callable[...,
     session.show(frame)
     measures = session.presenter.measures
     session.wait_for(lambda: all(name in measures.text.object for name in ("Basin entropy", "Wada", "Decay law", "Flux")))
-    steps = measures.survival.steps
-    assert len(steps.data["t"]) > 10
-    whole = float(steps.data["share"][0])
+    lines = measures.survival.lines
+    whole = len(lines.data["xs"][0])
+    assert whole > 10
     session.state.box = Window(-0.2, 0.3, -0.2, 0.2)
-    session.wait_for(
-        lambda: len(measures.survival.steps.data["t"]) > 0 and float(measures.survival.steps.data["share"][0]) != whole
-    )
+    session.wait_for(lambda: len(lines.data["xs"][0]) != whole)
 
 
 def test_another_map_cancels_a_slow_measure(begin: Callable[..., Session], frame: EscapeMap) -> None:
@@ -200,21 +184,26 @@ def test_another_map_cancels_a_slow_measure(begin: Callable[..., Session], frame
     assert session.jobs.in_flight == 0
 
 
+def shown_values(curves: CurvesView) -> np.ndarray:
+    assert curves.shown is not None
+    return curves.shown.values
+
+
 def test_curves_arrive_one_by_one_and_stop_at_a_click_or_with_another_case(begin: Callable[..., Session]) -> None:
     session = begin(analysis=Analysis.ENERGIES)
     curves = session.presenter.curves
     curves.button.clicks += 1
-    session.wait_for(lambda: len(curves.points.data["value"]) >= 2)
+    session.wait_for(lambda: curves.shown is not None and curves.shown.values.size >= 2)
     assert curves.running
     curves.button.clicks += 1
     assert not curves.running
     assert session.jobs.in_flight == 0
     assert f"of {SWEPT_VALUES + REFINED_VALUES}" in curves.text.object
-    energies = np.sort(curves.points.data["value"])
+    energies = np.sort(shown_values(curves))
     curves.open_near(float(energies[1]) + 1e-4)
     assert (session.state.energy, session.state.plane) == (energies[1], Plane.X_PX)
     session.state.param.update(system=System("III"), energy=0.4)
-    assert len(curves.points.data["value"]) == 0
+    assert curves.shown is None
     curves.open_near(0.3)
     assert session.state.energy == 0.4
 
@@ -223,13 +212,13 @@ def test_a_click_opens_the_plane_of_the_shown_curves_after_another_sweep_was_sto
     session = begin(analysis=Analysis.ENERGIES)
     curves = session.presenter.curves
     curves.button.clicks += 1
-    session.wait_for(lambda: len(curves.points.data["value"]) >= 2)
+    session.wait_for(lambda: curves.shown is not None and curves.shown.values.size >= 2)
     curves.button.clicks += 1
     session.state.plane = Plane.X_Y
     with session.changed:
         curves.button.clicks += 1
         curves.button.clicks += 1
-    value = float(np.max(curves.points.data["value"]))
+    value = float(np.max(shown_values(curves)))
     curves.open_near(value)
     assert (session.state.energy, session.state.plane) == (value, Plane.X_PX)
 
@@ -241,9 +230,9 @@ def test_a_click_on_a_curve_against_a_parameter_opens_its_system(begin: Callable
     assert list(curves.against.options) == ["h", "ω₁", "ω₂", "ε", "Ω"]
     curves.against.value = "epsilon"
     curves.button.clicks += 1
-    session.wait_for(lambda: len(curves.points.data["value"]) >= 2)
+    session.wait_for(lambda: curves.shown is not None and curves.shown.values.size >= 2)
     curves.button.clicks += 1
-    value = float(np.max(curves.points.data["value"]))
+    value = float(np.max(shown_values(curves)))
     curves.open_near(value)
     assert session.opened[0] == System("II", parameters={"epsilon": value})
     assert session.opened[1]["energy"] == 0.25

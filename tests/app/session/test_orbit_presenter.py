@@ -14,7 +14,6 @@ from app.views.maps.markers import Markers
 from app.views.maps.well import WellView
 from engine import Coordinate, ParameterAxis, Plane, Slice, System
 from engine.jobs.manager import Jobs
-from engine.trajectories.chaos_indicators import Verdict
 from tests.app.session.session_lock import context_of
 from tests.waiting import SECONDS
 
@@ -94,15 +93,6 @@ def test_an_orbit_opens_the_section_of_its_system_at_its_energy(
     [(system, values)] = session.opened
     assert system == expected
     assert (values["plane"], values["energy"], values["starts"]) == (Plane.X_PX, energy, ((0.1, 0.0),))
-
-
-def test_a_bounded_orbit_gets_four_verdicts(begin: Callable[[Slice], Session]) -> None:
-    session = begin(Plane.X_PX)
-    session.state.param.update(energy=0.1, t_max=1e4)
-    session.state.add_start((0.1, 0.05))
-    with session.changed:
-        assert session.changed.wait_for(lambda: session.presenter.controls.indicators.object.count("<tr>") == 4, SECONDS)
-    assert Verdict.CHAOTIC in session.presenter.controls.indicators.object
 
 
 def test_another_slice_removes_the_orbits_and_says_so(begin: Callable[[Slice], Session]) -> None:

@@ -131,10 +131,6 @@ def test_a_missing_chosen_orbit_is_the_first() -> None:
     assert read_link({"orbits": "0.1,0.2", "look": "3"})[0]["chosen"] == 0
 
 
-def test_an_invalid_value_does_not_affect_the_others() -> None:
-    assert read_link({"case": "III", "h": "high", "resolution": "450"})[0] == {"system": System("III"), "resolution": 450}
-
-
 def test_a_case_without_an_energy_has_its_initial_energy() -> None:
     assert open_link({"case": "III"})[0].energy == 0.35
 

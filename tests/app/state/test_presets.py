@@ -157,10 +157,6 @@ def test_fates_agree_with_the_caption(key: str) -> None:
     assert fates(view_of(key)) == FATES[key]
 
 
-def test_the_example_on_stable_manifolds_shows_manifolds() -> None:
-    assert "manifolds=yes" in write_link(ViewState(**view_of("threads").values()))
-
-
 def test_shares_agree_with_the_caption() -> None:
     view = view_of("shares")
     found = compute_map(spec_of(view))

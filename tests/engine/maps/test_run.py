@@ -102,12 +102,3 @@ def test_an_interrupted_test_for_evidence_leaves_no_evidence() -> None:
         with ForgetfulPool(good_calls, cancel) as pool:
             interrupted = compute_map(spec, cancel=cancel, executor=pool)
         assert any(np.array_equal(early(interrupted), expected) for expected in after_each_test), good_calls
-
-
-def test_a_map_interrupted_and_resumed_again_and_again_is_the_same() -> None:
-    spec, result, calls = SPECS["III"], None, 0
-    while result is None or not result.complete:
-        cancel, calls = threading.Event(), calls + 10
-        with ForgetfulPool(calls, cancel) as pool:
-            result = compute_map(spec, cancel=cancel, executor=pool, resume=result)
-    assert_same_map(result, at_once(spec))

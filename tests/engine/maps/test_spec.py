@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import astuple, fields, replace
+from dataclasses import astuple, replace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from engine import CASES, Coordinate, MapSpec, Plane, Potential, Slice
+from engine import CASES, Coordinate, MapSpec, Plane, Slice
 from engine.slices.axes import Energy
 from engine.slices.default_window import default_window
 
@@ -18,17 +18,6 @@ WINDOW = (-1.0, 1.0, -1.0, 1.0)
 
 def spec_with(**changed: Any) -> MapSpec:
     return MapSpec(**{"potential": I, "plane": Plane.X_Y, "energy": 0.2, "window": WINDOW} | changed)
-
-
-@pytest.mark.parametrize("name", ["x_px", "(x, px)"])
-def test_plane_can_be_given_by_name(name: Any) -> None:
-    assert spec_with(plane=name) == spec_with(plane=Plane.X_PX)
-
-
-def test_a_request_computes_nothing() -> None:
-    potential = Potential("new", ((2, 0, 0.5), (0, 2, 0.5), (1, 2, -1.2345)))
-    MapSpec(potential, Plane.X_PX, 0.15)
-    assert set(vars(potential)) == {field.name for field in fields(Potential)}
 
 
 def test_outer_pixel_centres_are_half_a_pixel_from_the_edges() -> None:
@@ -81,10 +70,3 @@ def test_other_maps_have_the_default_window(case: str, plane: Slice, count: int)
     """An even number, a line that orbits leave, a potential without the symmetry, a line of starts alone."""
     spec = MapSpec(CASES[case], plane, 0.6, (count, count))
     assert spec.find_window() == default_window(CASES[case], plane, 0.6)
-
-
-def test_the_zero_velocity_curve_lies_in_the_window_where_the_energy_is_just_enough() -> None:
-    spec = MapSpec(CASES["I"], Plane.X_PX, 0.19, window=(-0.2, 0.5, -0.7, 0.7))
-    x, px = np.concatenate(spec.trace_zero_velocity_curve()).T
-    np.testing.assert_allclose(0.5 * px**2 + CASES["I"].value(x, 0.0), 0.19, atol=1e-4)
-    assert -0.2 <= x.min() < x.max() <= 0.5

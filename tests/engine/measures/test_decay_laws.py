@@ -113,12 +113,6 @@ def test_a_long_survival_curve_is_subsampled_exactly() -> None:
     np.testing.assert_allclose(survival, still_inside / 20_100, rtol=0, atol=EPSILON)
 
 
-def test_arrays_are_read_only_and_count_as_bytes(exponential: DecayLaws) -> None:
-    assert not exponential.times.flags.writeable
-    assert not exponential.survival.flags.writeable
-    assert exponential.nbytes == 16 * exponential.times.size
-
-
 # Rates.
 
 

@@ -57,16 +57,6 @@ def cantor_basins(level: int) -> np.ndarray:
     return labels * np.ones((3, 1), int)
 
 
-def newton(side: int) -> WadaTest:
-    """Return the basins of Newton's method for z³ = 1 on −2 to 2, whose common boundary is the Julia set."""
-    place = (2.0 * np.arange(side) + 1.0 - side) / side * 2.0
-    z = place + 1j * place[:, None]
-    for _ in range(40):
-        z = z - (z**3 - 1.0) / (3.0 * z * z)
-    roots = np.exp(2j * np.pi * np.arange(3) / 3)
-    return compute_wada_test(np.argmin(np.abs(z[..., None] - roots), axis=-1))
-
-
 @cache
 def exits(case: str, energy: float, side: int, bounded: bool = COUNTS_BOUNDED) -> WadaTest:
     frame = compute_map(MapSpec(CASES[case], Plane.X_PX, energy, (side, side), t_max=1e3))
@@ -98,13 +88,6 @@ def test_random_images_agree_with_comparing_all_pairs_of_pixels(seed: int) -> No
 @pytest.mark.parametrize("level", [4, 7])
 def test_basins_around_a_cantor_set_have_the_same_radius_at_any_resolution(level: int) -> None:
     assert compute_wada_test(cantor_basins(level)).radius == 3
-
-
-def test_newtons_basins_have_a_small_radius_at_any_resolution() -> None:
-    for side in (200, 400):
-        result = newton(side)
-        assert result.radius <= 6
-        assert result.radius_99 == 2
 
 
 # Invariance, and pixels that do not count.
@@ -147,7 +130,7 @@ def test_the_test_needs_three_basins() -> None:
 # Maps.
 
 
-@pytest.mark.parametrize(("case", "energy", "side"), [("II", 0.2, 150), ("II", 0.2, 300), ("III", 0.45, 150)])
+@pytest.mark.parametrize(("case", "energy", "side"), [("II", 0.2, 150), ("III", 0.45, 150)])
 def test_the_boundaries_of_all_exits_have_a_small_radius_at_any_resolution(case: str, energy: float, side: int) -> None:
     """The basins of Hénon-Heiles (II) are Wada (Aguirre, Vallejo & Sanjuán 2001, PRE 64, 066208); four exits should be too."""
     result = exits(case, energy, side)

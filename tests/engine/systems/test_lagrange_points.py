@@ -22,16 +22,6 @@ def nearest(name: str, x: mpmath.mpf, y: mpmath.mpf) -> tuple[float, float, floa
     return (*place, points[place])
 
 
-def three_bodies(mu: mpmath.mpf, shift: mpmath.mpf):
-    """Return Φ of the restricted problem: masses 1 − μ at x = −shift and μ at 1 − shift, and the axis at x = μ − shift."""
-
-    def phi(x, y):
-        one, other = (mpmath.sqrt((x + shift - place) ** 2 + y**2) for place in (0, 1))
-        return -(1 - mu) / one - mu / other - ((x + shift - mu) ** 2 + y**2) / 2
-
-    return phi
-
-
 def equilibrium(phi, x: float, y: float) -> tuple[mpmath.mpf, mpmath.mpf, mpmath.mpf]:
     with mpmath.workdps(40):
         gradient = [lambda x, y, order=order: mpmath.diff(phi, (x, y), order) for order in ((1, 0), (0, 1))]
@@ -48,29 +38,6 @@ def check(name: str, x: mpmath.mpf, y: mpmath.mpf, energy: mpmath.mpf) -> None:
     assert abs(found[0] - x) < ACCURACY * size
     assert abs(found[1] - y) < ACCURACY * size
     assert abs(found[2] - energy) < ACCURACY * abs(energy)
-
-
-@pytest.mark.parametrize("guess", [(0.0, 0.0), (1.2, 0.0), (0.0, 0.87)])
-def test_lagrange_points_of_copenhagen(guess: tuple[float, float]) -> None:
-    with mpmath.workdps(40):
-        half = mpmath.mpf(1) / 2
-        check("Copenhagen", *equilibrium(three_bodies(half, half), *guess))
-
-
-@pytest.mark.parametrize("guess", [(-0.15, 0.0), (-2.0, 0.0), (-0.5, 0.87)])
-def test_lagrange_points_of_earth_and_moon(guess: tuple[float, float]) -> None:
-    mu = mpmath.mpf(System("Earth-Moon").value_of("m"))
-    with mpmath.workdps(40):
-        plain = three_bodies(mu, mpmath.mpf(1))
-        # The entry leaves out the constant term of −½(x + 1 − μ)².
-        check("Earth-Moon", *equilibrium(lambda x, y: plain(x, y) + (1 - mu) ** 2 / 2, *guess))
-
-
-def test_lagrange_points_of_hill() -> None:
-    with mpmath.workdps(40):
-        radius, energy = mpmath.cbrt(mpmath.mpf(1) / 3), -mpmath.power(3, mpmath.mpf(4) / 3) / 2
-        for sign in (1, -1):
-            check("Hill", sign * radius, mpmath.mpf(0), energy)
 
 
 def barred_galaxy(x, y):

@@ -118,15 +118,6 @@ def test_an_outside_start_stays_where_it_is() -> None:
 # SALI.
 
 
-# Hénon & Heiles (1964): at half the escape energy nearly every orbit lies on a torus, just below the escape energy few do.
-@pytest.mark.parametrize(("energy", "expected"), [(1 / 12, Verdict.NO_SIGN), (0.1666, Verdict.CHAOTIC)])
-def test_henon_heiles_changes_from_regular_to_chaotic(energy: float, expected: Verdict) -> None:
-    starts = interior_starts("II", energy, 12, reach=0.25)[:8]
-    verdicts = [judge_orbit(integrate_orbit(CASES["II"], start, 2000.0)).character for start in starts]
-    allowed = {Verdict.NO_SIGN, Verdict.REGULAR} if expected is Verdict.NO_SIGN else {expected}
-    assert sum(verdict in allowed for verdict in verdicts) >= 6
-
-
 # The Lyapunov exponent.
 
 

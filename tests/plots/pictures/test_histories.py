@@ -25,6 +25,14 @@ def test_early_oscillations_are_drawn_themselves(oscillation: History) -> None:
     assert (np.ptp(values[early]), oscillation.band[0].min() > 10.0) == (pytest.approx(2.0, abs=1e-3), True)
 
 
+def test_oscillations_of_a_short_orbit_are_drawn_to_its_end() -> None:
+    short = TIMES < 500.0
+    history = reduce_history(TIMES[short], 1.0 + np.cos(TIMES[short]), logarithmic=False)
+    assert history.band[0].size == 0
+    times, values = history.line
+    assert np.ptp(values[times > 490.0]) == pytest.approx(2.0, abs=1e-2)
+
+
 def test_late_oscillations_are_an_envelope_with_its_mean(oscillation: History) -> None:
     times, low, high = oscillation.band
     late = times > 500.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from reproduction.analyses.published_fits import PAPER_FITS, HyperbolicTangent, Polynomial
+from reproduction.analyses.published_fits import PAPER_FITS
 
 
 # ½[1 + tanh u] = 1 / (1 + exp(−2u)).
@@ -30,9 +30,3 @@ def test_fits_of_escapes_have_the_values_of_their_formula(name: str, energy: flo
 )
 def test_fits_of_direct_escapes_have_the_values_of_their_polynomials(name: str, energy: float, share: float) -> None:
     assert PAPER_FITS[name].direct(energy) == pytest.approx(share, rel=1e-12)
-
-
-def test_curves_accept_energies_of_any_shape() -> None:
-    energies = np.linspace(0.3, 0.5, 6).reshape(2, 3)
-    for curve in (HyperbolicTangent(15.85, 4.93), Polynomial((-1.496, 7.585, -5.938))):
-        np.testing.assert_array_equal(curve(energies), [[curve(h) for h in row] for row in energies])

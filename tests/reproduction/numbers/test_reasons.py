@@ -55,12 +55,6 @@ def test_the_end_of_the_islands_is_that_of_the_energy_plane(measures: Measures) 
     assert explain(measures, replace(number, remark="{bounded_above}, {last_bounded:.3f}")) == expected
 
 
-def test_the_fit_of_the_paper_in_a_reason_is_that_of_direct_escapes(measures: Measures) -> None:
-    number = replace(NUMBER, case="II", energies=(0.5,), remark="{paper_direct:.2f}")
-    # -2.2 + 22.86 / 2 - 59.24 / 4 + 51.42 / 8
-    assert explain(measures, number) == "84.75"
-
-
 def test_the_stated_energy_is_compared_with_the_energy_of_the_largest_share(measures: Measures) -> None:
     number = replace(
         NUMBER, energies=(0.15, 0.17, 0.5), quantity=Quantity.LARGEST_SHARE_ENERGY, value=0.17, channels=(2,),

@@ -23,10 +23,6 @@ def share_outside(number: StatedNumber, energy: float) -> float:
     return float(np.mean(wide.fate[wide.fate != Fate.FORBIDDEN] == Fate.OUTSIDE))
 
 
-def test_numbers_are_unique() -> None:
-    assert len(set(STATED_NUMBERS)) == len(STATED_NUMBERS)
-
-
 def test_shares_have_valid_values_channels_and_energies() -> None:
     for number in SHARES:
         assert 0.0 <= number.value <= 100.0

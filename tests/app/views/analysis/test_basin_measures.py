@@ -11,6 +11,7 @@ from app.state.view_state import ViewState
 from app.views.analysis.basin_measures import BasinMeasuresView
 from engine import CASES, MapSpec, Window, compute_basin_entropy, compute_map
 from engine.sweeps.points import measure_map
+from tests.results import result_of
 
 
 @pytest.fixture
@@ -55,3 +56,12 @@ def test_a_measure_without_numbers_has_its_sentence_in_view(state: ViewState) ->
     view.show("wada", None)
     assert "Not defined for this map." in view.text.object
     assert "details" not in view.text.object.partition("</table>")[0]
+
+
+def test_a_measured_exponent_has_its_chart_until_there_is_another_map(view: BasinMeasuresView) -> None:
+    view.show("uncertainty_exponent", result_of("exponent"))
+    assert "α" in view.text.object
+    assert len(view.uncertainty.points.data["y"]) > 5
+    assert view.uncertainty.view.visible
+    view.begin()
+    assert not view.uncertainty.view.visible

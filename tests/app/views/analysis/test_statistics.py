@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import panel as pn
 import pytest
 from bokeh.plotting import figure
 
@@ -43,7 +42,7 @@ def view(state: ViewState, results: ShownResults, frame: EscapeMap) -> Statistic
 @pytest.fixture(autouse=True)
 def charts(view: StatisticsView) -> list[figure]:
     """The figures of the section after building it."""
-    return [part.object for make in view.parts() for part in make() if isinstance(part, pn.pane.Bokeh)]
+    return [part.objects[0].object for make in view.parts()[1:] for part in make()]
 
 
 def test_the_charts_count_every_escape(state: ViewState, view: StatisticsView, charts: list[figure], frame: EscapeMap) -> None:
@@ -51,9 +50,9 @@ def test_the_charts_count_every_escape(state: ViewState, view: StatisticsView, c
     assert view.table.object == ""
     state.analysis = Analysis.STATISTICS
     statistics = compute_statistics(frame)
-    times, probabilities = (chart.renderers[0].data_source.data for chart in charts)
-    assert times["top"].sum() == statistics.escaped
-    assert probabilities["p"][0] == pytest.approx(statistics.direct_share)
+    times, probabilities = (chart.renderers[-1].data_source.data for chart in charts)
+    assert times["y"].sum() == statistics.escaped
+    assert probabilities["y"][0] == pytest.approx(statistics.direct_share)
 
 
 @pytest.mark.parametrize("box", [None, BOX])

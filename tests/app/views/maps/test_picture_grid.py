@@ -40,13 +40,6 @@ def test_two_views_stand_side_by_side_before_the_well_and_their_difference() -> 
     assert not {"enlarged", "many"} & set(maps.grid.layout().css_classes)
 
 
-def test_pictures_without_a_map_are_greyed_out() -> None:
-    pictures = grid()
-    assert "stale" in pictures.layout().css_classes
-    pictures.mark_stale(False)
-    assert "stale" not in pictures.layout().css_classes
-
-
 def test_one_picture_is_enlarged_and_the_others_have_no_axes() -> None:
     pictures = grid(focus="times")
     assert named(pictures, "picked") == ["times"]
@@ -78,12 +71,6 @@ def test_the_size_of_the_largest_picture_and_the_empty_cell_follow_from_the_numb
 @pytest.mark.parametrize(("on_demand", "largest"), [((), "basins"), (("characters",), "characters"), (("origins",), "origins")])
 def test_the_picture_of_an_active_layer_is_the_largest(on_demand: tuple[str, ...], largest: str) -> None:
     assert named(grid(*on_demand), "picked") == [largest]
-
-
-def test_an_enlarged_picture_stands_above_a_row_of_many_others() -> None:
-    pictures = grid(*LAYER_OF, focus="origins")
-    assert "many" not in pictures.layout().css_classes
-    assert len(named(pictures, "small")) == len(ALWAYS) + len(LAYER_OF) - 1
 
 
 def test_a_picture_that_is_not_on_the_page_is_enlarged_when_it_appears() -> None:

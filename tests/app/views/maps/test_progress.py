@@ -30,7 +30,7 @@ def test_a_complete_map_gives_its_shares(escape_map: EscapeMap) -> None:
     view, _ = make_view()
     view.show(escape_map)
     text = re.sub(r"<[^>]*>", "", view.text.object)
-    assert re.match(r"exit 1&nbsp;\d+\.\d %exit 2&nbsp;\d+\.\d %stay&nbsp;\d+\.\d %✓ t = 1 000 details", text)
+    assert re.match(r"exit 1&nbsp;\d+\.\d %exit 2&nbsp;\d+\.\d %bounded&nbsp;\d+\.\d %✓ t = 1 000 details", text)
     assert (view.bar.styles["opacity"], view.button.styles["visibility"]) == ("0", "hidden")
     assert "unresolved" not in text
     view.show(replace(escape_map, fate=np.where(escape_map.fate == 1, Fate.FAILED, escape_map.fate)))

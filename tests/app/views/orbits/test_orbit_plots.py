@@ -50,6 +50,17 @@ def test_all_histories_have_one_logarithmic_time_axis(plots: OrbitPlots, drawing
     assert drawn["r2"].x_range.end == drawings[0].orbit.t[-1]
 
 
+def test_short_orbits_have_r2_against_linear_time(plots: OrbitPlots, drawings: list[OrbitCurves]) -> None:
+    def scales() -> list[str]:
+        return [type(drawn[name].x_scale).__name__ for name in NAMES]
+
+    drawn, (long, short) = figures(plots), drawings
+    plots.show([short], chosen=0)
+    assert scales() == ["LogScale", "LogScale", "LinearScale"]
+    plots.show([short, long], chosen=0)
+    assert scales() == ["LogScale"] * 3
+
+
 def test_a_long_orbit_that_is_not_chosen_keeps_its_curve(plots: OrbitPlots, drawings: list[OrbitCurves]) -> None:
     drawn = figures(plots)
     plots.show(drawings, chosen=1)

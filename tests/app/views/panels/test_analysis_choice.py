@@ -2,19 +2,9 @@
 
 from __future__ import annotations
 
-from app.state.view import Analysis
 from app.state.view_state import ViewState
 from app.views.components.widgets import SegmentedControl
-from app.views.panels.analysis_choice import ANALYSIS_LABELS, LayerSwitches, analysis_tabs
-
-
-def test_there_is_a_labelled_tab_for_each_analysis_that_changes_the_state_and_follows_it() -> None:
-    state = ViewState(analysis=Analysis.ENERGIES)
-    tabs = analysis_tabs(state)
-    assert list(tabs.options.values()) == list(Analysis) == list(ANALYSIS_LABELS)
-    assert tabs.value is Analysis.ENERGIES
-    tabs.value = Analysis.MEASURES
-    assert state.analysis is Analysis.MEASURES
+from app.views.panels.analysis_choice import LayerSwitches
 
 
 def test_the_image_of_the_manifolds_can_be_chosen_below_their_switch_while_they_are_on() -> None:

@@ -11,7 +11,7 @@ from app.job_clients.shown_results import ShownResults
 from app.state.view_state import ViewState
 from app.views.components.widgets import Switches
 from app.views.panels.controls import LOCK, Controls
-from engine import Plane, System
+from engine import System
 from engine.jobs.manager import Jobs
 from engine.systems.review.potential_review import review_system
 from engine.systems.system import TYPED
@@ -37,13 +37,6 @@ def test_another_case_resets_energy_and_orbits(page: Page) -> None:
     page.state.param.update(starts=((0.1, 0.1),))
     page.controls.case.value = "III"
     assert (page.state.system.case, page.state.energy, page.state.starts) == ("III", 0.35, ())
-
-
-def test_the_controls_follow_a_preset(page: Page) -> None:
-    page.state.param.update(system=System("II"), plane=Plane.X_Y, energy=0.22, t_max=1e3, palette="safe")
-    shown = {name: getattr(page.controls, name).value for name in ("case", "plane")}
-    assert shown == {"case": "II", "plane": Plane.X_Y}
-    assert page.controls.energy.value == 0.22
 
 
 def open_quality(page: Page) -> dict[str, Widget]:

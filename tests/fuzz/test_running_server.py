@@ -1,4 +1,4 @@
-"""Random messages to the running server: no traceback in its log, no hang, and other pages open as before."""
+"""Random messages and requests to the running server: no traceback, no hang, no memory kept, and other pages open as before."""
 
 from __future__ import annotations
 
@@ -11,10 +11,13 @@ import pytest
 from tornado.websocket import WebSocketClosedError
 
 from tests.app.other_loop import run_on_new_loop
+from tests.app.server.mounted_routes import mounted_routes
 from tests.browser.served_app import RunningApp
-from tests.fuzz.attacked_server import ANSWER_SECONDS, fetch_page, open_page, resting_memory, tracebacks
+from tests.fuzz.attacked_server import fetch_page, open_page, resting_memory, tracebacks
 from tests.fuzz.random_messages import RandomMessages
+from tests.fuzz.random_requests import RandomRequests
 from tests.page_channel import Channel
+from tests.waiting import SECONDS
 
 log = logging.getLogger(__name__)
 
@@ -24,6 +27,8 @@ CONNECTIONS_PER_PAGE = 3
 BETWEEN_SYNCHRONIZATIONS = 25
 VISITORS = 4
 PARTS = 3
+CLIENTS = 8
+LARGEST_GROWTH_BY_MESSAGES, LARGEST_GROWTH_BY_REQUESTS = 1.3, 1.15
 
 
 class Visitor:
@@ -73,7 +78,7 @@ class Visitor:
     async def _wait(self, event: asyncio.Event, reader: asyncio.Task[None]) -> None:
         """Wait for an event or the end of the connection; TimeoutError if the server hangs."""
         waiting = asyncio.create_task(event.wait())
-        done, _ = await asyncio.wait([waiting, reader], timeout=ANSWER_SECONDS, return_when=asyncio.FIRST_COMPLETED)
+        done, _ = await asyncio.wait([waiting, reader], timeout=SECONDS, return_when=asyncio.FIRST_COMPLETED)
         waiting.cancel()
         if not done:
             raise TimeoutError("the server does not answer")
@@ -97,26 +102,65 @@ class Visitor:
                 self._messages.learn(parsed)
 
 
-def attack(app: RunningApp, count: int, seed: int) -> int:
+def send_messages(app: RunningApp, count: int, seed: int) -> int:
     async def run() -> int:
         visitors = [Visitor(app.address, seed + number) for number in range(VISITORS)]
         await asyncio.gather(*(visitor.run(count // VISITORS) for visitor in visitors))
-        await asyncio.wait_for(open_page(app.address), ANSWER_SECONDS)
+        await asyncio.wait_for(open_page(app.address), SECONDS)
         return sum(visitor.sent for visitor in visitors)
 
     return run_on_new_loop(run)
 
 
+async def send(port: int, request: bytes) -> bytes:
+    """Return the first line of the answer; empty if the server closes the connection."""
+    reader, writer = await asyncio.open_connection("127.0.0.1", port)
+    try:
+        writer.write(request)
+        # Otherwise the server waits for the rest of an incomplete request.
+        writer.write_eof()
+        first = (await asyncio.wait_for(reader.read(), SECONDS)).partition(b"\r\n")[0]
+        await asyncio.wait_for(writer.drain(), SECONDS)
+    except ConnectionError:
+        return b""
+    finally:
+        writer.close()
+    return first
+
+
+def send_requests(app: RunningApp, requests: RandomRequests, count: int) -> dict[bytes, int]:
+    """Send requests, some at a time, and return how often each status was answered."""
+    port, answers = int(app.root.rpartition(":")[2]), dict[bytes, int]()
+
+    async def client() -> None:
+        for _ in range(count // CLIENTS):
+            status = (await send(port, requests.make()))[9:12]
+            answers[status] = answers.get(status, 0) + 1
+
+    async def run() -> None:
+        await asyncio.gather(*(client() for _ in range(CLIENTS)))
+
+    run_on_new_loop(run)
+    return answers
+
+
 @pytest.mark.parametrize(
     "count", [pytest.param(4_000, marks=pytest.mark.slow), pytest.param(100_000, marks=pytest.mark.exhaustive)]
 )
-def test_many_random_messages_leave_no_memory_behind(count: int, served: tuple[RunningApp, Path]) -> None:
-    app, output = served
+def test_many_random_messages_and_requests_leave_no_memory_behind(count: int, served: tuple[RunningApp, Path]) -> None:
+    (app, output), requests = served, RandomRequests(mounted_routes()[1:], seed=7)
     # The first half fills the caches.
-    assert attack(app, count // 2, seed=100) == count // 2
+    assert send_messages(app, count // 2, seed=100) == count // 2
+    answers = send_requests(app, requests, count // 2)
     early = resting_memory(app)
-    assert attack(app, count // 2, seed=200) == count // 2
+    assert send_messages(app, count // 2, seed=200) == count // 2
     late = resting_memory(app)
-    log.info("%d messages, resident memory from %.0f to %.0f MB", count, early / 2**20, late / 2**20)
+    answers |= send_requests(app, requests, count // 2)
+    latest = resting_memory(app)
+    run_on_new_loop(lambda: asyncio.wait_for(open_page(app.address), SECONDS))
+    sizes = [round(each / 2**20) for each in (early, late, latest)]
+    log.info("%d messages, answers %s, resident memory of %s MB", count, answers, sizes)
     assert tracebacks(output) == []
-    assert late < 1.3 * early
+    assert {status for status in answers if status.startswith(b"5")} <= {b"503", b"505"}
+    assert late < LARGEST_GROWTH_BY_MESSAGES * early
+    assert latest < LARGEST_GROWTH_BY_REQUESTS * late

@@ -1,0 +1,141 @@
+"""Charts of the page, which Bokeh draws from `plots.pictures.charts.Chart`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+import panel as pn
+from bokeh.events import Event
+from bokeh.models import ColumnDataSource, CustomJSTickFormatter, FixedTicker, MultiLine, Quad, Range1d, Scatter, Segment, Span
+from bokeh.plotting import figure
+
+from app.browser.javascript import callback_code
+from app.browser.module_files import NUMBERS
+from app.views.components.legends import legend
+from app.views.components.plots import FigurePane, chart_hover, set_range, square_figure
+from app.views.components.texts import TextPane
+from plots.pictures.charts import Chart, Frame, Series, Shape
+from plots.pictures.palette import THRESHOLD
+
+_POINT_COLUMNS = ("x", "y", "low", "high", "colour", "label")
+_LINE_COLUMNS = ("xs", "ys", "colour", "dash", "label")
+_DASHES = {Shape.DASHED: "8 8"}
+# Shapes that are not drawn as lines.
+_WITHOUT_LINE = (Shape.POINTS, Shape.BARS)
+_TICK = callback_code(NUMBERS, "number(tick)")
+# Largest number of labels of the axis of a histogram.
+_MOST_TICKS = 5
+
+
+class ChartView:
+    """A chart with its legend, hidden while there is nothing to show.
+
+    Parameters
+    ----------
+    frame
+        Frame of the charts.
+    text
+        Text of the points or lines under the mouse, see `chart_hover`; its columns are x, y, low, high and label.
+    described
+        The described shapes: Shape.LINE for all lines, Shape.POINTS for all points, or Shape.BARS.
+    x_range
+        The range of x; None for a range of the chart's own.
+    **options
+        Options of `square_figure`.
+    """
+
+    def __init__(
+        self, frame: Frame, text: str, described: Shape = Shape.POINTS, x_range: Range1d | None = None, **options: Any
+    ) -> None:
+        self.frame, self._text, self._described, self._options = frame, text, described, options
+        self.x_range = x_range or _first_range("x" in frame.logarithmic)
+        self.y_range = _first_range("y" in frame.logarithmic)
+        self.lines = ColumnDataSource({name: [] for name in _LINE_COLUMNS}, name=f"{frame.name}_lines")
+        self.points = ColumnDataSource({name: [] for name in _POINT_COLUMNS}, name=f"{frame.name}_points")
+        self._ticker = FixedTicker(ticks=[])
+        self._key = TextPane(margin=(0, 10))
+        self._labels = frame.labels
+        self.plot: figure | None = None
+        self.view = pn.Column(margin=0, sizing_mode="stretch_width", visible=False)
+
+    def show(self, chart: Chart | None) -> None:
+        """Show a chart; None hides the view."""
+        self.view.visible = chart is not None
+        if chart is None:
+            return
+        self.lines.data, self.points.data = _line_columns(chart.series), _point_columns(chart.series)
+        for edges, limits in zip((self.x_range, self.y_range), chart.limits, strict=True):
+            if limits is not None:
+                set_range(edges, *limits)
+        self._ticker.ticks = _few_ticks(self.x_range.start, self.x_range.end) if "x" in self.frame.logarithmic else []
+        entries = chart.legend()
+        self._key.param.update(object=legend(entries), visible=bool(entries))
+        self._labels = chart.frame.labels
+        self._name_axes()
+
+    def build(self, events: Mapping[type[Event], Callable[[Any], None]] = MappingProxyType({})) -> pn.Column:
+        """Fill the view with a figure, which has callbacks for events, and return the view."""
+        self.plot = self._draw()
+        self.view.objects = [FigurePane(self.plot, events), self._key]
+        self._name_axes()
+        return self.view
+
+    def _draw(self) -> figure:
+        frame = self.frame
+        scales = {f"{axis}_axis_type": "log" for axis in frame.logarithmic}
+        ranges = {"x_range": self.x_range, "y_range": self.y_range}
+        plot = square_figure(frame.name, frame.title, x_axis_label=" ", **ranges, **scales, **self._options)
+        lines = plot.add_glyph(self.lines, MultiLine(line_color="colour", line_dash="dash", line_width=2))
+        if self._described is Shape.BARS:
+            bars = Quad(left="low", right="high", bottom=0.0, top="y", fill_color="colour", line_color=None)
+            points = plot.add_glyph(self.points, bars)
+            if "x" in frame.logarithmic:
+                plot.xaxis.update(ticker=self._ticker, formatter=CustomJSTickFormatter(code=_TICK))
+        else:
+            ends = {"x0": "x", "x1": "x", "y0": "low", "y1": "high"}
+            plot.add_glyph(self.points, Segment(**ends, line_color="colour", line_alpha=0.6))
+            points = plot.add_glyph(self.points, Scatter(x="x", y="y", size=6, fill_color="colour", line_color="colour"))
+        if self._described is Shape.LINE:
+            plot.add_tools(chart_hover(self._text, [lines], line_policy="nearest"))
+        else:
+            plot.add_tools(chart_hover(self._text, [points], mode="vline"))
+        if frame.level is not None:
+            style: dict[str, Any] = {"line_color": THRESHOLD, "line_dash": "dashed", "line_width": 1.5}
+            plot.add_layout(Span(location=frame.level[0], dimension="width", **style))
+        return plot
+
+    def _name_axes(self) -> None:
+        if self.plot is not None:
+            self.plot.below[0].axis_label, self.plot.left[0].axis_label = self._labels
+
+
+def _first_range(is_logarithmic: bool) -> Range1d:
+    """Return a range before there are numbers. An automatic range would cause warnings in the browser."""
+    return Range1d(1.0, 100.0) if is_logarithmic else Range1d(0.0, 1.0)
+
+
+def _line_columns(series: Sequence[Series]) -> dict[str, list[Any]]:
+    lines = [one for one in series if one.shape not in _WITHOUT_LINE]
+    x, y = ([one.curve[axis] for one in lines] for axis in (0, 1))
+    dashes = [_DASHES.get(one.shape, "solid") for one in lines]
+    return {"xs": x, "ys": y, "colour": [one.colour for one in lines], "dash": dashes, "label": [one.label for one in lines]}
+
+
+def _point_columns(series: Sequence[Series]) -> dict[str, Any]:
+    drawn = [one for one in series if one.bars is not None]
+    columns = [(one.x, one.y, *(one.bars or ())) for one in drawn]
+    x, y, low, high = (np.concatenate([np.zeros(0), *values]) for values in zip(*columns, strict=True)) if columns else [[]] * 4
+    counts = [one.x.size for one in drawn]
+    colours, labels = (np.repeat([getattr(one, name) for one in drawn], counts).tolist() for name in ("colour", "label"))
+    return {"x": x, "y": y, "low": low, "high": high, "colour": colours, "label": labels}
+
+
+def _few_ticks(low: float, high: float) -> list[float]:
+    """Return 1, 2 and 5 times the powers of ten from `low` to `high`; only the powers if these would be too many labels."""
+    decades = [10.0**k for k in range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)]
+    fine_ticks, powers = ([m * ten for ten in decades for m in steps if low <= m * ten <= high] for steps in ((1, 2, 5), (1,)))
+    return fine_ticks if len(fine_ticks) <= _MOST_TICKS else powers
