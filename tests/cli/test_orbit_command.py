@@ -26,6 +26,8 @@ def test_csv_and_json_equal_the_engine_result(run: Run, tmp_path: Path) -> None:
     assert (tmp_path / "orbit.csv").read_text() == orbits_csv([orbit])
     assert (result["fate"], result["crossings"], result["energy"]) == (orbit.fate, orbit.crossings, orbit.energy)
     assert result["escape_time"] == (orbit.escape_time if orbit.fate >= 1 else None)
+    verdict = judge_orbit(orbit)
+    assert (result["verdict"], result["outcome"]) == (verdict.describe(), verdict.outcome)
 
 
 @pytest.mark.parametrize(

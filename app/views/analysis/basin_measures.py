@@ -13,7 +13,7 @@ import panel as pn
 from app.state.glossary import with_terms
 from app.state.view_state import ViewState
 from app.views.components.charts import ChartView
-from app.views.components.in_turns import Make
+from app.views.components.collapsible_section import Build
 from app.views.components.texts import TextPane
 from app.views.components.widgets import COUNT_WHOLE, button, copy_button, number_rows
 from engine import MEASURES, Measure, Result, Window
@@ -97,7 +97,7 @@ class BasinMeasuresView:
         self._remove([name])
         self._put(name, sentence)
 
-    def parts(self) -> list[Make]:
+    def parts(self) -> list[Build]:
         """Return functions that make the parts of the section."""
         return [self._build_texts, lambda: [self.survival.build()], lambda: [self.uncertainty.build()]]
 

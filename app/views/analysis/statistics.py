@@ -11,7 +11,7 @@ from app.job_clients.shown_results import ShownResults
 from app.state.view import Analysis
 from app.state.view_state import ViewState
 from app.views.components.charts import ChartView
-from app.views.components.in_turns import Make
+from app.views.components.collapsible_section import Build
 from app.views.components.legends import patch
 from app.views.components.texts import TextPane, escape_facts
 from app.views.components.widgets import COUNT_WHOLE, button, copy_button
@@ -62,7 +62,7 @@ class StatisticsView:
             self._frame = frame
             self._count()
 
-    def parts(self) -> list[Make]:
+    def parts(self) -> list[Build]:
         """Return functions that make the parts of the section."""
         return [self._build_table, lambda: [self._times.build()], self._build_probabilities]
 

@@ -1,16 +1,27 @@
-"""Parts of the page whose content is built when it is first shown: stacks, folds and drawers."""
+"""Parts of the page that are built when they are first shown: stacks, folds and drawers, and parts that are built one by one."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections import deque
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from typing import Any
 
 import panel as pn
 
-from app.views.components.in_turns import InTurns, Later, Make, at_once
 from app.views.components.texts import TextPane
 from app.views.components.widgets import FULL_HEIGHT, button
+
+Build = Callable[[], Sequence[pn.viewable.Viewable]]
+"""Makes a content, or a part of it."""
+
+Later = Callable[[Callable[[], None]], Callable[[], None]]
+"""Wraps a function so that it runs in a later iteration of the event loop."""
+
+
+def at_once(function: Callable[[], None]) -> Callable[[], None]:
+    """Return the function itself, which is then not called later."""
+    return function
 
 
 class Stack:
@@ -30,7 +41,7 @@ class Stack:
 
     def __init__(
         self,
-        makes: Mapping[str, Sequence[Make]],
+        makes: Mapping[str, Sequence[Build]],
         css_class: str,
         head: Sequence[pn.viewable.Viewable] = (),
         later: Later = at_once,
@@ -65,7 +76,7 @@ class Stack:
             self._column.param.update(objects=parts, visible=bool(parts))
 
     def rebuild(self) -> None:
-        """Make the contents again: the present content now, other contents when they are next shown."""
+        """Build the contents again: the present content now, other contents when they are next shown."""
         self._contents.clear()
         self.show(self.shown)
 
@@ -77,7 +88,7 @@ class Stack:
 class Fold(Stack):
     """A column with one content that opens and closes, under a button with its title."""
 
-    def __init__(self, title: str, make: Make, *, is_open: bool = False) -> None:
+    def __init__(self, title: str, make: Build, *, is_open: bool = False) -> None:
         super().__init__({"content": [make]}, "fold")
         self._title = title
         self.button = button("", lambda: self.toggle("content"), kind="light", margin=0, css_classes=["fold-title"])
@@ -118,12 +129,12 @@ class Drawers(Stack):
 
     def __init__(
         self,
-        drawers: Mapping[str, tuple[str, str, Make]],
+        drawers: Mapping[str, tuple[str, str, Build]],
         on_toggle: Callable[[bool], None] = lambda is_open: None,
         later: Later = at_once,
     ) -> None:
         self._on_toggle = on_toggle
-        makes: dict[str, list[Make]] = {
+        makes: dict[str, list[Build]] = {
             name: [partial(self._make_head, title), make] for name, (_, title, make) in drawers.items()
         }
         super().__init__(makes, "drawer", later=later)
@@ -155,3 +166,31 @@ class Drawers(Stack):
         head = TextPane(f"<h2>{title}</h2>", sizing_mode="stretch_width", margin=0, align="center")
         close = button("Close", lambda: self.show(None), kind="light", margin=0)
         return [pn.Row(head, close, sizing_mode="stretch_width", margin=0)]
+
+
+class InTurns:
+    """Makes parts when they are needed. Between two parts, the server can serve other pages.
+
+    Parameters
+    ----------
+    makes
+        Functions that make the parts.
+    add
+        Adds a new part to the page.
+    later
+        Wraps a function to run in a later iteration of the event loop.
+    """
+
+    def __init__(self, makes: Iterable[Build], add: Callable[[Sequence[pn.viewable.Viewable]], None], later: Later) -> None:
+        self._missing, self._add = deque(makes), add
+        self._continue = later(self._make_next)
+
+    def begin(self) -> None:
+        """Build the parts that do not exist yet."""
+        if self._missing:
+            self._continue()
+
+    def _make_next(self) -> None:
+        if self._missing:
+            self._add(self._missing.popleft()())
+            self.begin()

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import panel as pn
 
 from app.browser.components.orbit_components import OrbitPlayer
-from app.views.components.in_turns import InTurns, Later
+from app.views.components.collapsible_section import InTurns, Later
 from app.views.components.widgets import FULL_HEIGHT
 from app.views.orbits.orbit_controls import OrbitControls
 from app.views.orbits.orbit_plots import OrbitPlots
