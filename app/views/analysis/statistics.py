@@ -10,6 +10,7 @@ import panel as pn
 from app.job_clients.shown_results import ShownResults
 from app.state.view import Analysis
 from app.state.view_state import ViewState
+from app.views.components.collapsible_section import Build
 from app.views.components.histograms import HistogramView
 from app.views.components.legends import patch
 from app.views.components.texts import TextPane, escape_facts
@@ -42,7 +43,6 @@ class StatisticsView:
     def __init__(self, state: ViewState, results: ShownResults, on_copy: Callable[[str], None]) -> None:
         self._state = state
         self._frame: EscapeMap | None = None
-        self._is_built = False
         self._times = HistogramView(TIMES, _TIMES_TEXT)
         self._probabilities = HistogramView(PROBABILITIES, _PROBABILITIES_TEXT)
         self.table = TextPane("", name="statistics", sizing_mode="stretch_width")
@@ -58,17 +58,16 @@ class StatisticsView:
             self._frame = frame
             self._count()
 
-    def build(self) -> list[pn.viewable.Viewable]:
-        """Return the content of the section."""
-        charts = [chart.build() for chart in (self._times, self._probabilities)]
-        self._is_built = True
-        self._count()
-        left = pn.Column(self.whole, self.table, self.copy, margin=0, css_classes=["plot"])
-        return [left, *charts]
+    def parts(self) -> list[Build]:
+        """Return functions that make the parts of the section."""
+        return [self._build_table, lambda: [self._times.build()], lambda: [self._probabilities.build()]]
+
+    def _build_table(self) -> list[pn.viewable.Viewable]:
+        return [pn.Column(self.whole, self.table, self.copy, margin=0, css_classes=["plot"])]
 
     def _count(self) -> None:
         """Count and show the pixels of the last frame, if the tab is open."""
-        if self._frame is None or not self._is_built or self._state.analysis is not Analysis.STATISTICS:
+        if self._frame is None or self._state.analysis is not Analysis.STATISTICS:
             return
         statistics = compute_statistics(self._frame, self._state.box)
         self.table.object = self._table(statistics)

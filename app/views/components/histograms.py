@@ -12,7 +12,7 @@ from bokeh.models import CustomJSTickFormatter
 
 from app.browser.javascript import callback_code
 from app.browser.module_files import NUMBERS
-from app.views.components.plots import chart_hover, style_chart
+from app.views.components.plots import CHART_BORDERS, chart_hover, style_chart
 from plots.pictures.charts import Chart, Frame, Series, Shape
 from plots.pictures.holoviews_elements import chart_elements
 from plots.pictures.palette import MEASURED
@@ -71,6 +71,8 @@ class HistogramView:
     def _style(self, drawing: Any, _element: hv.Element) -> None:
         """Style a new figure as the other charts."""
         plot = drawing.state
+        # HoloViews sets the borders again with each chart.
+        plot.update(**CHART_BORDERS)
         if plot.name != self._frame.name:
             style_chart(plot, self._frame.name, self._frame.title)
             # The hover tool describes a bar also while the mouse is above its top.

@@ -41,8 +41,8 @@ _HISTORY_ASPECT = 2.2
 # Borders of histories, in pixels.
 _HISTORY_BORDERS = {"min_border_left": 48, "min_border_right": 10, "min_border_top": 28, "min_border_bottom": 25}
 
-# Borders of charts, in pixels. Left plus right is top plus bottom, so a square figure has a square frame.
-_CHART_BORDERS = {"min_border_left": 58, "min_border_right": 10, "min_border_top": 28, "min_border_bottom": 40}
+CHART_BORDERS = {"min_border_left": 58, "min_border_right": 10, "min_border_top": 28, "min_border_bottom": 40}
+"""Borders of charts, in pixels. Left plus right is top plus bottom, so a square figure has a square frame."""
 
 # Borders of pictures, in pixels. The title is above the frame, and the legend is below the labels of the axis.
 _PICTURE_BORDERS = {"min_border_left": 48, "min_border_right": 10, "min_border_top": 22, "min_border_bottom": 36}
@@ -134,7 +134,7 @@ def square_figure(name: str, title: str, **options: Any) -> figure:
     **options
         Options of `bokeh.plotting.figure`.
     """
-    defaults = {"tools": "", "toolbar_location": None, "aspect_ratio": 1, **_CHART_BORDERS}
+    defaults = {"tools": "", "toolbar_location": None, "aspect_ratio": 1, **CHART_BORDERS}
     plot = figure(title=None, **(defaults | options))
     style_chart(plot, name, title)
     return plot

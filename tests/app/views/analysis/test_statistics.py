@@ -42,7 +42,7 @@ def view(state: ViewState, results: ShownResults, frame: EscapeMap) -> Statistic
 @pytest.fixture(autouse=True)
 def charts(view: StatisticsView) -> list[figure]:
     """The figures of the section after building it."""
-    return [part.get_root().children[0] for part in view.build()[1:]]
+    return [part.get_root().children[0] for make in view.parts()[1:] for part in make()]
 
 
 def test_the_charts_count_every_escape(state: ViewState, view: StatisticsView, charts: list[figure], frame: EscapeMap) -> None:
