@@ -25,7 +25,6 @@ from engine.exits.exit_rows import closed_exits, exit_gates
 from engine.integrator.kernels import propagate
 from engine.integrator.kernels.events import NOT_COMPUTED
 from engine.integrator.source.recurrence import TOLERANCE
-from engine.systems.compiled import kernels_of
 from tests.peers.taylor_heyoka import equations
 
 # Energies at which many orbits are bounded. Other potentials have the energy `BELOW_ESCAPE` times the escape energy.
@@ -105,7 +104,7 @@ def bounded_starts(potential: Potential, energy: float) -> np.ndarray:
 
 def by_engine(problem: Problem) -> Integrate:
     """Return the integrator of the engine, with refill, exit and crossing tests; its states are at the start of the last step."""
-    curves, kernels = closed_exits(problem.potential)[None], kernels_of(problem.potential)
+    curves, kernels = closed_exits(problem.potential)[None], problem.potential.well.kernels
     gates = exit_gates(curves)
 
     def integrate(states: np.ndarray, duration: float) -> Run:

@@ -143,8 +143,7 @@ def find_energy(system: System, energy: float | None = None, jacobi: float | Non
         return energy
     if energy is not None:
         raise ValueError(f"jacobi={jacobi}: give either --energy H or --jacobi C")
-    h: float = system.potential.jacobi_energy(jacobi)
-    return h
+    return system.potential.jacobi_energy(jacobi)
 
 
 def need_energy(energy: GivenEnergy) -> OneEnergy:

@@ -22,7 +22,7 @@ programs of this repository, and may change with any version.
 import types
 import typing
 
-from engine.exits.lyapunov_orbits import LyapunovOrbit as LyapunovOrbit
+from engine.exits.lyapunov_orbit import LyapunovOrbit as LyapunovOrbit
 from engine.exits.lyapunov_orbits import find_lyapunov_orbits as find_lyapunov_orbits
 from engine.foundations.execution import Execution as Execution
 from engine.foundations.result import Result as Result
@@ -45,7 +45,7 @@ from engine.measures.islands import compute_islands as compute_islands
 from engine.measures.measure import Measure as Measure
 from engine.measures.wada import compute_wada_test as compute_wada_test
 from engine.propagation.classification import classify_orbits as classify_orbits
-from engine.propagation.evidence import Evidence as Evidence
+from engine.propagation.fates import Evidence as Evidence
 from engine.propagation.fates import Fate as Fate
 from engine.propagation.fates import Regularity as Regularity
 from engine.slices.axes import Coordinate as Coordinate

@@ -23,7 +23,7 @@ from engine import (
 )
 from engine.foundations.execution import DEFAULT_EXECUTION
 from engine.results import RegularityMap, Sweep, UncertaintyExponent
-from engine.sweeps.points import compute_point
+from engine.sweeps.measures import compute_point
 from reproduction.analyses.super_sticky import SuperStickySearch, find_super_sticky_orbits
 from reproduction.paper_ranges import STICKY_CASE, STICKY_ENERGY, curve_energies
 from reproduction.quality import Quality
@@ -85,8 +85,7 @@ class MapCache:
         """Return the value stored under a key. The first call computes the value."""
         if key not in self._values:
             self._values[key] = compute()
-        value: Value = self._values[key]
-        return value
+        return self._values[key]
 
     def _search(self, case: str, energy: float, side: int) -> SuperStickySearch:
         frame = self._stored(replace(self._spec(case, Plane.X_PX, energy), resolution=(side, side)))

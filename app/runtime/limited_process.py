@@ -113,6 +113,15 @@ class LimitedProcess:
                 self.computed += self._seconds
                 raise
 
+    def start(self) -> None:
+        """Start the process, unless it runs, and do not wait for it."""
+        # During a call the process runs.
+        if self._lock.acquire(blocking=False):
+            try:
+                self._start()
+            finally:
+                self._lock.release()
+
     def close(self) -> None:
         """End the process."""
         self._is_closed = True
@@ -126,6 +135,9 @@ class LimitedProcess:
     def _replace(self) -> None:
         """End the process, and start another one unless the server is stopping."""
         self._end()
+        self._start()
+
+    def _start(self) -> None:
         if not self._is_closed:
             # If no process can start now, the next call starts one.
             with suppress(OSError, MemoryError):
@@ -201,6 +213,11 @@ class LimitedProcesses:
             return self._processes[number](function, cancel)
         finally:
             self._release(number)
+
+    def start(self) -> None:
+        """Start a process on another thread. A call that follows need not wait until the process has loaded its modules."""
+        process = next((each for each in self._processes if each.has_begun), self._processes[0])
+        threading.Thread(target=process.start, name="start of a limited process", daemon=True).start()
 
     @property
     def stopped(self) -> int:

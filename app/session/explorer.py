@@ -41,6 +41,7 @@ from app.views.panels.help import help_panes
 from app.views.panels.slice_panel import SlicePanel
 from engine import System
 from engine.jobs.client import JobClient
+from engine.systems.system import TYPED
 
 
 class Explorer:
@@ -62,6 +63,9 @@ class Explorer:
         self._client = JobClient(process_state().jobs, account=account_of(document))
         on_disconnect(document, self._client.close)
         self.links = LinkPresenter(document, _parameters())
+        if self.links.view.system.case == TYPED:
+            # The process that reviews the formula starts while the page is made and loaded.
+            process_state().limited.start()
         self.state, self.results, self.notice = self.links.state, ShownResults(), Notice()
         context = SessionContext(
             self.state, self.results, self._client, self.notice, callbacks.every, callbacks.latest, self._copy, self._open_view
@@ -101,21 +105,31 @@ class Explorer:
                 "help": ("Help", "Help", lambda: help_panes(state, results)),
             },
             self.browser.focus_drawer,
+            self._later,
         )
         self.analysis = Stack(
             {
-                Analysis.ORBIT: lambda: [self.orbits.inspector.layout(), self.gallery.invitation()],
-                Analysis.STATISTICS: self.statistics.build,
-                Analysis.MEASURES: self.analyses.measures.build,
-                Analysis.ENERGIES: self.analyses.curves.build,
-                Analysis.WATCH: self._build_watch,
+                Analysis.ORBIT: [lambda: [self.orbits.inspector.layout(), self.gallery.invitation()]],
+                Analysis.STATISTICS: self.statistics.parts(),
+                Analysis.MEASURES: self.analyses.measures.parts(),
+                Analysis.ENERGIES: [self.analyses.curves.build],
+                Analysis.WATCH: [self._build_watch],
             },
             "analysis",
             head=[analysis_tabs(state)],
+            later=self._later,
         )
+
+    def _later(self, function: Callable[[], None]) -> Callable[[], None]:
+        """Wrap a function to run in a later iteration of the event loop, or at once while the page is built."""
+        run_later = self._locked(function)
+        return lambda: run_later() if pn.state.loaded else function()
 
     def _toggle_drawer(self, name: str) -> None:
         self.drawers.toggle(name)
+        if self.drawers.shown == "potential":
+            # The process that reviews a formula starts while the visitor types.
+            process_state().limited.start()
 
     def _build_watch(self) -> list[pn.viewable.Viewable]:
         title = TextPane(title_with_help("Many orbits at once", "watch"), margin=(0, 10))

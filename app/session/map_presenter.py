@@ -58,7 +58,7 @@ class MapPresenter:
             alone=alone,
         )
         document.js_on_event("document_ready", self.view.ranges.answer)
-        self.toolbar = MapToolbar(state, locked(self.view.set_drag))
+        self.toolbar = MapToolbar(state, locked(self.view.tools.set_drag))
         self.requests = MapRequests(state, context.jobs, self, context.latest, process_state().is_crowded, prepare_curves)
         self.progress = ProgressView(state, locked(self.requests.stop_map), locked(self.requests.request_map))
         state.param.watch(self._go_to_window, ["system", "plane", "window"])

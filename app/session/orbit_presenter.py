@@ -11,9 +11,8 @@ import panel as pn
 from param.parameterized import Event
 
 from app.browser.components.orbit_components import OrbitPlayer
-from app.job_clients.divergent_start_requests import DivergentStartRequests
+from app.job_clients.chosen_orbit_requests import DivergentStartRequests, SeparationRequests
 from app.job_clients.orbit_requests import ChosenOrbit, OrbitRequests
-from app.job_clients.separation_requests import SeparationRequests
 from app.session.context import SessionContext
 from app.state.view import Start
 from app.views.maps.markers import NO_POINTS, Markers

@@ -30,7 +30,6 @@ from engine.systems.catalogue.entry import EnergyRange
 from engine.systems.catalogue.table import PAPER_ENERGIES
 from engine.systems.review.potential_review import SystemReview
 from engine.systems.system import TYPED
-from plots.layers.table import LAYERS, SETTINGS
 from plots.pictures.palette import MOST_ORBITS, PALETTES, Palette
 from plots.pictures.time_scale import TimeScale
 
@@ -62,23 +61,6 @@ def _is_start(value: Any) -> bool:
     return is_pair and all(isinstance(number, int | float) and abs(number) < np.inf for number in value)
 
 
-class _Layers(param.Parameter):
-    """Names of layers."""
-
-    def _validate(self, val: Any) -> None:
-        if not isinstance(val, frozenset) or not val <= LAYERS.keys():
-            raise ValueError(f"layers={reprlib.repr(val)}: must be a frozenset of names among {', '.join(LAYERS)}")
-
-
-class _Settings(param.Parameter):
-    """A value for each setting of the layers."""
-
-    def _validate(self, val: Any) -> None:
-        is_complete = isinstance(val, Mapping) and val.keys() == SETTINGS.keys()
-        if not is_complete or any(val[name] not in setting.choices.values() for name, setting in SETTINGS.items()):
-            raise ValueError(f"settings={reprlib.repr(val)}: must have a legal value for each of {', '.join(SETTINGS)}")
-
-
 def longest_first_t_max(potential: Potential) -> float:
     """Return the longest initial t_max of a system. It is short if all bounded orbits must be integrated until t_max."""
     allowed = allowed_t_max().values()
@@ -95,8 +77,8 @@ class ViewState(param.Parameterized):
     window = param.ClassSelector(class_=Window, default=FIRST_VIEW.window, allow_None=True)
     t_max = param.Selector(default=FIRST_VIEW.t_max, objects=list(T_MAX_CHOICES.values()))
     resolution = param.Selector(default=FIRST_VIEW.resolution, objects=list(RESOLUTION_CHOICES.values()))
-    layers = _Layers(default=FIRST_VIEW.layers)
-    settings = _Settings(default=FIRST_VIEW.settings)
+    layers = param.ClassSelector(class_=frozenset, default=FIRST_VIEW.layers, doc="names of the layers that are on")
+    settings = param.ClassSelector(class_=Mapping, default=FIRST_VIEW.settings, doc="value of each setting of the layers")
     analysis = param.Selector(default=FIRST_VIEW.analysis, objects=list(Analysis))
     box = param.ClassSelector(class_=Window, default=FIRST_VIEW.box, allow_None=True)
     watched = param.ClassSelector(class_=WatchedStarts, default=FIRST_VIEW.watched)

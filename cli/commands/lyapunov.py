@@ -21,6 +21,7 @@ from cli.output_files import reserve_output, split_ending, write_files
 from cli.printing import AsJson, Table, print_result
 from engine import LyapunovOrbit, Potential, compute_flux, find_lyapunov_orbits
 from engine.results import EscapeFlux
+from plots.texts.exports import write_csv
 
 
 @with_options
@@ -48,13 +49,12 @@ def run(
 
 
 def _paths_csv(orbits: Sequence[LyapunovOrbit]) -> str:
-    lines = ["channel,t,x,y"]
-    for orbit in orbits:
-        intervals = orbit.x.size - 1
-        times = [orbit.period * k / intervals for k in range(intervals + 1)]
-        points = zip(times, orbit.x.tolist(), orbit.y.tolist(), strict=True)
-        lines += [f"{orbit.channel},{t!r},{x!r},{y!r}" for t, x, y in points]
-    return "\n".join(lines) + "\n"
+    rows = [
+        (orbit.channel, orbit.period * k / (orbit.x.size - 1), x, y)
+        for orbit in orbits
+        for k, (x, y) in enumerate(zip(orbit.x.tolist(), orbit.y.tolist(), strict=True))
+    ]
+    return write_csv(("channel", "t", "x", "y"), rows)
 
 
 def _print(

@@ -20,8 +20,7 @@ import numpy as np
 
 from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
-from engine.propagation.fixed_step_batches import map_tiles
-from engine.systems.compiled import fixed_step_size, kernels_of
+from engine.propagation.tiles import map_tiles
 from engine.systems.potential import Potential
 
 WINDOWS = (1000.0, 4000.0, 16000.0, 64000.0)
@@ -109,10 +108,10 @@ def compare_halves(x: np.ndarray, y: np.ndarray) -> float:
 def _agreeing_digits(potential: Potential, tile: np.ndarray, window: float) -> np.ndarray:
     """Return the digits of the orbits in a tile (4, lanes), of shape (lanes, 2)."""
     initial_energy = potential.energy(tile.T)
-    step = fixed_step_size(potential)
+    step = potential.well.fixed_step
     averages = np.zeros((3, 2, tile.shape[1]))
     # The kernel changes the states of the tile, and adds to the averages.
-    kernels_of(potential).birkhoff_averages(step, window_weights(window, step), tile, averages)
+    potential.well.kernels.birkhoff_averages(step, window_weights(window, step), tile, averages)
     with np.errstate(all="ignore"):
         is_conserved = np.abs(potential.energy(tile.T) - initial_energy) <= _ENERGY_TOLERANCE
     return np.where(is_conserved, _digits(averages), 0.0).T
@@ -127,8 +126,7 @@ def _digits(averages: np.ndarray) -> np.ndarray:
         difference = np.array([np.ptp(averages[:count], axis=0) / np.abs(averages).max(axis=0) for count in (2, 3)])
         digits = -np.log10(np.maximum(difference.max(axis=1), 10.0**-_MOST_DIGITS))
     # NaN, for an observable that is always 0, becomes 0 digits.
-    agreeing_digits: np.ndarray = np.where(np.isfinite(digits), np.maximum(digits, 0.0), 0.0)
-    return agreeing_digits
+    return np.where(np.isfinite(digits), np.maximum(digits, 0.0), 0.0)
 
 
 @functools.lru_cache(maxsize=16)

@@ -15,9 +15,9 @@ from engine.evidence.exit_entry_points import find_entry_points
 from engine.evidence.invariant_curves import InvariantCurve, find_invariant_curve
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, run_parts
 from engine.integrator.source.recurrence import LANES
-from engine.propagation.evidence import Evidence
-from engine.propagation.fixed_step_batches import run_tiles
-from engine.propagation.section_points import find_section_points, trace_section_points
+from engine.propagation.fates import Evidence
+from engine.propagation.fixed_steps import find_section_points, trace_section_points
+from engine.propagation.tiles import run_tiles
 from engine.systems.potential import Potential
 
 # Number of digits to which averages must agree for a test of the orbit with the next window.
@@ -154,8 +154,7 @@ class BoundedOrbitSearch:
 
     def _without_evidence(self) -> np.ndarray:
         """Return whether there is no evidence yet for each orbit, of shape (n,)."""
-        without_evidence: np.ndarray = self.evidence == Evidence.NONE
-        return without_evidence
+        return self.evidence == Evidence.NONE
 
     def _find_enclosed(self, regular: np.ndarray) -> None:
         """Mark all orbits that the invariant curves of some of the `regular` orbits enclose."""
@@ -206,8 +205,7 @@ class _Barrier:
         # Rotating the points by 180° is equivalent to rotating the curve into its mirror image.
         products = [self.curve.find_side(sign * points)[:, None] * exit_sides for sign, exit_sides in self.exit_sides.items()]
         # The product is −1 for a point and an exit on opposite sides.
-        is_separated: np.ndarray = np.any(np.equal(products, -1), axis=0)
-        return is_separated
+        return np.any(np.equal(products, -1), axis=0)
 
 
 def _find_barriers(

@@ -7,10 +7,11 @@ import functools
 import numpy as np
 
 from engine.exits.interior import find_outside_in_well_units
-from engine.exits.lyapunov_orbits import LyapunovOrbit, find_orbits_in_well_units
+from engine.exits.lyapunov_orbit import LyapunovOrbit
+from engine.exits.lyapunov_orbits import find_orbits_in_well_units
 from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION
-from engine.propagation.section_points import find_section_points
+from engine.propagation.fixed_steps import find_section_points
 from engine.slices.planes import SECTION
 from engine.systems.potential import Potential
 
@@ -71,5 +72,4 @@ def _is_interior(potential: Potential, energy: float, points: np.ndarray) -> np.
     with np.errstate(invalid="ignore"):
         is_allowed = SECTION.required_energy(potential, x, px) <= energy
     outside = find_outside_in_well_units(potential, energy, np.where(is_allowed, x, 0.0), np.zeros_like(x))
-    is_interior: np.ndarray = is_allowed & (outside == 0)
-    return is_interior
+    return is_allowed & (outside == 0)

@@ -17,7 +17,6 @@ from engine.exits.continuation import Steps, follow
 from engine.foundations.root_finding import find_root
 from engine.integrator.source.recurrence import TOLERANCE
 from engine.integrator.source.series import ORDER
-from engine.systems.compiled import kernels_of
 from engine.systems.potential import Potential
 
 # Lengths of the search from the saddle along the channel, in units of the distance of the saddle from the origin.
@@ -92,6 +91,15 @@ class Axes(NamedTuple):
         dx, dy = path[0] - self.origin[0], path[1] - self.origin[1]
         return self.outward[0] * dx + self.outward[1] * dy, self.outward[0] * dy - self.outward[1] * dx
 
+    @property
+    def across(self) -> np.ndarray:
+        """The direction of q, (2,)."""
+        return np.array([-self.outward[1], self.outward[0]])
+
+    def points(self, u: np.ndarray, q: np.ndarray) -> np.ndarray:
+        """Return x and y, of shape (2, …)."""
+        return np.moveaxis(self.origin + u[..., None] * self.outward + q[..., None] * self.across, -1, 0)
+
 
 class _Search(NamedTuple):
     """Lengths of a bracket search: its first step and its end along the channel."""
@@ -120,8 +128,7 @@ class _Shot(NamedTuple):
         """Return x and y at m `times`, of shape (2, m)."""
         step = np.searchsorted(self.begins, times, side="right") - 1
         powers = (times - self.begins[step]) ** np.arange(ORDER + 1)[:, None]
-        path: np.ndarray = (self.coefficients[:, :, step] * powers).sum(axis=1)
-        return path
+        return (self.coefficients[:, :, step] * powers).sum(axis=1)
 
 
 def saddle_axes(potential: Potential, channel: int) -> Axes:
@@ -255,7 +262,7 @@ class _Trials:
     """Shoots orbits from rest on the wall at q < 0 in some axes, and follows them along the channel as far as `reach`."""
 
     def __init__(self, potential: Potential, energy: float, axes: Axes, reach: float) -> None:
-        self._kernels, self._steps = kernels_of(potential), np.empty((_MOST_STEPS, 5))
+        self._kernels, self._steps = potential.well.kernels, np.empty((_MOST_STEPS, 5))
         self._arguments = (*axes.origin, *axes.outward, energy, reach, TOLERANCE, self._steps)
 
     def outward_velocity(self, u: float) -> float:

@@ -64,7 +64,7 @@ def ridge_bend(potential: Potential, channel: int) -> float:
     a = −V_uqq/(2 V_uu). A central difference suffices for V_uqq, because any a near the exact value gives an exit.
     """
     axes = saddle_axes(potential, channel)
-    step = _RIDGE_STEP * float(np.hypot(*axes.origin)) * np.array([-axes.outward[1], axes.outward[0]])
+    step = _RIDGE_STEP * float(np.hypot(*axes.origin)) * axes.across
     sides = np.array([axes.origin - step, axes.origin + step])
     slopes = axes.outward @ np.array(np.broadcast_arrays(*potential.gradient(*sides.T)))
     curvature = axes.outward @ potential.hessian_matrix(*axes.origin) @ axes.outward
@@ -132,42 +132,34 @@ def find_reach(potential: Potential, energy: float, curve: np.ndarray) -> float:
     up to half the way to the nearer of these two points.
     """
     reach = np.inf
-    saddle, outward = (
-        curve[[geometry.ORIGIN_X, geometry.ORIGIN_Y]],
-        curve[[geometry.OUTWARD_X, geometry.OUTWARD_Y]],
-    )
-    farthest = _FARTHEST_BEYOND * max(float(np.hypot(*saddle)) / curve[geometry.HALF_WIDTH], 1.0)
+    axes = _axes_of(curve)
+    farthest = _FARTHEST_BEYOND * max(float(np.hypot(*axes.origin)) / curve[geometry.HALF_WIDTH], 1.0)
     beyond = np.geomspace(_FIRST_BEYOND, farthest, _SAMPLES_BEYOND)
     for end, slope in ((-1.0, curve[geometry.SLOPE_LOW]), (1.0, curve[geometry.SLOPE_HIGH])):
         u = chebyshev.chebval(end, curve[geometry.COEFFICIENTS :]) + slope * end * beyond
         q = curve[geometry.MIDDLE] + curve[geometry.HALF_WIDTH] * end * (1.0 + beyond)
-        x, y = saddle[0] + outward[0] * u - outward[1] * q, saddle[1] + outward[1] * u + outward[0] * q
-        reach = min(reach, 1.0 + 0.5 * beyond[potential.value(x, y) <= energy].min(initial=np.inf))
+        is_inside = potential.value(*axes.points(u, q)) <= energy
+        reach = min(reach, 1.0 + 0.5 * beyond[is_inside].min(initial=np.inf))
     return float(reach)
 
 
 def line_points(curve: np.ndarray) -> np.ndarray:
     """Return x and y along an exit from `line_across`, from wall to wall, of shape (41, 2)."""
-    origin, outward = curve[geometry.ORIGIN_X : geometry.ORIGIN_Y + 1], curve[geometry.OUTWARD_X : geometry.OUTWARD_Y + 1]
     s = np.linspace(-1.0, 1.0, _LINE_POINTS)
-    u, q = (
-        chebyshev.chebval(s, curve[geometry.COEFFICIENTS :]),
-        curve[geometry.MIDDLE] + curve[geometry.HALF_WIDTH] * s,
-    )
-    points: np.ndarray = origin + u[:, None] * outward + q[:, None] * np.array([-outward[1], outward[0]])
-    return points
+    u, q = chebyshev.chebval(s, curve[geometry.COEFFICIENTS :]), curve[geometry.MIDDLE] + curve[geometry.HALF_WIDTH] * s
+    return _axes_of(curve).points(u, q).T
+
+
+def _axes_of(curve: np.ndarray) -> Axes:
+    return Axes(curve[geometry.ORIGIN_X : geometry.ORIGIN_Y + 1], curve[geometry.OUTWARD_X : geometry.OUTWARD_Y + 1])
 
 
 def _find_walls(potential: Potential, energy: float, axes: Axes, offset: np.ndarray, bend: float) -> np.ndarray:
     """Find the q of the walls on both sides of q = 0 on n parabolas u = offset + bend q², of shape (n, 2); NaN without a wall."""
-    q_direction = np.array([-axes.outward[1], axes.outward[0]])
 
     def is_beyond(q: np.ndarray) -> np.ndarray:
         """Return whether V > energy at q (n, 2, m)."""
-        u = offset[:, None, None] + bend * q * q
-        points = axes.origin + u[..., None] * axes.outward + q[..., None] * q_direction
-        beyond: np.ndarray = potential.value(points[..., 0], points[..., 1]) > energy
-        return beyond
+        return potential.value(*axes.points(offset[:, None, None] + bend * q * q, q)) > energy
 
     # The points are denser near the saddle.
     grid = np.linspace(0.0, 1.0, _WALL_POINTS) ** 2 * _FARTHEST_WALL * float(np.hypot(*axes.origin))
@@ -177,8 +169,7 @@ def _find_walls(potential: Potential, energy: float, axes: Axes, offset: np.ndar
         first = np.argmax(is_beyond(q), axis=-1)[..., None]
         low, high = np.take_along_axis(q, np.maximum(first - 1, 0), -1), np.take_along_axis(q, first, -1)
         low, high = bisect(is_beyond, low, high, _BISECTIONS)
-    walls: np.ndarray = np.where(first > 0, 0.5 * (low + high), np.nan)[..., 0]
-    return walls
+    return np.where(first > 0, 0.5 * (low + high), np.nan)[..., 0]
 
 
 def paths_meet(one: np.ndarray, other: np.ndarray) -> bool:
@@ -194,8 +185,7 @@ def _paths_cross(one: np.ndarray, other: np.ndarray) -> bool:
     def sides(line: np.ndarray, points: np.ndarray) -> np.ndarray:
         """Return whether each point lies to the left of each segment of a line, of shape (segments, points)."""
         segment, offset = np.diff(line, axis=0)[:, None], points - line[:-1, None]
-        is_left: np.ndarray = segment[..., 0] * offset[..., 1] > segment[..., 1] * offset[..., 0]
-        return is_left
+        return segment[..., 0] * offset[..., 1] > segment[..., 1] * offset[..., 0]
 
     # Two segments intersect if the ends of each lie on different sides of the other.
     of_other, of_one = sides(one, other), sides(other, one).T

@@ -16,8 +16,9 @@ import numpy as np
 from engine.exits.brake_orbits import chord_axes
 from engine.exits.exit_rows import exit_gates
 from engine.exits.exit_shapes import curve_along, find_reach
-from engine.exits.lyapunov_orbits import LyapunovOrbit, find_orbits_in_well_units
-from engine.foundations.arrays import read_only
+from engine.exits.lyapunov_orbit import LyapunovOrbit
+from engine.exits.lyapunov_orbits import find_orbits_in_well_units
+from engine.foundations.arrays import ReadOnlyArrays
 from engine.integrator.kernels import exit_geometry as geometry
 from engine.integrator.kernels.exit_geometry import MIDDLE_COLUMN, exit_points, interpolate_exit
 from engine.systems.potential import Potential
@@ -44,7 +45,7 @@ _Curves = Callable[[float], dict[int, np.ndarray]]
 
 
 @dataclass(frozen=True, eq=False)
-class ExitTable:
+class ExitTable(ReadOnlyArrays):
     """The exits of one channel, in units of the well. The arrays are read-only.
 
     Attributes
@@ -64,10 +65,6 @@ class ExitTable:
     highest: float
     nodes: np.ndarray
     rows: np.ndarray
-
-    def __post_init__(self) -> None:
-        for array in (self.nodes, self.rows):
-            read_only(array)
 
     def points_at(self, energy: float, positions: np.ndarray) -> np.ndarray:
         """Return m points of the exit, at s from −1 to 1, at an energy above the saddle, of shape (2, m)."""
@@ -177,8 +174,7 @@ def _interpolate(nodes: np.ndarray, rows: np.ndarray, height: float) -> np.ndarr
     curves, gates = np.zeros((1, 1, geometry.CURVE_COLUMNS)), np.zeros((1, 3))
     # The kernel writes into `curves` and `gates`.
     interpolate_exit(nodes, rows, 0.0, geometry.CURVE, np.array([height]), 0, curves, gates)
-    curve: np.ndarray = curves[0, 0]
-    return curve
+    return curves[0, 0]
 
 
 def _points(curve: np.ndarray, positions: np.ndarray) -> np.ndarray:

@@ -8,14 +8,13 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable
 from math import comb
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from engine.exits.exit_rows import exit_curves
 from engine.foundations.arrays import read_only
 from engine.integrator.kernels import interior
-from engine.systems.compiled import kernels_of
 from engine.systems.forms.expression_form import ExpressionForm
 from engine.systems.forms.polynomial_form import PolynomialForm
 from engine.systems.potential import Potential
@@ -55,13 +54,12 @@ def find_outside_starts(
     """
     outcomes = np.zeros(x.size, np.int8)
     # The kernel writes the outcomes, which are channels or other ends.
-    _finder(potential.form, potential)(x, y, energy, curves, curve_row, outcomes)
+    _finder(potential)(x, y, energy, curves, curve_row, outcomes)
     is_other_end = outcomes > potential.channels
     channels = np.where(is_other_end, 0, outcomes).astype(np.int64)
     # Channels that form one exit share its number.
     exit_numbers = np.take_along_axis(potential.well.exit_numbers(energy), channels[:, None], axis=1)[:, 0]
-    outside: np.ndarray = np.where(is_other_end, outcomes, exit_numbers)
-    return outside
+    return np.where(is_other_end, outcomes, exit_numbers)
 
 
 def find_inner_radius(potential: Potential) -> float:
@@ -69,20 +67,11 @@ def find_inner_radius(potential: Potential) -> float:
     return max((gap.radius for gap in potential.gaps if gap.x == gap.y == 0.0), default=0.0)
 
 
-@functools.singledispatch
-def _finder(form: Any, potential: Potential) -> Callable[..., None]:
-    """Return the kernel of the interior test for a form of potentials, with its first arguments bound."""
-    raise TypeError(form)
-
-
-@_finder.register
-def _finder_of_expression(_form: ExpressionForm, potential: Potential) -> Callable[..., None]:
-    return functools.partial(kernels_of(potential).find_outside, find_inner_radius(potential))
-
-
-@_finder.register
-def _finder_of_polynomial(form: PolynomialForm, _potential: Potential) -> Callable[..., None]:
-    polynomial = tabulate_polynomial(form)
+def _finder(potential: Potential) -> Callable[..., None]:
+    """Return the kernel of the interior test for a potential, with its first arguments bound."""
+    if isinstance(potential.form, ExpressionForm):
+        return functools.partial(potential.well.kernels.find_outside, find_inner_radius(potential))
+    polynomial = tabulate_polynomial(potential.form)
     return functools.partial(interior.find_outside_polynomial, *polynomial, np.zeros((3, len(polynomial.bernstein))))
 
 

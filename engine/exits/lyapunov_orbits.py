@@ -1,4 +1,4 @@
-"""Lyapunov orbits: the unstable periodic orbits over the open saddles, from which the exits are made.
+"""Search for the Lyapunov orbits, the unstable periodic orbits over the open saddles, from which the exits are made.
 
 In a frame that does not rotate, the path of such an orbit across its channel is the exit. In a rotating frame, an orbit is a
 closed curve, and the exit is a parabola across the channel just outside the orbit (`exit_shapes.line_across`).
@@ -8,9 +8,7 @@ from __future__ import annotations
 
 import functools
 import itertools
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
-from typing import Any
+from dataclasses import replace
 
 import numpy as np
 
@@ -22,17 +20,14 @@ from engine.exits.brake_orbits import (
     find_from_both_ends,
     saddle_axes,
 )
-from engine.exits.exit_shapes import curve_along, find_reach, line_across, line_points, mirrored_curve, paths_meet
+from engine.exits.exit_shapes import curve_along, find_reach, line_across, paths_meet
+from engine.exits.lyapunov_orbit import LyapunovOrbit
 from engine.exits.merged_orbits import axes_between, find_merged_orbits, has_returns
-from engine.exits.periodic_orbits import find_orbit_in_rotating_frame, monodromy_matrix, multipliers_of
-from engine.foundations.arrays import read_only
-from engine.foundations.result import Result
+from engine.exits.periodic_orbits import find_orbit_in_rotating_frame
 from engine.foundations.validation import checked_number, checks_types
 from engine.integrator.kernels import exit_geometry as geometry
-from engine.systems.merged_channels import MergedExit, name_channels
+from engine.systems.merged_channels import MergedExit
 from engine.systems.potential import Potential
-from engine.systems.provenance import describe_run
-from engine.systems.well_units import ENERGY, LENGTH, MOMENTUM, TIME, WellUnits
 
 # Reasons why an exit of several channels is not defined; the search reports the largest.
 _NO_ORBIT, _SHARP_BEND, _RETURNS = range(3)
@@ -52,106 +47,6 @@ class UndefinedExitsError(ValueError):
 
     def __str__(self) -> str:
         return str(self.args[0])
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class LyapunovOrbit(Result):
-    """One Lyapunov orbit; lengths and times are dimensionless. The arrays are read-only.
-
-    Attributes
-    ----------
-    channel
-        Number of the exit channel, from 1.
-    energy
-        Energy h of the orbit.
-    period
-        Period of the orbit.
-    x, y
-        (201,) path over one period, evenly spaced in time, from one side of the channel to the other and back; the first and the
-        last point are equal.
-    curve
-        (columns,) row of the exit for the kernels of the integrator.
-    velocity
-        (2,) px and py at the first point, for a mass of 1 the velocity; 0 unless the frame rotates.
-    others
-        Other channels of the same exit, above the maxima between the channels; `channel` is the lowest of their numbers.
-    potential
-        The `Potential`.
-    """
-
-    channel: int
-    energy: float = field(metadata=ENERGY)
-    period: float = field(metadata=TIME)
-    x: np.ndarray = field(metadata=LENGTH)
-    y: np.ndarray = field(metadata=LENGTH)
-    curve: np.ndarray
-    velocity: np.ndarray = field(default_factory=lambda: np.zeros(2), metadata=MOMENTUM)
-    others: tuple[int, ...] = ()
-    potential: Potential = field(kw_only=True, repr=False)
-
-    def __post_init__(self) -> None:
-        for array in (self.x, self.y, self.curve, self.velocity):
-            read_only(array)
-
-    def find_multipliers(self) -> np.ndarray:
-        """Return the stability of the orbit: the eigenvalues of the flow linearised along one period, the largest modulus first.
-
-        The result is complex, of shape (4,): 1, 1, λ and 1/λ. If the modulus of λ is not 1, the orbit is unstable. The double
-        eigenvalue 1 has only one eigenvector, so rounding changes it by the square root of the error of the matrix, 1e-8 to 1e-6.
-
-        Examples
-        --------
-        >>> from escape_explorer import CASES, find_lyapunov_orbits
-        >>> orbit = find_lyapunov_orbits(CASES["I"], 0.19)[0]
-        >>> round(float(abs(orbit.find_multipliers()[0])), 2)
-        93.85
-        """
-        units = self.potential.units
-        return read_only(
-            multipliers_of(monodromy_matrix(self.potential.in_well_units, self.start / units.state, self.period / units.time))
-        )
-
-    @property
-    def start(self) -> np.ndarray:
-        """(4,) x, y, px and py at the first point."""
-        return np.array([self.x[0], self.y[0], *self.velocity])
-
-    def provenance(self) -> dict[str, Any]:
-        """Return the potential, the energy, the integrator and the version."""
-        return describe_run(self.potential, energy=self.energy)
-
-    def columns(self) -> Mapping[str, np.ndarray]:
-        """Return the path and its times."""
-        return {"t": np.linspace(0.0, self.period, self.x.size), "x": self.x, "y": self.y}
-
-    @property
-    def name(self) -> str:
-        """The name of the exit, such as "L1"; without names its channel number, "1", or "1+3" if two channels form the exit."""
-        named = self.potential.exit_names if len(self.potential.exit_names) == self.potential.channels else ()
-        return name_channels((self.channel, *self.others), named)
-
-    @property
-    def outward(self) -> np.ndarray:
-        """(2,) unit vector out of the well, across the exit."""
-        return self.curve[geometry.OUTWARD_X : geometry.OUTWARD_Y + 1]
-
-    @property
-    def half_path(self) -> np.ndarray:
-        """(101, 2) half a period of the path, from one side of the channel to the other; the other half retraces it.
-
-        In a rotating frame, this is the whole closed path, (201, 2).
-        """
-        path = np.column_stack([self.x, self.y])
-        return path if self._is_closed_curve else path[: self.x.size // 2 + 1]
-
-    @property
-    def exit_path(self) -> np.ndarray:
-        """(n, 2) the exit across the channel: half the path, or in a rotating frame points of the parabola outside the orbit."""
-        return line_points(self.curve) if self._is_closed_curve else self.half_path
-
-    @property
-    def _is_closed_curve(self) -> bool:
-        return bool(self.curve[geometry.SHAPE] == geometry.LINE)
 
 
 @checks_types(potential=Potential)
@@ -190,7 +85,7 @@ def find_lyapunov_orbits(potential: Potential, energy: float) -> tuple[LyapunovO
     """
     units = potential.units
     orbits = find_orbits_in_well_units(potential.in_well_units, checked_number("energy", energy) / units.energy)
-    return tuple(replace(_restored(orbit, units), potential=potential) for orbit in orbits)
+    return tuple(replace(orbit.restored(units), potential=potential) for orbit in orbits)
 
 
 def find_orbits_in_well_units(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:
@@ -243,13 +138,13 @@ def _find_separate_orbits(potential: Potential, energy: float, follow: bool) -> 
         mirror_channel = int(mirror_numbers[channel])
         others = merged[channel].channels[1:] if channel in merged else ()
         if mirror_channel in orbits:
-            orbits[channel] = replace(_mirrored(orbits[mirror_channel], channel), others=others)
+            orbits[channel] = replace(orbits[mirror_channel].mirrored(channel), others=others)
         elif channel in merged:
             orbits[channel] = _find_merged(potential, energy, merged[channel])
         else:
             orbits[channel] = _find_orbit(potential, energy, channel, follow)
         if mirror_channel == channel and potential.well.mirror_in_x:
-            orbits[channel] = _symmetrized(orbits[channel])
+            orbits[channel] = orbits[channel].symmetrized()
     in_channel_order = tuple(orbits.values())
     _check_exits_apart(in_channel_order)
     return in_channel_order
@@ -290,32 +185,11 @@ def _find_merged(potential: Potential, energy: float, merged: MergedExit) -> Lya
     raise _SearchError(f"{_describe(potential, merged)}, and {_REASONS[reason]}")
 
 
-def _restored(orbit: LyapunovOrbit, units: WellUnits) -> LyapunovOrbit:
-    """Convert an orbit from units of the well to those of its potential."""
-    if units == WellUnits():
-        return orbit
-    curve = orbit.curve * units.length
-    # These columns have no unit.
-    unitless = slice(geometry.OUTWARD_X, geometry.SHAPE + 1)
-    curve[unitless] = orbit.curve[unitless]
-    return replace(units.restore(orbit), curve=curve)
-
-
 def _check_exits_apart(orbits: tuple[LyapunovOrbit, ...]) -> None:
     """Raise an error if two exits meet."""
     for first, second in itertools.combinations(orbits, 2):
         if paths_meet(first.exit_path, second.exit_path):
             raise _SearchError(f"the exits of channels {first.channel} and {second.channel} meet; choose a lower energy")
-
-
-def _mirrored(orbit: LyapunovOrbit, channel: int) -> LyapunovOrbit:
-    """Return the exact image under x → −x, so that mirror images of orbits escape at exactly the same time."""
-    return replace(orbit, channel=channel, x=-orbit.x, curve=mirrored_curve(orbit.curve))
-
-
-def _symmetrized(orbit: LyapunovOrbit) -> LyapunovOrbit:
-    """Return an orbit over a saddle on the y axis, with an exit curve that is exactly symmetric."""
-    return replace(orbit, curve=0.5 * (orbit.curve + mirrored_curve(orbit.curve)))
 
 
 def _find_closed_orbit(potential: Potential, energy: float, channel: int) -> LyapunovOrbit:

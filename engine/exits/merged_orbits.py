@@ -13,7 +13,6 @@ import numpy as np
 from engine.exits.brake_orbits import Axes, BrakeOrbit, find_from_outside
 from engine.integrator.kernels import events
 from engine.integrator.kernels.dense_output import trace_pieces
-from engine.systems.compiled import kernels_of
 from engine.systems.potential import Potential
 
 # Positions at which lines of starts cross the line between the outermost saddles, as shares of its length.
@@ -56,7 +55,7 @@ def find_merged_orbits(potential: Potential, energy: float, channels: tuple[int,
 
 def has_returns(potential: Potential, energy: float, orbit: BrakeOrbit, curve: np.ndarray) -> bool:
     """Return whether any of 50 orbits that leave across an exit, a row `curve`, returns through it."""
-    kernels = kernels_of(potential)
+    kernels = potential.well.kernels
     for start in _leaving_states(potential, energy, orbit.path):
         # The first piece holds thousands of steps, far more than the time requires.
         steps, _ = next(trace_pieces(kernels, start, _FOLLOWED_TIME, len(potential.outcomes)))

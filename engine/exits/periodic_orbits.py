@@ -19,7 +19,6 @@ from engine.exits.brake_orbits import Axes, saddle_axes
 from engine.exits.continuation import Steps, follow
 from engine.exits.exit_shapes import ridge_bend
 from engine.integrator.kernels.dense_output import advance_states, sample_path, trace_pieces, trace_steps, transition_matrices
-from engine.systems.compiled import kernels_of
 from engine.systems.potential import Potential
 
 # Number of nodes: states of one period that are corrected together.
@@ -121,13 +120,12 @@ def find_orbit_in_rotating_frame(potential: Potential, energy: float, channel: i
 def multipliers_of(matrix: np.ndarray) -> np.ndarray:
     """Return the complex eigenvalues of a monodromy matrix, of shape (4,), the largest modulus first."""
     values = np.linalg.eigvals(matrix).astype(complex)
-    ordered: np.ndarray = values[np.argsort(-np.abs(values), kind="stable")]
-    return ordered
+    return values[np.argsort(-np.abs(values), kind="stable")]
 
 
 def monodromy_matrix(potential: Potential, start: np.ndarray, period: float) -> np.ndarray:
     """Return the flow linearised along one period from a state (4,), of shape (4, 4), in units of the well."""
-    kernels = kernels_of(potential)
+    kernels = potential.well.kernels
     steps = trace_steps(kernels, start, period, len(potential.outcomes))
     durations = np.diff(steps[:, 4], append=period)
     matrix = np.eye(4)
@@ -173,8 +171,7 @@ def _extrapolate(known: _Known, target: float) -> np.ndarray:
     """Evaluate, at the target, the polynomial that interpolates the unknowns at known values of σ."""
     sigmas = np.array([sigma for sigma, _ in known])
     weights = [np.prod((target - np.delete(sigmas, k)) / (sigma - np.delete(sigmas, k))) for k, sigma in enumerate(sigmas)]
-    predicted: np.ndarray = np.array(weights) @ np.array([unknowns for _, unknowns in known])
-    return predicted
+    return np.array(weights) @ np.array([unknowns for _, unknowns in known])
 
 
 def _correct(family: _Family, sigma: float, predicted: np.ndarray) -> np.ndarray | None:
@@ -229,8 +226,7 @@ def _newton_step(family: _Family, sigma: float, unknowns: np.ndarray) -> np.ndar
     residual[-1] = jacobian[-1, :4] @ unknowns[:4]
     if not (np.isfinite(residual).all() and np.isfinite(jacobian).all()):
         return None
-    correction: np.ndarray = -np.linalg.lstsq(jacobian, residual, rcond=None)[0]
-    return correction
+    return -np.linalg.lstsq(jacobian, residual, rcond=None)[0]
 
 
 def _velocities(potential: Potential, states: np.ndarray) -> np.ndarray:
@@ -245,7 +241,7 @@ def _trace(potential: Potential, states: np.ndarray, period: float) -> _Parts | 
     """Return the parts of an orbit of some period that start at its nodes (nodes, 4); None if they cannot be integrated."""
     if not (np.isfinite(states).all() and 0.0 < period < np.inf):
         return None
-    kernels, duration = kernels_of(potential), period / _NODES
+    kernels, duration = potential.well.kernels, period / _NODES
     # The first piece of a part is the whole part, or has more than `_MOST_STEPS_PER_PART` steps.
     steps = [next(trace_pieces(kernels, state, duration, len(potential.outcomes)))[0] for state in states]
     if max(map(len, steps)) > _MOST_STEPS_PER_PART:
@@ -263,8 +259,7 @@ def _trace(potential: Potential, states: np.ndarray, period: float) -> _Parts | 
 
 def _product(matrices: np.ndarray) -> np.ndarray:
     """Return the product of n transition matrices, of shape (4, 4), with the first matrix applied first."""
-    product: np.ndarray = functools.reduce(lambda earlier, matrix: matrix @ earlier, matrices)
-    return product
+    return functools.reduce(lambda earlier, matrix: matrix @ earlier, matrices)
 
 
 def _finish(family: _Family, energy: float, unknowns: np.ndarray) -> PeriodicOrbit | None:
@@ -275,7 +270,7 @@ def _finish(family: _Family, energy: float, unknowns: np.ndarray) -> PeriodicOrb
     # `not … <` also rejects NaN.
     if parts is None or not np.abs(parts.ends - np.roll(states, -1, axis=0)).max() < _LARGEST_GAP:
         return None
-    kernels, duration = kernels_of(family.potential), period / _NODES
+    kernels, duration = family.potential.well.kernels, period / _NODES
     times = np.arange(_POINTS_PER_NODE) * (duration / _POINTS_PER_NODE)
     pieces = [sample_path(kernels, steps, times) for steps in parts.steps]
     path = np.concatenate([*pieces, states[:1].T], axis=1)

@@ -39,8 +39,7 @@ class Interval:
 
     def excludes_zero(self) -> np.ndarray:
         """Return whether 0 lies outside each interval, of shape (n,)."""
-        excluded: np.ndarray = (self.low > 0.0) | (self.high < 0.0)
-        return excluded
+        return (self.low > 0.0) | (self.high < 0.0)
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,10 @@ def read_only(array: np.ndarray) -> np.ndarray:
 
 
 class ReadOnlyArrays:
-    """Base of dataclasses whose arrays are read-only also after unpickling; NumPy does not pickle the flag."""
+    """Base of dataclasses that make their arrays read-only, also after unpickling, because NumPy does not pickle the flag."""
+
+    def __post_init__(self) -> None:
+        self.__setstate__(vars(self))
 
     def __setstate__(self, state: Mapping[str, Any]) -> None:
         vars(self).update({name: read_only(value) if isinstance(value, np.ndarray) else value for name, value in state.items()})

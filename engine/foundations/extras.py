@@ -5,13 +5,10 @@ from __future__ import annotations
 import functools
 import importlib.util
 from importlib.metadata import entry_points
-from typing import TYPE_CHECKING, Any, Protocol
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from types import ModuleType
 
 GROUP = "escape_explorer.pictures"
-"""Group of the entry point of the module with the functions of `Pictures`."""
+"""Group of the entry point of the module that draws a `Result`, with the functions plot_result, to_html and to_holoviews."""
 
 
 def require_package(package: str, extra: str) -> None:
@@ -33,22 +30,9 @@ def require_package(package: str, extra: str) -> None:
         raise ModuleNotFoundError(f"{package} is not installed: pip install 'escape-explorer[{extra}]'", name=package)
 
 
-class Pictures(Protocol):
-    """Functions that draw a `Result`."""
-
-    def plot_result(self, result: Any, ax: Axes | None = None, **options: Any) -> Axes:
-        """Draw a result, as `Result.plot` describes."""
-
-    def to_html(self, result: Any) -> str:
-        """Return the result as HTML for a notebook."""
-
-    def to_holoviews(self, result: Any) -> Any:
-        """Return the result as a HoloViews element."""
-
-
 @functools.cache
-def load_pictures(group: str = GROUP) -> Pictures:
-    """Return the entry point of a group, loaded at the first call, because drawing libraries are slow to import.
+def load_pictures(group: str = GROUP) -> ModuleType:
+    """Return the module of the entry point of a group, loaded at the first call, because drawing libraries are slow to import.
 
     Raises
     ------
@@ -56,6 +40,5 @@ def load_pictures(group: str = GROUP) -> Pictures:
         If there is no entry point, for example in sources that are not installed.
     """
     for entry in entry_points(group=group):
-        pictures: Pictures = entry.load()
-        return pictures
+        return entry.load()
     raise RuntimeError(f"no installed package draws results: entry point {group!r} is missing; install escape-explorer")

@@ -16,7 +16,7 @@ from engine.foundations.stored_fields import FORMER_FIELDS
 FORMER_NAMES: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
         "CHAOS_THRESHOLD": ("its value, 1e-7", "propagation.fates:CHAOS_THRESHOLD"),
-        "Certificate": ("Evidence", "propagation.evidence:Evidence"),
+        "Certificate": ("Evidence", "propagation.fates:Evidence"),
         "Curves": ("escape_explorer.results.Sweep", "sweeps.sweep:Sweep"),
         "CurvesSpec": ("SweepSpec", ""),
         "IndicatorVerdict": ("OrbitVerdict.findings", "trajectories.chaos_indicators:IndicatorVerdict"),

@@ -109,6 +109,15 @@ def checked_number(name: str, value: Any, requirement: str = "", largest: float 
     return float(value)
 
 
+def checked_between(name: str, value: Any, low: float, high: float) -> float:
+    """Return a real number from `low` to `high` as a float; ValueError otherwise."""
+    legal = f"from {low:g} to {high:g}"
+    number = checked_number(name, value, legal)
+    if not low <= number <= high:
+        raise ValueError(f"{name}={number!r}: must be {legal}")
+    return number
+
+
 def checked_count(name: str, value: Any, least: int, most: int) -> int:
     """Return an integer from `least` to `most`; ValueError otherwise."""
     # Values that are no integers become an integer out of range.

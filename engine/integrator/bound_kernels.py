@@ -28,8 +28,8 @@ from engine.integrator.jit.disk_cache import DEFINE
 from engine.integrator.jit.function_pointers import SIGNATURES
 from engine.integrator.jit.llvm_emitter import straight_line, table_reader
 from engine.integrator.kernels import fixed_step, interior, orbit_lanes, periodic_shooting, propagate
-from engine.integrator.source.recurrence import Definition, GeneratedCode, find_structure, generate
-from engine.integrator.source.series import Setting, Structure
+from engine.integrator.source.recurrence import Definition, GeneratedCode, Structure, find_structure, generate
+from engine.integrator.source.series import Setting
 
 _KERNEL_MODULES = (propagate, periodic_shooting, fixed_step, orbit_lanes, interior)
 # Number of potentials whose bound kernels are cached. Binding another potential of a known structure takes milliseconds.
@@ -107,8 +107,7 @@ class GeneratedFunction:
         self._dispatcher.compile(self._signature)
         self._dispatcher.disable_compile()
         result = self._dispatcher.get_compile_result(self._signature)
-        address: int = result.library.get_pointer_to_function(result.fndesc.llvm_func_name)
-        return address
+        return result.library.get_pointer_to_function(result.fndesc.llvm_func_name)
 
     @property
     def py_func(self) -> Any:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable
-from typing import Protocol
 
 from engine.foundations.validation import checked_count
 from engine.jobs.job import Job
@@ -15,15 +14,6 @@ MOST_REQUESTS = 32
 
 # Largest legal limit on the open requests of one client.
 _LARGEST_LIMIT = 1000
-
-
-class JobSubmitter(Protocol):
-    """Accepts requests: `Jobs` or a `JobClient`."""
-
-    def request[Result](
-        self, job: Job[Result], on_result: Callable[[Result], None], on_error: Callable[[Exception], None]
-    ) -> Subscription:
-        """Request the result of a job; see `Jobs.request`."""
 
 
 class JobClient:
@@ -74,3 +64,7 @@ class JobClient:
             )
         )
         return refused_subscription
+
+
+JobSubmitter = Jobs | JobClient
+"""Accepts requests."""

@@ -92,8 +92,7 @@ def run_job[Result](job: Job[Result], execution: Execution, known: Mapping[Job[A
         When cancelled.
     """
     if job in known:
-        known_result: Result = known[job]
-        return known_result
+        return known[job]
     arguments = [run_job(value, execution, known) if isinstance(value, Job) else value for value in job.arguments]
     result = job.function(*arguments, **job.keywords({"execution": execution}))
     execution.raise_if_cancelled()

@@ -258,8 +258,7 @@ class Jobs:
             self.cache.put(job, result)
         if not _is_complete(result):
             raise CancelledError
-        complete_result: Result = result
-        return complete_result
+        return result
 
     def _create_executors(self, run: _Run) -> Mapping[Queue, QueueExecutor]:
         """Return an executor for each `Queue`."""

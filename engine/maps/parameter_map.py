@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 
-from engine.foundations.arrays import read_only
 from engine.foundations.execution import SERIAL_EXECUTION, Execution, count_cores
 from engine.maps.pixels import PixelAnalysis
 from engine.maps.result import PIXEL_ARRAYS, EscapeMap, collect_map, empty_arrays, representative_indices
@@ -22,8 +21,7 @@ from engine.maps.run import MapRun
 from engine.maps.spec import MapSpec
 from engine.maps.stages import OnChange, Stage, Staged, run_stages, run_to_frame
 from engine.propagation.batch import OrbitBatch
-from engine.propagation.evidence import Evidence
-from engine.propagation.fates import Fate, renumber
+from engine.propagation.fates import Evidence, Fate, renumber
 from engine.slices.axes import HeldParameter, highest_energy
 from engine.slices.parameter_family import ManyExitsError, parameter_family
 from engine.slices.window import Window
@@ -289,7 +287,7 @@ class _LineAnalyses[Analysis: PixelAnalysis]:
 
     def frame(self) -> Analysis:
         """Return the analysis so far."""
-        arrays: dict[str, Any] = {name: read_only(values.copy()) for name, values in self._arrays.items()}
+        arrays: dict[str, Any] = {name: values.copy() for name, values in self._arrays.items()}
         complete = self._complete and self._finished_count == len(self._lines)
         return self._kind(spec=self._map.spec, complete=complete, **arrays, **self._choices)
 

@@ -73,8 +73,7 @@ class MirrorPixels:
 
     def select_first_images(self, pixels: np.ndarray) -> np.ndarray:
         """Return those of `pixels`, of shape (n,), that are the first of their pair."""
-        first_images: np.ndarray = pixels[pixels <= self.partner[pixels]]
-        return first_images
+        return pixels[pixels <= self.partner[pixels]]
 
     def find_first_images(self, pixels: np.ndarray) -> np.ndarray:
         """Return the first pixels of the pairs of `pixels`, of shape (n,). Given and returned pixels are sorted and distinct."""

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from engine.foundations.arrays import read_only
 from engine.foundations.former_names import with_former_fields
 from engine.foundations.result import MapResult, Result
 from engine.foundations.validation import checked_flag
@@ -16,8 +15,7 @@ from engine.foundations.wording import describe_codes
 from engine.maps.spec import MapSpec, read_spec
 from engine.measures.starts import checked_dataset
 from engine.propagation.batch import OrbitBatch
-from engine.propagation.evidence import Evidence
-from engine.propagation.fates import Fate, name_fate
+from engine.propagation.fates import Evidence, Fate, name_fate
 from engine.slices.window import Window
 from engine.systems.outcomes import Outcome, write_outcomes
 from engine.systems.well_units import TIME
@@ -271,8 +269,8 @@ def collect_map(
     """Return a map with read-only views of `PIXEL_ARRAYS`. `stage` is its `stride`, `horizon` and `progress`."""
     x, ordinate = centres
     complete = bool(arrays["started"].all() and not np.any(arrays["fate"] == Fate.NOT_COMPUTED))
-    pixels: dict[str, Any] = {name: read_only(array.reshape(ordinate.size, x.size)) for name, array in arrays.items()}
-    return EscapeMap(spec=spec, x=read_only(x), ordinate=read_only(ordinate), complete=complete, **pixels, **stage)
+    pixels: dict[str, Any] = {name: array.reshape(ordinate.size, x.size) for name, array in arrays.items()}
+    return EscapeMap(spec=spec, x=x, ordinate=ordinate, complete=complete, **pixels, **stage)
 
 
 def outcome_shares(fate: np.ndarray, outcomes: Sequence[Outcome]) -> dict[int, float]:
@@ -285,8 +283,7 @@ def outcome_shares(fate: np.ndarray, outcomes: Sequence[Outcome]) -> dict[int, f
 
 def find_interior(fate: np.ndarray) -> np.ndarray:
     """Return whether starts are neither forbidden nor outside, given fates of any shape."""
-    interior: np.ndarray = (fate != Fate.FORBIDDEN) & (fate != Fate.OUTSIDE)
-    return interior
+    return (fate != Fate.FORBIDDEN) & (fate != Fate.OUTSIDE)
 
 
 def representative_indices(size: int, stride: int) -> np.ndarray:
@@ -312,10 +309,10 @@ def read_map(dataset: xr.Dataset) -> EscapeMap:
     """Return the map of a dataset. It has no integration state, so it cannot be resumed."""
     spec = read_spec(dataset)
     abscissa, ordinate = spec.plane.axis_names
-    arrays: dict[str, Any] = {name: read_only(np.array(dataset[name].values)) for name in _STORED_ARRAYS}
+    arrays: dict[str, Any] = {name: np.array(dataset[name].values) for name in _STORED_ARRAYS}
     started = arrays["fate"] != Fate.NOT_COMPUTED
     return EscapeMap(
-        spec=spec, x=read_only(np.array(dataset[abscissa].values)), ordinate=read_only(np.array(dataset[ordinate].values)),
-        stride=1, horizon=spec.t_max, progress=float(started.mean()), complete=bool(started.all()), started=read_only(started),
+        spec=spec, x=np.array(dataset[abscissa].values), ordinate=np.array(dataset[ordinate].values),
+        stride=1, horizon=spec.t_max, progress=float(started.mean()), complete=bool(started.all()), started=started,
         rounded_share=float(dataset.attrs["rounded_share"]) if "rounded_share" in dataset.attrs else None, **arrays,
     )  # fmt: skip

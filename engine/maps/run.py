@@ -18,8 +18,7 @@ from engine.maps.spec import MapSpec
 from engine.maps.stages import OnChange, Stage
 from engine.propagation.batch import OrbitBatch, propagate_batch
 from engine.propagation.classification import Outcomes, collect_outcomes
-from engine.propagation.evidence import Evidence
-from engine.propagation.fates import Fate
+from engine.propagation.fates import Evidence, Fate
 
 COARSE_PIXELS = 1200
 """Largest number of pixels in the first frame."""

@@ -20,10 +20,9 @@ from engine.slices.planes import checked_slice
 from engine.slices.slice import Slice
 from engine.slices.slice_text import read_slice, write_slice
 from engine.slices.window import GivenWindow, Window, checked_window
-from engine.systems.formulas.stored_potential import read_potential
+from engine.systems.formulas.formula_parser import read_potential
 from engine.systems.outcomes import Outcome
 from engine.systems.potential import Potential
-from engine.systems.provenance import describe_run
 from engine.systems.system import System
 
 if TYPE_CHECKING:
@@ -203,8 +202,7 @@ class MapSpec:
         window = self.find_window()
         axes, fixed_values = write_slice(self.plane)
         parameter = self.plane.parameter
-        return describe_run(
-            self.potential,
+        return self.potential.describe_run(
             energy=self.energy,
             plane=self.plane.title,
             axes=axes,

@@ -148,10 +148,7 @@ class _Sample:
         falling_u = u if steepness > 0.0 else 1.0 - u
         # du/dt is 1/length if u is linear in t, and 1/(t · length) if u is linear in ln t.
         log_t = 0.0 if law is DecayLaw.EXPONENTIAL else np.log(self.times)
-        likelihoods: np.ndarray = (
-            -np.log(special.exprel(-k)) - k * falling_u - np.log(window_length(law, self.t_low, self.t_high)) - log_t
-        )
-        return likelihoods
+        return -np.log(special.exprel(-k)) - k * falling_u - np.log(window_length(law, self.t_low, self.t_high)) - log_t
 
 
 def _choose_t_low(times: np.ndarray, t_high: float) -> float:

@@ -8,7 +8,6 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from engine.foundations.arrays import read_only
 from engine.foundations.validation import checked_integers
 from engine.foundations.wording import format_share
 from engine.measures.starts import Measurable, Starts, read_starts, wilson_interval
@@ -122,5 +121,5 @@ def compute_exit_matching(entrances: Any, outcomes: Measurable | Starts) -> Exit
     rows, ends = np.unique(entered), np.array([int(Fate.BOUNDED), *occurring])
     counts = np.array([[np.count_nonzero((entered == row) & (starts.fate == end)) for end in ends] for row in rows], np.int64)
     # Without orbits, the shape has to be stated.
-    counts = read_only(counts.reshape(rows.size, ends.size))
-    return ExitMatching(read_only(rows), read_only(ends), counts, starts.outcomes, made_by=starts.made_by)
+    counts = counts.reshape(rows.size, ends.size)
+    return ExitMatching(rows, ends, counts, starts.outcomes, made_by=starts.made_by)

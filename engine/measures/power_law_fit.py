@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from engine.foundations.arrays import read_only
 from engine.foundations.result import RecordedResult
 from engine.foundations.validation import checked_array, checked_integers, short_repr
 from engine.foundations.wording import format_count, format_decimals
@@ -174,7 +173,6 @@ def fit_uncertainty(separations: Any, pairs: Any, uncertain: Any) -> Uncertainty
     epsilon, n, k = _checked_counts(separations, pairs, uncertain)
     law = _find_law(epsilon, n, k)
     used = np.isin(np.arange(epsilon.size), law.used)
-    epsilon, n, k, used = (read_only(array) for array in (epsilon, n, k, used))
     if not law.holds:
         return UncertaintyExponent(epsilon, n, k, used, np.nan, np.nan, np.nan, np.nan, law.misfit)
     low, high = law.exponent - law.half_width, law.exponent + law.half_width
@@ -238,15 +236,13 @@ def _with_enough_pairs(indices: np.ndarray, epsilon: np.ndarray, n: np.ndarray, 
     if np.count_nonzero(k[indices]) < MIN_SEPARATIONS:
         return indices[:0]
     share = predict_shares(epsilon[indices], n[indices], k[indices])
-    with_enough: np.ndarray = indices[n[indices] * np.minimum(share, 1.0 - share) >= MIN_EXPECTED_PAIRS]
-    return with_enough
+    return indices[n[indices] * np.minimum(share, 1.0 - share) >= MIN_EXPECTED_PAIRS]
 
 
 def predict_shares(epsilon: np.ndarray, n: np.ndarray, k: np.ndarray) -> np.ndarray:
     """Return f of the most likely power law at each separation; at least two of the k must be above 0, and all k below n."""
     design = _powers(np.log(epsilon), 1)
-    shares: np.ndarray = np.exp(design @ _maximise_likelihood(design, n, k)[0])
-    return shares
+    return np.exp(design @ _maximise_likelihood(design, n, k)[0])
 
 
 def _fit_law(used: np.ndarray, epsilon: np.ndarray, n: np.ndarray, k: np.ndarray) -> _Law | None:

@@ -161,8 +161,7 @@ def checked_dataset(name: str, value: Any, arrays: Collection[str], legal: str) 
         raise ValueError(f"{name}: a dataset of a map without {', '.join(missing)}; must have all arrays of the map")
     if dataset["fate"].ndim > len(("rows", "columns")):
         raise ValueError(f"{name}: a dataset of several maps; must be one of them, such as dataset.sel(h=…)")
-    checked: xr.Dataset = dataset
-    return checked
+    return dataset
 
 
 def _read_dataset(dataset: xr.Dataset) -> Starts:

@@ -9,7 +9,6 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from engine.foundations.arrays import read_only
 from engine.foundations.result import Chart, RecordedResult
 from engine.foundations.wording import format_count
 from engine.measures.starts import checked_labels, describe_labels
@@ -118,12 +117,12 @@ def compute_wada_test(labels: Any, valid: Any = None) -> WadaTest:
     boundary = _slim_boundary(labels, valid)
     count = int(np.count_nonzero(boundary))
     if len(basins) < MIN_BASINS or not count:
-        return WadaTest(basins, math.nan, math.nan, count, read_only(np.empty(0)), made_by=made_by)
+        return WadaTest(basins, math.nan, math.nan, count, np.empty(0), made_by=made_by)
     distances = np.sort(_largest_distances(labels, valid, basins, boundary))
     shares = np.cumsum(np.bincount(distances[np.isfinite(distances)].astype(np.intp))) / count
     least_count = math.ceil(_PERCENTAGE * count / 100)
     radius_99 = float(distances[least_count - 1])
-    return WadaTest(basins, float(distances[-1]), radius_99, count, read_only(shares), made_by=made_by)
+    return WadaTest(basins, float(distances[-1]), radius_99, count, shares, made_by=made_by)
 
 
 def _slim_boundary(colours: np.ndarray, valid: np.ndarray) -> np.ndarray:

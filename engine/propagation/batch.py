@@ -14,9 +14,7 @@ from engine.exits.interior import find_outside_starts
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, run_parts
 from engine.integrator.kernels.propagate import NO_TRACE, VECTOR, Exits, Orbits, fill_vectors
 from engine.integrator.source.recurrence import LANES, TOLERANCE
-from engine.propagation.evidence import Evidence
-from engine.propagation.fates import Fate
-from engine.systems.compiled import kernels_of
+from engine.propagation.fates import Evidence, Fate
 from engine.systems.potential import Potential
 
 LARGEST_TILE = 2048
@@ -236,7 +234,7 @@ def _advance_tile(
     """
     exits = Exits(gates, curves, tile.batch.curve_row)
     orbits = tile.batch.for_kernels(tile.active)
-    kernels_of(potential).propagate(
+    potential.well.kernels.propagate(
         np.arange(tile.orbits.size), horizon, final, tolerance, STEP_BUDGET, least_active, exits, orbits, NO_TRACE
     )
     return tile

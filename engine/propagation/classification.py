@@ -1,4 +1,4 @@
-"""Outcomes of many orbits of one energy."""
+"""Outcomes of orbits: of many orbits of one energy, and of one orbit with its steps."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from engine.exits.exit_rows import exit_curves
-from engine.foundations.arrays import read_only
+from engine.exits.exit_rows import exit_curves, exit_gates
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.validation import checked_number, checked_states, checks_types
+from engine.integrator.kernels.dense_output import trace_orbit
+from engine.integrator.kernels.propagate import Exits
 from engine.propagation.batch import OrbitBatch, propagate_batch
 from engine.propagation.fates import Fate, OrbitResult
 from engine.systems.outcomes import Outcome
 from engine.systems.potential import Potential
-from engine.systems.provenance import describe_run
 from engine.systems.well_units import TIME
 
 ENERGY_TOLERANCE = 1e-9
@@ -64,7 +64,7 @@ def collect_outcomes(potential: Potential, energy: np.ndarray, batch: OrbitBatch
     error = np.full(batch.fate.size, np.nan)
     error[is_decided] = difference / np.maximum(np.abs(reference), np.finfo(float).tiny)
     escape_time = np.where(batch.fate >= 1, batch.t, np.nan)
-    return Outcomes(read_only(batch.fate.copy()), read_only(escape_time), read_only(crossings), read_only(error))
+    return Outcomes(batch.fate.copy(), escape_time, crossings, error)
 
 
 @shows_progress("orbits")
@@ -116,7 +116,7 @@ def classify_orbits(
     outcomes = classify_in_well_units(
         potential.in_well_units, energy / units.energy, states / units.state, t_max / units.time, execution
     )
-    made_by = describe_run(potential, energy=float(energy), t_max=t_max)
+    made_by = potential.describe_run(energy=float(energy), t_max=t_max)
     return replace(units.restore(outcomes), t_max=t_max, outcomes=potential.outcomes_at(energy), made_by=made_by)
 
 
@@ -150,3 +150,58 @@ def _checked_states(potential: Potential, energy: float, states: Any) -> np.ndar
         row_energy = float(potential.energy(array[row]))
         raise ValueError(f"states: row {row} has energy {row_energy!r}; must be energy={energy} to within {tolerance:.2g}")
     return array
+
+
+@dataclass(frozen=True, eq=False)
+class OrbitSteps:
+    """An orbit in units of the well.
+
+    Attributes
+    ----------
+    outcomes
+        The `Outcomes` of this orbit, equal to the bit to those in a map.
+    steps
+        (m, 5) x, y, px, py, t at the start of each step; (0, 5) for a start outside.
+    t_end
+        Time of the escape, or t_max; 0 for a start outside.
+    """
+
+    outcomes: Outcomes
+    steps: np.ndarray
+    t_end: float
+
+
+def record_orbit(potential: Potential, start: np.ndarray, curves: np.ndarray, t_max: float, execution: Execution) -> OrbitSteps:
+    """Integrate one orbit until it escapes or reaches `t_max`, and keep its steps; all quantities are in units of the well.
+
+    Parameters
+    ----------
+    potential
+        The potential in units of its well, `Potential.in_well_units`.
+    start
+        (4,) x, y, px, py.
+    curves
+        (channels, columns) exit curves at the energy of the start, see `exit_curves`.
+    t_max
+        Largest integration time, above 0, dimensionless.
+    execution
+        How to cancel the computation. The orbit is integrated in this thread.
+
+    Raises
+    ------
+    concurrent.futures.CancelledError
+        If cancelled.
+    """
+    # A batch of one orbit, and exit curves of one energy.
+    batch = OrbitBatch.from_starts(start[None], np.zeros(1, np.int64))
+    curve_rows = curves[None]
+    batch.mark_outside(potential, np.arange(1), curve_rows, execution=execution.in_this_thread())
+    pending = (batch.fate == Fate.NOT_COMPUTED).astype(np.uint8)
+    orbits = batch.for_kernels(pending)
+    exits = Exits(exit_gates(curve_rows), curve_rows, batch.curve_row)
+    pieces = list(trace_orbit(potential.well.kernels, exits, orbits, t_max, execution))
+    execution.raise_if_cancelled()
+    outcomes = collect_outcomes(potential, potential.energy(start[None]), batch)
+    if not pieces:
+        return OrbitSteps(outcomes, np.empty((0, 5)), 0.0)
+    return OrbitSteps(outcomes, np.concatenate([steps for steps, _ in pieces]), pieces[-1][1])

@@ -1,4 +1,4 @@
-"""Codes and texts for the outcome of an orbit, and the criterion for chaos."""
+"""Codes and texts for the outcome of an orbit and for the reason why it is called bounded, and the criterion for chaos."""
 
 from __future__ import annotations
 
@@ -33,6 +33,24 @@ class Fate(IntEnum):
     FAILED = events.FAILED
 
 
+class Evidence(IntEnum):
+    """The reason why an orbit is classified as bounded.
+
+    ``NONE``: the orbit is not classified as bounded. ``INTEGRATED``: it was integrated to t_max. ``CLOSED``: its energy is below
+    every saddle, which proves that it is bounded. The other members are numerical evidence, not proof, that it never escapes.
+    ``QUASI_PERIODIC``: its weighted Birkhoff averages converge as on an invariant torus, which is very rare for other orbits.
+    ``ENCLOSED``: invariant curves of quasi-periodic orbits separate it from every exit; the orbit itself may be chaotic.
+    ``MIRRORED``: it is the mirror image of an orbit that is bounded on evidence.
+    """
+
+    NONE = 0
+    INTEGRATED = 1
+    CLOSED = 2
+    QUASI_PERIODIC = 3
+    ENCLOSED = 4
+    MIRRORED = 5
+
+
 class Regularity(IntEnum):
     """Character of a bounded orbit.
 
@@ -59,6 +77,15 @@ _SENTENCES = {
     Fate.FAILED: "Unresolved: the steps became too short, as near a singularity of V or on the way to infinity in a finite time.",
 }
 
+
+_EVIDENCE_PHRASES = {
+    Evidence.NONE: "",
+    Evidence.INTEGRATED: "integrated to t_max",
+    Evidence.CLOSED: "its energy is below every saddle",
+    Evidence.QUASI_PERIODIC: "evidence: its averages converge as on an invariant torus",
+    Evidence.ENCLOSED: "evidence: invariant curves separate it from every exit",
+    Evidence.MIRRORED: "evidence: that of its mirror image",
+}
 
 UNRESOLVED = "unresolved"
 """Name of `Fate.FAILED` in texts."""
@@ -89,10 +116,14 @@ def describe_fate(fate: int, outcomes: Sequence[Outcome] = ()) -> str:
     return outcome_of(fate, outcomes).sentence if fate >= 1 else _SENTENCES[Fate(fate)]
 
 
+def describe_evidence(evidence: int) -> str:
+    """Return the reason for an `Evidence` code as a phrase, empty for ``NONE``."""
+    return _EVIDENCE_PHRASES[Evidence(evidence)]
+
+
 def renumber(fates: np.ndarray, numbers: np.ndarray) -> np.ndarray:
     """Return fates of any shape with each outcome k ≥ 1 replaced by ``numbers[k]``, (outcomes + 1,); other codes stay."""
-    renumbered: np.ndarray = np.where(fates > 0, numbers[np.maximum(fates, 0)], fates)
-    return renumbered
+    return np.where(fates > 0, numbers[np.maximum(fates, 0)], fates)
 
 
 class OrbitResult(RecordedResult):

@@ -7,8 +7,7 @@ import numpy as np
 from engine.exits.exit_rows import exit_gates
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.integrator.source.recurrence import ROWS, TIME_ROW, TOLERANCE
-from engine.propagation.fixed_step_batches import map_tiles
-from engine.systems.compiled import kernels_of
+from engine.propagation.tiles import map_tiles
 from engine.systems.potential import Potential
 
 # Number of tiles that a worker computes in one call: in less than 0.1 s, so cancelling a computation takes effect soon.
@@ -80,7 +79,7 @@ def _integrate_tile(
     orbits, integral, curve_row = tile[:ROWS].copy(), tile[ROWS].copy(), tile[ROWS + 1].astype(np.int64)
     # The kernel changes the orbits and their integrals in place.
     with np.errstate(invalid="ignore"):
-        kernels_of(potential).integrate_speed(
+        potential.well.kernels.integrate_speed(
             TOLERANCE, duration, power, _STEPS_PER_TILE, gates, curves, curve_row, orbits, integral
         )
     return np.column_stack([orbits.T, integral])

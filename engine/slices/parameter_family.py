@@ -282,8 +282,7 @@ def _continue(potential: Potential, points: np.ndarray) -> np.ndarray:
             points = points - step
         has_converged = np.hypot(*step.T) <= _TOLERANCE * np.hypot(*points.T)
         is_near = np.hypot(*(points - start).T) <= _LARGEST_SHARE * _separation(start)
-    result: np.ndarray = np.where((has_converged & is_near)[:, None], points, np.nan)
-    return result
+    return np.where((has_converged & is_near)[:, None], points, np.nan)
 
 
 def _separation(points: np.ndarray) -> np.ndarray:
@@ -291,8 +290,7 @@ def _separation(points: np.ndarray) -> np.ndarray:
     targets = np.concatenate([points, np.zeros((1, 2))])
     distances = np.hypot(*np.moveaxis(points[:, None] - targets, -1, 0))
     distances[np.arange(len(points)), np.arange(len(points))] = np.inf
-    nearest: np.ndarray = distances.min(axis=1)
-    return nearest
+    return distances.min(axis=1)
 
 
 def _nearest(points: Sequence[np.ndarray] | np.ndarray, position: np.ndarray) -> int | None:

@@ -13,12 +13,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from engine.foundations.arrays import read_only
 from engine.foundations.validation import LARGEST_NUMBER, check_type, checked_array, checked_number, short_repr
 from engine.integrator.kernels import slice_starts
 from engine.slices.axes import ANGLES, MOMENTA, POSITIONS, STATE, Axis, Coordinate, Direction, Energy, ParameterAxis
-from engine.slices.slice_rules import check_coordinates, momentum_left
-from engine.slices.slice_starts import compute_required_energy, compute_states
+from engine.slices.slice_starts import check_coordinates, compute_required_energy, compute_states, momentum_left
 from engine.systems.potential import Potential
 from engine.systems.system import System
 from engine.systems.well_units import WellUnits
@@ -190,9 +188,6 @@ class Slice:
         """Convert a result from units of the well; `result.x` and `result.ordinate` are positions on this slice."""
         x_unit, ordinate_unit = self.axis_units(units)
         x, ordinate = x_unit * result.x, ordinate_unit * result.ordinate  # type: ignore[attr-defined]
-        for coordinate in (x, ordinate):
-            if isinstance(coordinate, np.ndarray):
-                read_only(coordinate)
         return replace(units.restore(result), x=x, ordinate=ordinate)  # type: ignore[type-var]
 
     def in_well_units(self, units: WellUnits) -> Slice:

@@ -16,8 +16,7 @@ from engine.slices.axes import ParameterAxis
 from engine.slices.parameter_family import find_members
 from engine.slices.window import Window
 from engine.sweeps.measured_map import SweepPoint
-from engine.sweeps.measures import MEASURES
-from engine.sweeps.points import compute_point, measure_map
+from engine.sweeps.measures import MEASURES, compute_point, measure_map
 from engine.sweeps.spec import SweepSpec
 from engine.sweeps.sweep import Sweep, compute_sweep
 from engine.systems.system import TYPED
@@ -84,7 +83,6 @@ def _compute_sweep(
         find_result(members)
 
     def measure(point: SweepPoint) -> xr.Dataset:
-        dataset: xr.Dataset = find_result(Job(_measure_point, (point, map_job(point.map_spec))))
-        return dataset
+        return find_result(Job(_measure_point, (point, map_job(point.map_spec))))
 
     return compute_sweep(spec, on_frame=on_frame, execution=execution, measure=measure)

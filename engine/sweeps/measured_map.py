@@ -74,8 +74,7 @@ class MeasuredMap:
             pixels = np.random.default_rng(0).choice(pixels, most_pixels, replace=False)
         regularity = compute_regularity(self._map_of(pixels), execution=self.execution)
         self.execution.raise_if_cancelled()
-        characters: np.ndarray = regularity.character.ravel()[pixels]
-        return characters
+        return regularity.character.ravel()[pixels]
 
     def _map_of(self, pixels: np.ndarray) -> EscapeMap:
         """Return the map with the fates of n pixels and of their mirror images; all other starts are outside."""

@@ -16,7 +16,7 @@ from engine.maps.pixels import PixelAnalysis
 from engine.maps.result import EscapeMap, read_map
 from engine.maps.spec import read_spec
 from engine.sweeps.sweep import Sweep
-from engine.systems.formulas.stored_potential import read_potential
+from engine.systems.formulas.formula_parser import read_potential
 from engine.systems.outcomes import read_outcomes
 from engine.systems.potential import Potential
 from engine.trajectories.sampled_orbits import SampledOrbits

@@ -23,7 +23,6 @@ from engine.sweeps.measured_map import SweepPoint
 from engine.sweeps.measures import MEASURES
 from engine.systems.outcomes import Outcome, write_outcomes
 from engine.systems.potential import Potential
-from engine.systems.provenance import describe_potential
 
 MOST_VALUES = 10_000
 """Largest number of energies, or of values of a parameter, of one sweep."""
@@ -156,7 +155,7 @@ class SweepSpec:
 
     def attributes(self) -> dict[str, Any]:
         """Return the request in plain values, with the integrator and the package version, as attributes of the dataset."""
-        made_by = self.point(self.values[-1]).map_spec.provenance() | describe_potential(self.potential)
+        made_by = self.point(self.values[-1]).map_spec.provenance() | self.potential.provenance()
         # Names of attributes that differ from map to map.
         differing = {"energy"} if self.along is None else {"terms"}
         if self._common_window() is None:

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,9 +17,9 @@ from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_pro
 from engine.foundations.result import Result
 from engine.foundations.validation import checks_types
 from engine.sweeps.measured_map import SweepPoint
-from engine.sweeps.points import compute_point
+from engine.sweeps.measures import compute_point
 from engine.sweeps.spec import EXTENT, SweepSpec
-from engine.sweeps.store import check_same_sweep, open_store
+from engine.sweeps.store import SweepStore, check_same_sweep, open_store
 from engine.systems.outcomes import Outcome, read_outcomes
 
 if TYPE_CHECKING:
@@ -99,16 +99,6 @@ class Sweep(Result):
         return f"{self.values.size} of {attributes['count']} values of {self.symbol} on {attributes['plane']}."
 
 
-class PointStorage(Protocol):
-    """Keeps the measures at each value, in memory or in a store."""
-
-    def read(self) -> xr.Dataset:
-        """Return all values, in ascending order."""
-
-    def append(self, point: xr.Dataset) -> None:
-        """Add one value."""
-
-
 @shows_progress("sweep")
 @checks_types(
     spec=SweepSpec,
@@ -186,7 +176,7 @@ def compute_sweep(
 
 def _measure_all(
     spec: SweepSpec,
-    storage: PointStorage,
+    storage: _MemoryStorage | SweepStore,
     order: Sequence[float],
     *,
     on_frame: Callable[[Sweep], None] | None,
@@ -208,7 +198,7 @@ def _measure_all(
 
 
 class _MemoryStorage:
-    """Keeps the measures at each value in memory, see `PointStorage`."""
+    """Keeps the measures at each value in memory, as `SweepStore` does on disk."""
 
     def __init__(self, spec: SweepSpec, earlier: Sweep | None) -> None:
         self._name, self._attributes = spec.name, spec.attributes()

@@ -22,9 +22,8 @@ from engine.integrator.jit.compiled_operations import CompiledCodeLimitError, Co
 from engine.integrator.source.recurrence import code_digest
 from engine.maps.compute import compute_map
 from engine.maps.spec import MapSpec
-from engine.propagation.section_points import find_section_points
+from engine.propagation.fixed_steps import find_section_points
 from engine.slices.planes import SECTION
-from engine.systems.compiled import kernels_of
 from engine.systems.known_potentials import POTENTIALS
 from engine.systems.potential import Potential
 
@@ -74,7 +73,7 @@ def _known_kernels(potential: Potential) -> ModuleType | None:
     if not is_generated(scaled_potential.form.definition, scaled_potential.well.setting):
         return None
     try:
-        return kernels_of(scaled_potential)
+        return scaled_potential.well.kernels
     except CompiledCodeLimitError:
         return None
 

@@ -10,9 +10,10 @@ import numpy as np
 
 from engine.expressions.nodes import Expression, Sum, X, Y, multiply
 from engine.foundations.result import Result
-from engine.foundations.validation import checked_finite, checked_number
+from engine.foundations.validation import checked_between, checked_finite, checked_number
 from engine.integrator.source.polynomial_recurrence import Terms
-from engine.systems.forms.form import Form, hessian_matrix
+from engine.systems.forms.expression_form import Form
+from engine.systems.forms.form import hessian_matrix
 from engine.systems.forms.polynomial_form import PolynomialForm
 from engine.systems.parameters import WELL_PARAMETERS, symbol_of
 
@@ -166,9 +167,7 @@ class Motion(Result):
         """
         parameters = {"omega_1": omega_1, "omega_2": omega_2, "epsilon": epsilon}
         for name, value in parameters.items():
-            low, high = WELL_PARAMETERS[name].range
-            if not low <= checked_number(name, value) <= high:
-                raise ValueError(f"{name}={value}: must be between {low:g} and {high:g}")
+            checked_between(name, value, *WELL_PARAMETERS[name].range)
         is_changed = not omega_1 == omega_2 == epsilon == 1.0
         if is_changed and not np.isfinite(self.hessian_matrix(0.0, 0.0)).all():
             raise ValueError(f"omega_1, omega_2, epsilon: V of {self.name} has no expansion about the origin; must be 1")
@@ -180,12 +179,3 @@ class Motion(Result):
         """Raise ValueError in a rotating frame, for computations that rely on time-reversal symmetry."""
         if self.rotation:
             raise ValueError(f"potential={self.name}: its frame rotates; {what} are for frames that do not rotate")
-
-
-def checked_mass(mass: float) -> float:
-    """Return the mass as a float; ValueError if it is out of range."""
-    low, high = MASS_RANGE
-    number = checked_number("mass", mass)
-    if not low <= number <= high:
-        raise ValueError(f"mass={number!r}: must be from {low:g} to {high:g}")
-    return number

@@ -15,7 +15,7 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from engine.foundations.validation import check_type, checked_number, replace_unchecked
+from engine.foundations.validation import check_type, checked_between, checked_number, replace_unchecked
 from engine.foundations.wording import format_number
 from engine.integrator.kernels.exit_geometry import CIRCLE, CURVE_COLUMNS, DISC, HALF_WIDTH, ORIGIN_X, ORIGIN_Y, SHAPE
 
@@ -24,6 +24,10 @@ SMALLEST_RADIUS = 1e-6
 
 LARGEST_RADIUS = 1e6
 """Largest radius of a centre or of escape, dimensionless."""
+
+
+def _checked_radius(name: str, radius: float) -> float:
+    return checked_between(name, radius, SMALLEST_RADIUS, LARGEST_RADIUS)
 
 
 class Kind:
@@ -100,14 +104,7 @@ class End(Kind):
         check_type("name", self.name, str)
         for axis in ("x", "y"):
             object.__setattr__(self, axis, checked_number(f"{self.word} {axis}", getattr(self, axis)))
-        object.__setattr__(self, "radius", self._checked_radius(f"{self.word} radius"))
-
-    def _checked_radius(self, name: str) -> float:
-        """Return the radius as a float; ValueError if it is not legal."""
-        radius = checked_number(name, self.radius, f"a number from {SMALLEST_RADIUS:g} to {LARGEST_RADIUS:g}")
-        if not SMALLEST_RADIUS <= radius <= LARGEST_RADIUS:
-            raise ValueError(f"{name}={radius!r}: must be from {SMALLEST_RADIUS:g} to {LARGEST_RADIUS:g}")
-        return radius
+        object.__setattr__(self, "radius", _checked_radius(f"{self.word} radius", self.radius))
 
     @classmethod
     def match(cls, clause: str) -> re.Match[str] | None:
@@ -154,8 +151,7 @@ class End(Kind):
     def contains(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
         """Return whether points, in arrays of any shape, lie where orbits have ended."""
         distance = np.hypot(x - self.x, y - self.y)
-        has_ended: np.ndarray = distance < self.radius if self.side < 0 else distance > self.radius
-        return has_ended
+        return distance < self.radius if self.side < 0 else distance > self.radius
 
 
 class Centre(End):
@@ -194,7 +190,7 @@ class EscapeCircle(End):
     name: str = field(default="", init=False, repr=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "radius", self._checked_radius("escape_radius"))
+        object.__setattr__(self, "radius", _checked_radius("escape_radius", self.radius))
 
     @property
     def text(self) -> str:

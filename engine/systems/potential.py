@@ -5,6 +5,7 @@ All else is derived from these data: critical points, exits and units by `engine
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
@@ -15,13 +16,13 @@ import numpy as np
 from engine.expressions.nodes import Expression
 from engine.foundations.former_names import with_former_fields
 from engine.foundations.result import Result
-from engine.foundations.validation import LONGEST_TIME, check_type, checked_items, checked_number, checked_t_max
+from engine.foundations.validation import LONGEST_TIME, check_type, checked_between, checked_items, checked_number, checked_t_max
 from engine.integrator.source.polynomial_recurrence import Terms
-from engine.systems.forms.expression_form import as_form
-from engine.systems.forms.form import Form
-from engine.systems.motion import Motion, checked_mass
-from engine.systems.outcomes import KINDS, Centre, End, EscapeCircle, Outcome
-from engine.systems.provenance import describe_potential
+from engine.integrator.source.recurrence import TOLERANCE
+from engine.integrator.source.series import ORDER
+from engine.systems.forms.expression_form import Form, as_form
+from engine.systems.motion import MASS_RANGE, Motion
+from engine.systems.outcomes import KINDS, Centre, End, EscapeCircle, Outcome, end_kinds
 from engine.systems.related_wells import SEARCHED, ContinuedWell, Lineage, scaled_to_well
 from engine.systems.well import Well
 from engine.systems.well_units import WellUnits
@@ -103,7 +104,7 @@ class Potential(Motion):
     exit_names: tuple[str, ...] = field(default=(), repr=False, compare=False)
     mass: float = 1.0
     inner_names: ClassVar = Result.inner_names | {
-        "check_at_rest", "check_without_gaps", "checked_t_max", "continued", "exit_names", "form", "gaps",
+        "check_at_rest", "check_without_gaps", "checked_t_max", "continued", "describe_run", "exit_names", "form", "gaps",
         "hessian_matrix", "in_well_units", "lineage", "reversed_in_time", "tori_are_evidence", "units", "well",
     }  # fmt: skip
     held_as: ClassVar = dict.fromkeys(("form", "rotation", "ends", "origin", "lineage", "system", "exit_names", "mass"), "terms")
@@ -138,7 +139,7 @@ class Potential(Motion):
             "lineage": lineage,
             "system": system,
             "exit_names": checked_items("exit_names", exit_names, str),
-            "mass": checked_mass(mass),
+            "mass": checked_between("mass", mass, *MASS_RANGE),
         }
         for attribute, value in values.items():
             object.__setattr__(self, attribute, value)
@@ -279,8 +280,24 @@ class Potential(Motion):
         return not self.rotation and not self.ends
 
     def provenance(self) -> dict[str, Any]:
-        """Return the potential in plain values, and the version."""
-        return super().provenance() | describe_potential(self)
+        """Return the potential in plain values, with all digits, and the version."""
+        return {
+            "potential": self.name,
+            "terms": self.form.text,
+            "rotation": self.rotation,
+            "mass": self.mass,
+            **{kind.attribute: kind.write([end for end in self.ends if isinstance(end, kind)]) for kind in end_kinds()},
+            "origin": json.dumps(self.origin),
+            **({"exit_names": json.dumps(self.exit_names)} if self.exit_names else {}),
+            **super().provenance(),
+        }
+
+    def describe_run(self, **request: Any) -> dict[str, Any]:
+        """Return the provenance of a computation with the potential: also the request and the integrator."""
+        energy = request.get("energy")
+        constant = {"jacobi_constant": self.jacobi_constant(energy)} if self.rotation and isinstance(energy, float) else {}
+        integrator = f"Taylor series of order {ORDER}, tolerance {TOLERANCE:g}"
+        return {**self.provenance(), **request, **constant, "integrator": integrator}
 
     def numbers(self) -> dict[str, Any]:
         """Return the name, the escape energy and the number of channels."""

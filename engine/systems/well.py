@@ -6,14 +6,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby
+from types import ModuleType
 from typing import Any
 
 import numpy as np
 
 from engine.foundations.arrays import ReadOnlyArrays, read_only
+from engine.integrator.bound_kernels import load_kernels
 from engine.integrator.source.series import Setting
 from engine.systems.forms.exit_saddles import find_maxima_beside, leads_out_of_well
-from engine.systems.forms.form import Form, hessian_matrix
+from engine.systems.forms.expression_form import Form
+from engine.systems.forms.form import hessian_matrix
 from engine.systems.forms.stored_points import stored_points
 from engine.systems.merged_channels import ChannelMerger, MergedExit, describe_channel, exit_numbers, merged_exits
 from engine.systems.outcomes import End, EscapeCircle, Exit, Outcome, outcomes_of
@@ -26,6 +29,8 @@ EQUAL_ENERGY_TOLERANCE = 1e-12
 # numbers on the +x axis.
 _ROUNDING = 1e-13
 
+# Time step for a frequency of 1. At the order of the Taylor kernels, energy is conserved as well as by adaptive steps.
+_FIXED_STEP = 1.0 / 3.0
 # Typical radius of orbits in units of the escape radius.
 _TYPICAL_SHARE = 0.1
 # Number of points on a circle of the typical radius.
@@ -154,6 +159,17 @@ class Well(ReadOnlyArrays):
         """The properties other than the formula on which compiled functions depend."""
         return Setting(self.channels, tuple(end.side for end in self.ends), self.rotation != 0.0)
 
+    @property
+    def kernels(self) -> ModuleType:
+        """The compiled kernels, see `load_kernels`, for a potential in units of its well."""
+        channels, sides, _ = self.setting
+        return load_kernels(self.form.definition, channels, sides=sides, rotation=self.rotation)
+
+    @property
+    def fixed_step(self) -> float:
+        """The time step of fixed-step integration."""
+        return _FIXED_STEP / max(1.0, self.fastest_frequency)
+
     @cached_property
     def channel_mergers(self) -> tuple[ChannelMerger, ...]:
         """The maxima that separate exits from each other, the lowest first.
@@ -185,8 +201,7 @@ class Well(ReadOnlyArrays):
     def exit_numbers(self, energy: Any) -> np.ndarray:
         """Return the number of the exit to which each fate belongs, of shape (…, outcomes + 1) at energies (…). Entry 0 is 0."""
         merger_count = np.searchsorted([merger.energy for merger in self.channel_mergers], np.asarray(energy), side="left")
-        numbers: np.ndarray = exit_numbers(self.channel_mergers, len(self.outcomes))[merger_count]
-        return numbers
+        return exit_numbers(self.channel_mergers, len(self.outcomes))[merger_count]
 
     def outcomes_at(self, energy: float | tuple[float, float], given: Sequence[str] = ()) -> tuple[Outcome, ...]:
         """Return `outcomes` with the names that exits have at an energy, or in a range of energies (low, high).
@@ -234,8 +249,7 @@ class Well(ReadOnlyArrays):
 
     def mirror_numbers(self, energy: Any) -> np.ndarray:
         """Return the mirror image of each fate at energies (…), of shape (…, outcomes + 1). Requires `mirror_in_x`."""
-        numbers: np.ndarray = self.exit_numbers(energy)[..., self.mirror_channels]
-        return numbers
+        return self.exit_numbers(energy)[..., self.mirror_channels]
 
     @cached_property
     def is_minimum(self) -> bool:
@@ -253,8 +267,7 @@ class Well(ReadOnlyArrays):
     @property
     def _typical_circle(self) -> np.ndarray:
         angle = 2.0 * np.pi / _CIRCLE_POINTS * (0.5 + np.arange(_CIRCLE_POINTS))
-        circle: np.ndarray = self.typical_radius * np.array([np.cos(angle), np.sin(angle)])
-        return circle
+        return self.typical_radius * np.array([np.cos(angle), np.sin(angle)])
 
     @cached_property
     def fastest_frequency(self) -> float:

@@ -78,10 +78,7 @@ class WellUnits:
         restored = {}
         for each in fields(result):  # type: ignore[arg-type]
             if _UNIT in each.metadata:
-                value = getattr(result, each.name)
-                restored[each.name] = value * self._unit(*each.metadata[_UNIT])
-                if isinstance(value, np.ndarray):
-                    restored[each.name].flags.writeable = value.flags.writeable
+                restored[each.name] = getattr(result, each.name) * self._unit(*each.metadata[_UNIT])
         return replace(result, **restored)  # type: ignore[type-var]
 
     def _unit(self, length: int, time: int, mass: int) -> float:

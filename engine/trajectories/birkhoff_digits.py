@@ -9,14 +9,12 @@ import numpy as np
 
 from engine.evidence.birkhoff_averages import TORUS_DIGITS, WINDOWS, count_agreeing_digits
 from engine.exits.exit_rows import exits_of_orbit
-from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.foundations.result import Chart, RecordedResult
 from engine.foundations.validation import checked_state, checks_types
 from engine.propagation.batch import OrbitBatch, propagate_batch
 from engine.propagation.fates import Fate
 from engine.systems.potential import Potential
-from engine.systems.provenance import describe_run
 from engine.systems.well_units import TIME
 
 
@@ -85,7 +83,7 @@ def compute_birkhoff_digits(
     t_max = potential.checked_t_max(t_max)
     units = potential.units
     result = _compare_windows(potential.in_well_units, start[None] / units.state, t_max / units.time, execution)
-    return replace(units.restore(result), made_by=describe_run(potential, energy=float(potential.energy(start)), t_max=t_max))
+    return replace(units.restore(result), made_by=potential.describe_run(energy=float(potential.energy(start)), t_max=t_max))
 
 
 def _compare_windows(potential: Potential, start: np.ndarray, t_max: float, execution: Execution) -> BirkhoffDigits:
@@ -108,7 +106,7 @@ def _compare_windows(potential: Potential, start: np.ndarray, t_max: float, exec
         digits.append(float(agreeing_digits))
         if agreeing_digits >= TORUS_DIGITS:
             break
-    return BirkhoffDigits(read_only(np.array(windows[: len(digits)])), read_only(np.array(digits)), unit)
+    return BirkhoffDigits(np.array(windows[: len(digits)]), np.array(digits), unit)
 
 
 def _stays_inside(potential: Potential, curves: np.ndarray, orbit: OrbitBatch, t_end: float, execution: Execution) -> bool:

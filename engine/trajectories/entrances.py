@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from engine.exits.interior import find_outside_channels
-from engine.exits.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
+from engine.exits.lyapunov_orbit import LyapunovOrbit
+from engine.exits.lyapunov_orbits import find_lyapunov_orbits
 from engine.foundations.validation import checked_count, checked_number, checks_types
 from engine.slices.sampling import LARGEST_SAMPLE
 from engine.systems.potential import Potential

@@ -11,14 +11,12 @@ import numpy as np
 
 from engine.exits.interior import find_outside_channels
 from engine.exits.lyapunov_orbits import find_lyapunov_orbits
-from engine.foundations.arrays import read_only
 from engine.foundations.result import Chart, RecordedResult
 from engine.foundations.root_finding import bisect
 from engine.foundations.validation import checked_number, checks_types
 from engine.slices.default_window import default_window
 from engine.slices.planes import SPACE
 from engine.systems.potential import Potential
-from engine.systems.provenance import describe_run
 
 # Number of rows of points between which the edge of the interior is searched; a multiple of 3, see `_interior_area`.
 _ROWS = 513
@@ -150,8 +148,8 @@ def compute_flux(potential: Potential, energy: float) -> EscapeFlux:
     actions = [orbit.period * float(np.mean(2.0 * (h - potential.value(orbit.x[:-1], orbit.y[:-1])))) for orbit in orbits]
     area, error = _interior_area(potential, h)
     channels = np.array([orbit.channel for orbit in orbits], np.int64)
-    made_by = describe_run(potential, energy=h)
-    return EscapeFlux(h, read_only(channels), read_only(np.array(actions)), area, error, potential.mass, made_by=made_by)
+    made_by = potential.describe_run(energy=h)
+    return EscapeFlux(h, channels, np.array(actions), area, error, potential.mass, made_by=made_by)
 
 
 def _interior_area(potential: Potential, h: float) -> tuple[float, float]:
@@ -175,5 +173,4 @@ def _interior_area(potential: Potential, h: float) -> tuple[float, float]:
 
 def _is_inside(potential: Potential, h: float, x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Return whether points are in the well, below the energy and inside all exits."""
-    inside: np.ndarray = (potential.value(x, y) <= h) & (find_outside_channels(potential, h, x, y) == 0)
-    return inside
+    return (potential.value(x, y) <= h) & (find_outside_channels(potential, h, x, y) == 0)

@@ -17,7 +17,6 @@ from engine.slices.planes import checked_slice
 from engine.slices.slice import Slice
 from engine.systems.outcomes import Outcome
 from engine.systems.potential import Potential
-from engine.systems.provenance import describe_run
 from engine.systems.well_units import LENGTH
 
 # Smallest distance of a neighbour, in units of the well: a few hundred units in the last place of coordinates of order 1.
@@ -144,7 +143,7 @@ def find_divergent_start(
     divergent = search.find_nearest(furthest / units.length)
     if divergent is None:
         return None
-    made_by = describe_run(potential, energy=h, plane=plane.title, t_max=t_max)
+    made_by = potential.describe_run(energy=h, plane=plane.title, t_max=t_max)
     return replace(plane.restore(divergent, units), made_by=made_by)
 
 

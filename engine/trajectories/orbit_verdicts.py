@@ -10,8 +10,7 @@ from engine.evidence.birkhoff_averages import TORUS_DIGITS
 from engine.foundations.former_names import with_former_fields
 from engine.foundations.validation import checks_types
 from engine.foundations.wording import format_count, format_time
-from engine.propagation.evidence import Evidence, describe_evidence
-from engine.propagation.fates import Fate, OrbitResult, describe_fate, name_fate, outcome_of
+from engine.propagation.fates import Evidence, Fate, OrbitResult, describe_evidence, describe_fate, name_fate, outcome_of
 from engine.systems.outcomes import Outcome
 from engine.trajectories.birkhoff_digits import BirkhoffDigits
 from engine.trajectories.chaos_indicators import INDICATORS, IndicatorVerdict, Verdict, evaluate_indicators

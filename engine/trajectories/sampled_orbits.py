@@ -8,17 +8,13 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from engine.exits.exit_rows import exit_curves
-from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, SERIAL_EXECUTION, Execution, shows_progress
 from engine.foundations.validation import checked_array, checked_states, checks_types, short_repr
 from engine.integrator.kernels.dense_output import sample_path
-from engine.propagation.classification import Outcomes
+from engine.propagation.classification import Outcomes, record_orbit
 from engine.propagation.fates import Fate, OrbitResult
-from engine.propagation.orbit_steps import record_orbit
-from engine.systems.compiled import kernels_of
 from engine.systems.outcomes import Outcome
 from engine.systems.potential import Potential
-from engine.systems.provenance import describe_run
 from engine.systems.well_units import ENERGY, LENGTH, MOMENTUM, TIME
 from engine.trajectories.trajectory import MAX_ORBIT_TIME
 
@@ -124,7 +120,7 @@ def sample_orbits(potential: Potential, states: Any, times: Any, *, execution: E
     times = _checked_times(times, len(states), potential)
     units, scaled_potential = potential.units, potential.in_well_units
     # The kernels are compiled before the threads begin.
-    kernels_of(scaled_potential)
+    _ = scaled_potential.well.kernels
     futures = [
         execution.submit(_sample_orbit, scaled_potential, start / units.state, orbit_times / units.time)
         for start, orbit_times in zip(states, times, strict=True)
@@ -140,7 +136,7 @@ def sample_orbits(potential: Potential, states: Any, times: Any, *, execution: E
     energies = potential.energy(states)
     outcomes = potential.outcomes_at((float(energies.min()), float(energies.max())))
     orbits = units.restore(_join(scaled_potential, states / units.state, times / units.time, results))
-    return replace(orbits, outcomes=outcomes, made_by=describe_run(potential, t_max=float(times[:, -1].max())))
+    return replace(orbits, outcomes=outcomes, made_by=potential.describe_run(t_max=float(times[:, -1].max())))
 
 
 def _sample_orbit(potential: Potential, start: np.ndarray, times: np.ndarray) -> tuple[np.ndarray, Outcomes]:
@@ -150,7 +146,7 @@ def _sample_orbit(potential: Potential, start: np.ndarray, times: np.ndarray) ->
     path = np.full((_COMPONENTS, times.size), np.nan)
     if len(recorded.steps):
         count = int(np.searchsorted(times, recorded.t_end, side="right"))
-        path[:, :count] = sample_path(kernels_of(potential), recorded.steps, times[:count])
+        path[:, :count] = sample_path(potential.well.kernels, recorded.steps, times[:count])
     else:
         # An orbit that starts outside has a state at t = 0 only.
         path[:, times == 0.0] = start[:, None]
@@ -163,7 +159,7 @@ def _join(potential: Potential, states: np.ndarray, times: np.ndarray, results: 
     names = ("fate", "escape_time", "crossings")
     outcomes = (np.concatenate([getattr(outcome, name) for _, outcome in results]) for name in names)
     arrays = (times, *paths.transpose(1, 0, 2), *outcomes, np.atleast_1d(potential.energy(states)))
-    fields: list[Any] = [read_only(np.ascontiguousarray(array)) for array in arrays]
+    fields: list[Any] = [np.ascontiguousarray(array) for array in arrays]
     return SampledOrbits(*fields)
 
 

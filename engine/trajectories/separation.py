@@ -7,15 +7,12 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.foundations.former_names import with_former_parameters
 from engine.foundations.result import Chart, RecordedResult
 from engine.foundations.validation import checked_state, checks_types
 from engine.integrator.kernels.dense_output import sample_path, trace_steps
-from engine.systems.compiled import kernels_of
 from engine.systems.potential import Potential
-from engine.systems.provenance import describe_run
 from engine.systems.well_units import LENGTH, TIME
 
 LONGEST_SEPARATION = 2000.0
@@ -83,11 +80,11 @@ def compute_separation(
     t_max = potential.checked_t_max(t_max)
     units = potential.units
     times = np.linspace(0.0, min(t_max / units.time, LONGEST_SEPARATION), _SAMPLES)
-    kernels = kernels_of(potential.in_well_units)
+    kernels = potential.in_well_units.well.kernels
     paths = []
     for name, state in (("first", first), ("second", second)):
         start = checked_state(name, state) / units.state
         steps = trace_steps(kernels, start, float(times[-1]), len(potential.outcomes), execution)
         paths.append(sample_path(kernels, steps, times, execution))
-    made_by = describe_run(potential, energy=float(potential.energy(first)))
-    return units.restore(Separation(read_only(times), read_only(np.linalg.norm(paths[1] - paths[0], axis=0)), made_by=made_by))
+    made_by = potential.describe_run(energy=float(potential.energy(first)))
+    return units.restore(Separation(times, np.linalg.norm(paths[1] - paths[0], axis=0), made_by=made_by))

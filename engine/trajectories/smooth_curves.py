@@ -63,8 +63,7 @@ class PointSpacing:
         distance = np.abs(np.diff(points, axis=0)).max(axis=1)[:, None]
         start, end = points[:-1], points[1:]
         is_near = (np.minimum(end, start) - distance <= self.high) & (np.maximum(end, start) + distance >= self.low)
-        spacing: np.ndarray = np.where(is_near.all(axis=1), self.fine, self.coarse)
-        return spacing
+        return np.where(is_near.all(axis=1), self.fine, self.coarse)
 
     def thin(self, piece: np.ndarray) -> Iterator[np.ndarray]:
         """Yield the lines (m, 2) of a piece in the window, without points close to the line between their neighbours."""

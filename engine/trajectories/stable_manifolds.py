@@ -16,8 +16,9 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from engine.exits.lyapunov_orbits import LyapunovOrbit, find_orbits_in_well_units
-from engine.foundations.arrays import ReadOnlyArrays, read_only
+from engine.exits.lyapunov_orbit import LyapunovOrbit
+from engine.exits.lyapunov_orbits import find_orbits_in_well_units
+from engine.foundations.arrays import ReadOnlyArrays
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.foundations.result import Result
 from engine.foundations.validation import checked_count, checked_number, checks_types
@@ -26,7 +27,6 @@ from engine.slices.default_window import default_window
 from engine.slices.planes import SECTION
 from engine.slices.window import GivenWindow, checked_window
 from engine.systems.potential import Potential
-from engine.systems.provenance import describe_run
 from engine.systems.well_units import LENGTH, MOMENTUM
 from engine.trajectories.smooth_curves import PointSpacing, refine_passages, split_curve
 from engine.trajectories.unstable_manifold import UnstableManifold
@@ -87,7 +87,7 @@ class StableManifolds(Result):
 
     def provenance(self) -> dict[str, Any]:
         """Return the potential, the energy, the slice, the integrator and the version."""
-        return describe_run(self.potential, energy=self.energy, plane=SECTION.title)
+        return self.potential.describe_run(energy=self.energy, plane=SECTION.title)
 
     def columns(self) -> Mapping[str, np.ndarray]:
         """Return all points, with the number of their arc from 1, its channel and its image."""
@@ -103,10 +103,7 @@ class StableManifolds(Result):
         columns = {name: dataset[name].values for name in ("arc", "channel", "image", "x", "px")}
         starts = np.flatnonzero(np.diff(columns.pop("arc"), prepend=0))
         parts = [np.split(column, starts[1:]) for column in columns.values()] if starts.size else [[]] * 4
-        arcs = (
-            ManifoldArc(int(channel[0]), int(image[0]), read_only(x), read_only(px))
-            for channel, image, x, px in zip(*parts, strict=True)
-        )
+        arcs = (ManifoldArc(int(channel[0]), int(image[0]), x, px) for channel, image, x, px in zip(*parts, strict=True))
         return {"arcs": tuple(arcs)}
 
     def describe(self) -> str:
@@ -216,7 +213,7 @@ def _arcs_of(channel: int, arcs: dict[int, tuple[list[ManifoldArc], bool]], mirr
 
 def _mirrored(arc: ManifoldArc, channel: int) -> ManifoldArc:
     """Return an arc mirrored by x → −x, which maps (x, px) to (−x, −px)."""
-    return ManifoldArc(channel, arc.image, read_only(-arc.x), read_only(-arc.px))
+    return ManifoldArc(channel, arc.image, -arc.x, -arc.px)
 
 
 def _find_arcs(orbit: LyapunovOrbit, images: int, spacing: PointSpacing, execution: Execution) -> tuple[list[ManifoldArc], bool]:
@@ -244,4 +241,4 @@ def _find_arcs(orbit: LyapunovOrbit, images: int, spacing: PointSpacing, executi
 def _arc(channel: int, image: int, line: np.ndarray) -> ManifoldArc:
     """Return an arc of the stable manifold, given a line (m, 2) of the unstable manifold, by reversing the momenta."""
     x, px = line.T
-    return ManifoldArc(channel, image, read_only(x.copy()), read_only(-px))
+    return ManifoldArc(channel, image, x.copy(), -px)

@@ -10,19 +10,15 @@ import numpy as np
 
 from engine.evidence.birkhoff_averages import compare_halves
 from engine.exits.exit_rows import exits_of_orbit
-from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.foundations.former_names import with_former_fields
 from engine.foundations.validation import checked_state, checks_types
 from engine.integrator.kernels.dense_output import find_crossings, sample_deviations, sample_path, trace_steps
-from engine.propagation.deviation_vectors import DEVIATION_VECTORS
-from engine.propagation.evidence import Evidence
-from engine.propagation.fates import Fate, OrbitResult
-from engine.propagation.orbit_steps import OrbitSteps, record_orbit
-from engine.systems.compiled import kernels_of
+from engine.propagation.classification import OrbitSteps, record_orbit
+from engine.propagation.fates import Evidence, Fate, OrbitResult
+from engine.propagation.fixed_steps import DEVIATION_VECTORS
 from engine.systems.outcomes import Outcome
 from engine.systems.potential import Potential
-from engine.systems.provenance import describe_run
 from engine.systems.well_units import AREA, ENERGY, LENGTH, MOMENTUM, RATE, TIME
 from engine.trajectories.birkhoff_digits import BirkhoffDigits, compute_birkhoff_digits
 
@@ -126,7 +122,7 @@ class Orbit(OrbitResult):
                [ 0.2122, -0.0821]])
         """
         potential = self._known_potential
-        units, kernels = potential.units, kernels_of(potential.in_well_units)
+        units, kernels = potential.units, potential.in_well_units.well.kernels
         samples = np.stack([self.x, self.y, self.px, self.py]) / units.state[:, None]
         times = self.t / units.time
         steps = trace_steps(kernels, samples[:, 0], times[-1], len(potential.outcomes))
@@ -197,7 +193,7 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, exe
     t_max = potential.checked_t_max(t_max, MAX_ORBIT_TIME)
     units = potential.units
     orbit = _integrate(potential.in_well_units, start / units.state, t_max / units.time, execution)
-    return replace(units.restore(orbit), potential=potential, made_by=describe_run(potential, t_max=t_max))
+    return replace(units.restore(orbit), potential=potential, made_by=potential.describe_run(t_max=t_max))
 
 
 def _integrate(potential: Potential, start: np.ndarray, t_max: float, execution: Execution) -> Orbit:
@@ -207,8 +203,6 @@ def _integrate(potential: Potential, start: np.ndarray, t_max: float, execution:
     recorded = record_orbit(potential, start, curves, t_max, execution)
     times, (x, y, px, py), sali, exponent = _sample_orbit(potential, start, recorded, execution)
     arrays = (times, x, y, px, py, sali, exponent, x * x + y * y)
-    for array in arrays:
-        read_only(array)
     # The columns of one orbit are arrays of length 1, in this order.
     fate, escape_time, crossings, energy_error = (values[0].item() for values in recorded.outcomes.columns().values())
     evidence = _find_evidence(potential, energy, fate)
@@ -229,7 +223,7 @@ def _sample_orbit(
     steps, t_end = recorded.steps, recorded.t_end
     if t_end == 0.0:
         return np.zeros(1), start[:, None].copy(), np.full(1, np.sqrt(2.0)), np.full(1, np.nan)
-    kernels = kernels_of(potential)
+    kernels = potential.well.kernels
     times = np.linspace(0.0, t_end, _sample_count(t_end, len(steps)))
     all_times = np.union1d(times, _starts_of_short_steps(times, steps[:, 4]))
     path = sample_path(kernels, steps, all_times, execution)

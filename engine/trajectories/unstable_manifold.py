@@ -8,14 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from engine.exits.exit_rows import exit_curves, exit_gates
-from engine.exits.lyapunov_orbits import LyapunovOrbit
+from engine.exits.lyapunov_orbit import LyapunovOrbit
 from engine.exits.periodic_orbits import monodromy_matrix
 from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.integrator.kernels.dense_output import sample_path, trace_steps
 from engine.integrator.source.recurrence import TOLERANCE
-from engine.propagation.fixed_step_batches import map_tiles
-from engine.systems.compiled import kernels_of
+from engine.propagation.tiles import map_tiles
 from engine.systems.potential import Potential
 
 # Largest displacement from the Lyapunov orbit at which orbits of the tube start, in units of the well. When the tube has grown to
@@ -103,7 +102,7 @@ class UnstableManifold:
         The product of `left_eigenvector`, (4,), which belongs to the multiplier, and a displacement is proportional to the
         unstable component of the displacement.
         """
-        kernels = kernels_of(self.potential)
+        kernels = self.potential.well.kernels
         (start,) = self.start_states(np.array([self.min_displacement]))
         steps = trace_steps(kernels, start, self.orbit.period, len(self.potential.outcomes))
         target = sample_path(kernels, steps, np.array([self.orbit.period]))[:, 0]
@@ -150,8 +149,7 @@ class UnstableManifold:
 
     def displacements(self, phases: np.ndarray) -> np.ndarray:
         """Return the displacements of the orbits with these phases, (n,), in geometric progression."""
-        displacements: np.ndarray = self.min_displacement * (self.max_displacement / self.min_displacement) ** phases
-        return displacements
+        return self.min_displacement * (self.max_displacement / self.min_displacement) ** phases
 
     def start_states(self, displacements: np.ndarray) -> np.ndarray:
         """Return n states displaced from the Lyapunov orbit's point of rest and projected back onto its energy, (n, 4)."""
@@ -178,5 +176,5 @@ def _passages(
     passages = np.full((tile.shape[1], count, 3), np.nan)
     counts = np.zeros(tile.shape[1], np.int64)
     # The kernel writes the passages of each orbit and their number.
-    kernels_of(potential).find_section_passages(TOLERANCE, duration, gates, curves, tile, passages, counts)
+    potential.well.kernels.find_section_passages(TOLERANCE, duration, gates, curves, tile, passages, counts)
     return passages

@@ -38,7 +38,7 @@ Limits = tuple[float, float]
 
 
 class Shape(Enum):
-    """How a series is drawn. The points of a series of steps have the same y until the next x."""
+    """How a series is drawn: dashed lines over other lines; the points of steps have the same y until the next x."""
 
     LINE = auto()
     DASHED = auto()
@@ -106,7 +106,7 @@ class Frame:
 
 @dataclass(frozen=True, eq=False)
 class Chart:
-    """Series in a frame, from back to front. `limits` are those of x and y; None for limits that fit the points."""
+    """Series in a frame. `limits` are those of x and y; None for limits that fit the points."""
 
     frame: Frame
     series: Sequence[Series]
@@ -156,11 +156,10 @@ def _measure_chart(measure: Measure, curves: Sweep) -> Chart:
 def _shares_chart(curves: Sweep, palette: Palette) -> Chart:
     """Return the chart of the percentages of bounded starts and of each outcome."""
     entries = [Entry("bounded", palette.bounded), *palette.end_entries(curves.outcomes)]
-    # Symmetric exits have equal shares: dashed curves, drawn last, leave the solid curves below visible.
-    order = sorted(range(len(entries)), key=_is_dashed)
+    # Symmetric exits have equal shares: dashed curves leave the solid curves below visible.
     series = [
-        Series(entries[k].label, entries[k].colour, curves.values, 100.0 * share, Shape.DASHED if _is_dashed(k) else Shape.LINE)
-        for k, share in ((k, curves["share"][:, k]) for k in order)
+        Series(entry.label, entry.colour, curves.values, 100.0 * share, Shape.DASHED if _is_dashed(code) else Shape.LINE)
+        for code, (entry, share) in enumerate(zip(entries, curves["share"].T, strict=True))
     ]
     return Chart(measure_frame(SHARES, curves.symbol), series, (_swept_limits(curves), (0.0, 100.0)))
 

@@ -85,9 +85,10 @@ def _draw_series(axes: Axes, series: Series) -> None:
         return
     # Matplotlib typesets a subscript such as S_b between dollar signs.
     label = re.sub(r"_(\w+)", r"$_{\1}$", series.label)
+    is_dashed = series.shape is Shape.DASHED
     axes.plot(
         *series.curve, color=series.colour, linewidth=1.5, linestyle=_LINES.get(series.shape, "-"),
-        marker=_MARKERS.get(series.shape, ""), markersize=2.5, label=label,
+        marker=_MARKERS.get(series.shape, ""), markersize=2.5, label=label, zorder=3 if is_dashed else 2,
     )  # fmt: skip
     if series.bars is not None:
         axes.vlines(series.x, *series.bars, color=series.colour, alpha=0.6, linewidth=1.0)

@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 
 from engine import Potential
 from engine.expressions.nodes import Expression, from_terms
-from engine.systems.forms.form import Form
+from engine.systems.forms.expression_form import Form
 from plots.texts.mathml_elements import digits, number, op, row, var, write_power
 from plots.texts.mathml_expressions import signed_parts
 

@@ -184,8 +184,7 @@ def _find_half_widths(jacobian: np.ndarray, residuals: np.ndarray) -> np.ndarray
     if leverage.max() > _MAX_LEVERAGE or np.linalg.matrix_rank(jacobian) < parameter_count:
         return np.full(parameter_count, np.inf)
     quantile = special.stdtrit(energy_count - parameter_count, 0.5 * (1.0 + _CONFIDENCE))
-    half_widths: np.ndarray = quantile * np.linalg.norm(inverse * (residuals / (1.0 - leverage)), axis=1)
-    return half_widths
+    return quantile * np.linalg.norm(inverse * (residuals / (1.0 - leverage)), axis=1)
 
 
 def _build_fit(curve: ShareCurve, half_widths: np.ndarray, h: np.ndarray, shares: np.ndarray) -> ShareFit:

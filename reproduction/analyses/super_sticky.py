@@ -61,8 +61,7 @@ class SuperStickySearch:
     def escapers(self) -> np.ndarray:
         """Array indices of the escaping orbits, of shape (m,), by escape time."""
         escapers = np.flatnonzero(self.fate >= 1)
-        sorted_escapers: np.ndarray = escapers[np.argsort(self.escape_time[escapers], kind="stable")]
-        return sorted_escapers
+        return escapers[np.argsort(self.escape_time[escapers], kind="stable")]
 
     def describe(self) -> str:
         """Describe the result in two sentences."""

@@ -91,8 +91,7 @@ def _sample_r2(search: SuperStickySearch, index: int, begin: float, cache: MapCa
     """Return R² of an orbit from time `begin` to the escape, of shape (intervals, samples)."""
     times = np.linspace(begin, search.escape_time[index], _INTERVALS * _SAMPLES)
     orbits = sample_orbits(search.spec.potential, search.states[index : index + 1], times, execution=cache.execution)
-    r2: np.ndarray = (orbits.x**2 + orbits.y**2).reshape(_INTERVALS, _SAMPLES)
-    return r2
+    return (orbits.x**2 + orbits.y**2).reshape(_INTERVALS, _SAMPLES)
 
 
 def _describe(search: SuperStickySearch, index: int | None) -> str:

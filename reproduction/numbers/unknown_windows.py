@@ -115,15 +115,13 @@ class _Outside:
     def count(self, window: Window) -> np.ndarray:
         """Return the numbers of starts outside in a window by exit, of shape (exits + 1,). Entry 0 is 0."""
         contained = (self.x >= window.x_low) & (self.x <= window.x_high) & (np.abs(self.ordinate) <= window.ordinate_high)
-        counts: np.ndarray = np.bincount(self.channel[contained], minlength=int(self.channel.max(initial=0)) + 1)
-        return counts
+        return np.bincount(self.channel[contained], minlength=int(self.channel.max(initial=0)) + 1)
 
 
 def _edges(least: float) -> list[float]:
     """Return the multiples of `STEP` from the first that is at least `least` to `LARGEST_HALF_SIDE`."""
     steps = np.arange(np.ceil(least / STEP), round(LARGEST_HALF_SIDE / STEP) + 1)
-    edges: list[float] = (STEP * steps).round(6).tolist()
-    return edges
+    return (STEP * steps).round(6).tolist()
 
 
 def _best(

@@ -45,11 +45,11 @@ _RETURNED = """() => history.state.entry === 0
 
 _PREVIEW = "!data.complete[0] && data.fate[0].shape[0] >= {least} && Math.abs(data.energy[0] - {energy}) < 1e-9"
 
-# The thumb is 18 pixels wide.
+# The thumb of Chromium is 16 pixels wide.
 _RAIL_AND_THUMB = """rail => {
-    const {x, y, width, height} = rail.getBoundingClientRect(), reach = width - 18
+    const {x, y, width, height} = rail.getBoundingClientRect(), reach = width - 16
     const share = (rail.value - rail.min) / (rail.max - rail.min)
-    return {begin: x + 9 + share * reach, low: x + 9, reach, middle: y + height / 2}
+    return {begin: x + 8 + share * reach, low: x + 8, reach, middle: y + height / 2}
 }"""
 
 

@@ -39,7 +39,7 @@ def test_the_dark_theme_has_light_lines_and_titles_and_is_stored(open_explorer: 
         return ({LIGHT_LINES})()
     }}""")
     assert luminance(explorer) < 50
-    assert explorer.page.evaluate(TITLE_COLOUR) == "#eceff3"
+    assert explorer.page.evaluate(TITLE_COLOUR) == "rgb(236, 239, 243)"
     explorer.page.reload()
     explorer.wait_until_complete()
     explorer.page.wait_for_function(LIGHT_LINES)
@@ -47,7 +47,7 @@ def test_the_dark_theme_has_light_lines_and_titles_and_is_stored(open_explorer: 
     explorer.press("Dark theme")
     explorer.page.wait_for_function(f"() => !({LIGHT_LINES})()")
     assert luminance(explorer) > 200
-    assert explorer.page.evaluate(TITLE_COLOUR) == "#1b2027"
+    assert explorer.page.evaluate(TITLE_COLOUR) == "rgb(27, 32, 39)"
 
 
 def test_the_page_follows_the_theme_of_the_system_until_the_user_chooses_one(

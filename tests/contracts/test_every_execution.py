@@ -38,8 +38,7 @@ from engine import (
     sample_starts,
 )
 from engine.foundations.execution import SerialExecutor
-from engine.propagation.deviation_vectors import attach_deviations, propagate_deviations
-from engine.propagation.section_points import find_section_points
+from engine.propagation.fixed_steps import attach_deviations, find_section_points, propagate_deviations
 
 III, STATE = CASES["III"], (0.1, 0.0, 0.05, 0.6)
 # Enough orbits for several parts in each of three threads.

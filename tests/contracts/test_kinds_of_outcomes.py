@@ -7,9 +7,8 @@ import pytest
 
 from engine import Centre, MapSpec, Plane, Potential, compute_map, compute_origin_fates, parse_formula, write_formula
 from engine.systems import outcomes
-from engine.systems.formulas.stored_potential import read_potential
+from engine.systems.formulas.formula_parser import read_potential
 from engine.systems.outcomes import KINDS, EscapeCircle
-from engine.systems.provenance import describe_potential
 from plots.layers.origins import ORIGINS
 from plots.pictures.palette import PALETTES, end_places
 from tests.extending import run_example
@@ -42,7 +41,7 @@ def test_formulas_and_files_keep_ends_of_all_kinds(station: type[outcomes.End]) 
     )
     assert potential.ends == ends
     assert parse_formula(write_formula(potential)) == potential
-    assert read_potential(describe_potential(potential)) == potential
+    assert read_potential(potential.provenance()) == potential
 
 
 def test_orbits_end_at_a_station_as_at_a_body_and_in_its_words_and_colour(station: type[outcomes.End]) -> None:

@@ -20,7 +20,7 @@ from cli.execution import describe_losses
 from cli.main import FAILED, main
 from engine import CASES, Plane, SweepSpec, compute_sweep
 from engine.foundations.execution import Execution
-from engine.propagation.fixed_step_batches import map_tiles
+from engine.propagation.tiles import map_tiles
 from tests.forgetful_pool import ForgetfulPool
 from tests.forked import run
 

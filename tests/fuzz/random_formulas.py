@@ -5,7 +5,8 @@ from __future__ import annotations
 import random
 from collections.abc import Callable, Mapping
 
-from engine.systems.formulas.formula_parser import DEEPEST_NESTING, LONGEST_TEXT
+from engine.systems.formulas.formula_grammar import DEEPEST_NESTING
+from engine.systems.formulas.formula_parser import LONGEST_TEXT
 
 Link = dict[str, str]
 """Parameters of a link, without its case."""

@@ -22,7 +22,6 @@ export function render({model, el}) {
   const write = (/** @type {number} */ step) => {
     const time = model.begin + ((model.end - model.begin) * step) / model.steps
     rail.valueAsNumber = step
-    rail.style.setProperty("--share", String(step / model.steps))
     text.textContent = `t = ${number(time, 5)}`
     rail.setAttribute("aria-valuetext", text.textContent)
   }

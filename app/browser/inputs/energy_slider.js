@@ -22,7 +22,6 @@ export function render({model, el}) {
     rail.value = String(energy)
     const decimals = Number(energy.toFixed(12)).toString().split(".")[1]?.length ?? 0
     number.textContent = energy.toFixed(Math.min(Math.max(decimals, model.decimals, 0), 12))
-    rail.style.setProperty("--share", String((energy - model.low) / (model.high - model.low)))
     rail.setAttribute("aria-valuetext", number.textContent)
   }
   // An energy beyond an end of the slider stays until the user moves the thumb.

@@ -19,9 +19,6 @@ export function render({model, el}) {
   el.append(label, rail, box)
   const write = (/** @type {HTMLInputElement} */ input, /** @type {number} */ number) => {
     if (input.valueAsNumber !== number) input.valueAsNumber = number
-    const {low, high} = model
-    const share = Math.min(Math.max((number - low) / (high - low), 0), 1)
-    rail.style.setProperty("--share", String(share))
   }
   const writeBoth = (/** @type {number} */ number) => [rail, box].forEach(input => write(input, number))
   const value = new CountedValue(model, () => box.valueAsNumber, writeBoth)

@@ -13,6 +13,7 @@ import panel as pn
 from app.state.glossary import with_terms
 from app.state.view_state import ViewState
 from app.views.components.charts import ChartView
+from app.views.components.collapsible_section import Build
 from app.views.components.texts import TextPane
 from app.views.components.widgets import COUNT_WHOLE, button, copy_button, number_rows
 from engine import MEASURES, Measure, Result, Window
@@ -96,10 +97,12 @@ class BasinMeasuresView:
         self._remove([name])
         self._put(name, sentence)
 
-    def build(self) -> list[pn.viewable.Viewable]:
-        """Return the content of the section."""
-        texts = pn.Column(self.text, self.whole, self.copy, *self.buttons.values(), margin=0)
-        return [texts, self.survival.build(), self.uncertainty.build()]
+    def parts(self) -> list[Build]:
+        """Return functions that make the parts of the section."""
+        return [self._build_texts, lambda: [self.survival.build()], lambda: [self.uncertainty.build()]]
+
+    def _build_texts(self) -> list[pn.viewable.Viewable]:
+        return [pn.Column(self.text, self.whole, self.copy, *self.buttons.values(), margin=0)]
 
     def _remove(self, names: list[str]) -> None:
         for name in names:

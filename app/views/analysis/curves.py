@@ -15,7 +15,7 @@ from bokeh.models import Range1d, Span
 
 from app.state.view_state import ViewState
 from app.views.components.charts import ChartView
-from app.views.components.in_turns import InTurns, Later
+from app.views.components.collapsible_section import InTurns, Later
 from app.views.components.texts import TextPane, plain_symbol
 from app.views.components.widgets import FULL_HEIGHT, button, flex_row
 from engine import Measure, System

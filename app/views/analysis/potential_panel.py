@@ -148,9 +148,7 @@ class PotentialPanel:
         """Show the properties of the system of the widgets. Add a note, or the reason why the maps cannot show the system."""
         problem = refusal(reviewed)
         self.typeset.object = potential_formula(reviewed.potential)
-        ends = "Orbits end at: " if reviewed.potential.ends else ""
-        accepted = f"<p>{ends}{describe_outcomes(reviewed.potential)}</p><p class='quiet'>{escape(note)}</p>"
-        self._write(_alert(problem) if problem else accepted)
+        self._write(_alert(problem) if problem else _accepted(reviewed, note))
         self._offer(reviewed.well if problem else None)
         self.facts.object = _points(reviewed) + _remarks(reviewed)
 
@@ -243,6 +241,11 @@ def _typed(text: str, previous: System) -> System:
 
 def _alert(sentence: str) -> str:
     return f"<div class='alert'>{escape(sentence)}</div>"
+
+
+def _accepted(review: PotentialReview, note: str) -> str:
+    ends = "Orbits end at: " if review.potential.ends else ""
+    return f"<p>{ends}{describe_outcomes(review.potential)}</p><p class='quiet'>{escape(note)}</p>"
 
 
 def _points(review: PotentialReview) -> str:

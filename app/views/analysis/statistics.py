@@ -11,6 +11,7 @@ from app.job_clients.shown_results import ShownResults
 from app.state.view import Analysis
 from app.state.view_state import ViewState
 from app.views.components.charts import ChartView
+from app.views.components.collapsible_section import Build
 from app.views.components.legends import patch
 from app.views.components.texts import TextPane, escape_facts
 from app.views.components.widgets import COUNT_WHOLE, button, copy_button
@@ -44,6 +45,7 @@ class StatisticsView:
     def __init__(self, state: ViewState, results: ShownResults, on_copy: Callable[[str], None]) -> None:
         self._state = state
         self._frame: EscapeMap | None = None
+        # Whether the charts are on the page.
         self._is_built = False
         self._times = ChartView(TIMES, _TIMES_TEXT, Shape.BARS, aspect_ratio=_ASPECT)
         self._probabilities = ChartView(PROBABILITIES, _PROBABILITIES_TEXT, Shape.BARS, aspect_ratio=_ASPECT)
@@ -60,13 +62,18 @@ class StatisticsView:
             self._frame = frame
             self._count()
 
-    def build(self) -> list[pn.viewable.Viewable]:
-        """Return the content of the section."""
-        charts = [chart.build() for chart in (self._times, self._probabilities)]
+    def parts(self) -> list[Build]:
+        """Return functions that make the parts of the section."""
+        return [self._build_table, lambda: [self._times.build()], self._build_probabilities]
+
+    def _build_table(self) -> list[pn.viewable.Viewable]:
+        return [pn.Column(self.whole, self.table, self.copy, margin=0, css_classes=["plot"])]
+
+    def _build_probabilities(self) -> list[pn.viewable.Viewable]:
+        chart = self._probabilities.build()
         self._is_built = True
         self._count()
-        left = pn.Column(self.whole, self.table, self.copy, margin=0, css_classes=["plot"])
-        return [left, *charts]
+        return [chart]
 
     def _count(self) -> None:
         """Count and show the pixels of the last frame, if the tab is open."""

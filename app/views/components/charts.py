@@ -119,7 +119,7 @@ def _first_range(is_logarithmic: bool) -> Range1d:
 
 
 def _line_columns(series: Sequence[Series]) -> dict[str, list[Any]]:
-    lines = [one for one in series if one.shape not in _WITHOUT_LINE]
+    lines = sorted((one for one in series if one.shape not in _WITHOUT_LINE), key=lambda one: one.shape is Shape.DASHED)
     x, y = ([one.curve[axis] for one in lines] for axis in (0, 1))
     dashes = [_DASHES.get(one.shape, "solid") for one in lines]
     return {"xs": x, "ys": y, "colour": [one.colour for one in lines], "dash": dashes, "label": [one.label for one in lines]}

@@ -1,8 +1,10 @@
-"""Parts of the page whose content is built when it is first shown: stacks, folds and drawers."""
+"""Parts of the page that are built when they are first shown: stacks, folds and drawers, and parts that are built one by one."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections import deque
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import panel as pn
@@ -11,7 +13,15 @@ from app.views.components.texts import TextPane
 from app.views.components.widgets import FULL_HEIGHT, button
 
 Build = Callable[[], Sequence[pn.viewable.Viewable]]
-"""Makes the content of a section."""
+"""Makes a content, or a part of it."""
+
+Later = Callable[[Callable[[], None]], Callable[[], None]]
+"""Wraps a function so that it runs in a later iteration of the event loop."""
+
+
+def at_once(function: Callable[[], None]) -> Callable[[], None]:
+    """Return the function itself, which is then not called later."""
+    return function
 
 
 class Stack:
@@ -19,16 +29,24 @@ class Stack:
 
     Parameters
     ----------
-    builds
-        Functions that make the contents, by name. Each function is called when its content is first shown.
+    makes
+        Functions that make the parts of the contents, by name. They are called when their content is first shown.
     css_class
         CSS class of the column.
     head
         Parts that stay above the content.
+    later
+        Wraps a function to run in a later iteration of the event loop. All parts of a content but the first are made later.
     """
 
-    def __init__(self, builds: Mapping[str, Build], css_class: str, head: Sequence[pn.viewable.Viewable] = ()) -> None:
-        self._builds, self._head = builds, head
+    def __init__(
+        self,
+        makes: Mapping[str, Sequence[Build]],
+        css_class: str,
+        head: Sequence[pn.viewable.Viewable] = (),
+        later: Later = at_once,
+    ) -> None:
+        self._makes, self._head, self._later = makes, head, later
         self._contents: dict[str, list[pn.viewable.Viewable]] = {}
         self._column = pn.Column(
             *head, sizing_mode="stretch_width", styles=FULL_HEIGHT, visible=bool(head), margin=0, css_classes=[css_class]
@@ -43,12 +61,22 @@ class Stack:
         """Replace the present content by another; None shows no content."""
         self.shown = name
         if name is not None and name not in self._contents:
-            self._contents[name] = [*self._builds[name]()]
-        parts = [*self._head, *(self._contents[name] if name is not None else [])]
-        self._column.param.update(objects=parts, visible=bool(parts))
+            first, *others = self._makes[name]
+            self._contents[name] = content = [*first()]
+            InTurns(others, partial(self._add, content), self._later).begin()
+        self._arrange()
+
+    def _add(self, content: list[pn.viewable.Viewable], parts: Sequence[pn.viewable.Viewable]) -> None:
+        content += parts
+        self._arrange()
+
+    def _arrange(self) -> None:
+        parts = [*self._head, *(self._contents[self.shown] if self.shown is not None else [])]
+        if parts != self._column.objects:
+            self._column.param.update(objects=parts, visible=bool(parts))
 
     def rebuild(self) -> None:
-        """Make the contents again: the present content now, other contents when they are next shown."""
+        """Build the contents again: the present content now, other contents when they are next shown."""
         self._contents.clear()
         self.show(self.shown)
 
@@ -60,8 +88,8 @@ class Stack:
 class Fold(Stack):
     """A column with one content that opens and closes, under a button with its title."""
 
-    def __init__(self, title: str, build: Build, *, is_open: bool = False) -> None:
-        super().__init__({"content": build}, "fold")
+    def __init__(self, title: str, make: Build, *, is_open: bool = False) -> None:
+        super().__init__({"content": [make]}, "fold")
         self._title = title
         self.button = button("", lambda: self.toggle("content"), kind="light", margin=0, css_classes=["fold-title"])
         self.set_open(is_open)
@@ -91,16 +119,25 @@ class Drawers(Stack):
     Parameters
     ----------
     drawers
-        Label of the button, title and builder of each drawer, by name. The label is empty if the button is elsewhere.
+        Label of the button, title, and function that makes the content of each drawer, by name. The label is empty if the button
+        is elsewhere.
     on_toggle
         Called when a drawer opens or closes. The argument tells whether a drawer is open now.
+    later
+        Wraps a function to run in a later iteration of the event loop. The content of a drawer is made later than its title.
     """
 
     def __init__(
-        self, drawers: Mapping[str, tuple[str, str, Build]], on_toggle: Callable[[bool], None] = lambda is_open: None
+        self,
+        drawers: Mapping[str, tuple[str, str, Build]],
+        on_toggle: Callable[[bool], None] = lambda is_open: None,
+        later: Later = at_once,
     ) -> None:
         self._on_toggle = on_toggle
-        super().__init__({name: self._with_head(title, build) for name, (_, title, build) in drawers.items()}, "drawer")
+        makes: dict[str, list[Build]] = {
+            name: [partial(self._make_head, title), make] for name, (_, title, make) in drawers.items()
+        }
+        super().__init__(makes, "drawer", later=later)
         options = {label: name for name, (label, _, _) in drawers.items() if label}
         self.buttons = pn.widgets.CheckButtonGroup(options=options, color="light", margin=0, css_classes=["solid"])
         self.buttons.param.watch(self._press, "value")
@@ -125,10 +162,35 @@ class Drawers(Stack):
         """Return the buttons to mark: the button of the open drawer, if it has one."""
         return [name for name in self.buttons.options.values() if name == self.shown]
 
-    def _with_head(self, title: str, build: Build) -> Build:
-        def build_all() -> list[pn.viewable.Viewable]:
-            head = TextPane(f"<h2>{title}</h2>", sizing_mode="stretch_width", margin=0, align="center")
-            close = button("Close", lambda: self.show(None), kind="light", margin=0)
-            return [pn.Row(head, close, sizing_mode="stretch_width", margin=0), *build()]
+    def _make_head(self, title: str) -> list[pn.viewable.Viewable]:
+        head = TextPane(f"<h2>{title}</h2>", sizing_mode="stretch_width", margin=0, align="center")
+        close = button("Close", lambda: self.show(None), kind="light", margin=0)
+        return [pn.Row(head, close, sizing_mode="stretch_width", margin=0)]
 
-        return build_all
+
+class InTurns:
+    """Makes parts when they are needed. Between two parts, the server can serve other pages.
+
+    Parameters
+    ----------
+    makes
+        Functions that make the parts.
+    add
+        Adds a new part to the page.
+    later
+        Wraps a function to run in a later iteration of the event loop.
+    """
+
+    def __init__(self, makes: Iterable[Build], add: Callable[[Sequence[pn.viewable.Viewable]], None], later: Later) -> None:
+        self._missing, self._add = deque(makes), add
+        self._continue = later(self._make_next)
+
+    def begin(self) -> None:
+        """Build the parts that do not exist yet."""
+        if self._missing:
+            self._continue()
+
+    def _make_next(self) -> None:
+        if self._missing:
+            self._add(self._missing.popleft()())
+            self.begin()

@@ -7,7 +7,7 @@ from bokeh.models import ColumnDataSource, CustomJSHover, HoverTool, Range1d
 from app.browser.javascript import callback_code
 from app.views.components.plots import HOVER_TEXTS
 from engine import Evidence, Fate
-from engine.propagation.evidence import describe_evidence
+from engine.propagation.fates import describe_evidence
 from plots.layers.table import LAYERS
 from plots.pictures.palette import CROSSING_CLASSES, OUTCOMES
 

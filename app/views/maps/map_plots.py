@@ -4,25 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 import numpy as np
 from bokeh.events import DoubleTap, Event, PinchEnd, PointEvent, RangesUpdate, SelectionGeometry, Tap
-from bokeh.models import (
-    BoxSelectTool,
-    BoxZoomTool,
-    ColumnDataSource,
-    CrosshairTool,
-    HoverTool,
-    Image,
-    LinearColorMapper,
-    LogColorMapper,
-    PanTool,
-    Span,
-    Toolbar,
-    WheelZoomTool,
-)  # fmt: skip
+from bokeh.models import ColumnDataSource, Image, LinearColorMapper, LogColorMapper
 from bokeh.plotting import figure
 
 from app.state.view import PICTURES
@@ -33,7 +19,7 @@ from app.views.maps.comparison import ComparedMap
 from app.views.maps.curve_layers import CurveLayers, trace_curves
 from app.views.maps.hover import pixel_hover
 from app.views.maps.map_ranges import MapRanges, TwoFingers
-from app.views.maps.map_toolbar import Drag
+from app.views.maps.map_toolbar import MapTools
 from app.views.maps.markers import Markers
 from app.views.maps.overlays import Overlays
 from app.views.maps.picture_grid import PictureGrid
@@ -116,8 +102,7 @@ class MapsView:
         self.compared = ComparedMap(self.ranges, state)
         self._hover = pixel_hover(self.source, self.compared.source, *ranges)
         self._fingers = TwoFingers(*ranges)
-        self._drags: dict[Drag, Any] = {Drag.PAN: PanTool()}
-        self._toolbar = _toolbar(self._drags[Drag.PAN], self._hover, self.compared.hover)
+        self.tools = MapTools(state, self._hover, self.compared.hover)
         self._last_tap: tuple[float, float] | None = None
         self.figures: dict[str, figure] = {}
         self._panes: dict[str, FigurePane] = {"well": self.well.pane}
@@ -125,7 +110,6 @@ class MapsView:
         state.follow(self._set_colours, "palette")
         state.follow(lambda times: self._scale_times(), "lock_times")
         state.follow(lambda *values: self._show_pictures(), "layers", "compared")
-        state.param.watch(lambda event: self._begin_touch(), "touch")
 
     def _show_pictures(self) -> None:
         """Show the pictures of the view and of its layers."""
@@ -138,19 +122,6 @@ class MapsView:
                 self._build(name)
         self.grid.show({name: self._panes[name] for name in names})
         self.describe()
-
-    def _begin_touch(self) -> None:
-        """Adapt to touch input: two fingers zoom."""
-        # The wheel tool would also respond to two fingers.
-        tools = [tool for tool in self._toolbar.tools if not isinstance(tool, WheelZoomTool)]
-        self._toolbar.update(tools=tools, active_scroll=None)
-
-    def set_drag(self, drag: Drag) -> None:
-        """Choose the effect of dragging over a picture."""
-        if drag in _BOX_TOOLS and drag not in self._drags:
-            self._drags[drag] = _BOX_TOOLS[drag]()
-            self._toolbar.tools = [*self._toolbar.tools, self._drags[drag]]
-        self._toolbar.active_drag = self._drags.get(drag)
 
     def show(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
         """Paint a frame, and go to the window of a new map."""
@@ -282,7 +253,7 @@ class MapsView:
     def _build(self, name: str) -> None:
         """Make a picture with its title and help text."""
         plot = self.figures[name] = map_figure(name, ENTRIES[name].title, self.ranges.x, self.ranges.ordinate)
-        plot.toolbar = self._toolbar
+        plot.toolbar = self.tools.toolbar
         self._paint(name)
         self._fingers.follow_on(plot)
         events: dict[type[Event], Callable[[Any], None]] = {
@@ -312,17 +283,6 @@ class MapsView:
         self._outlines.draw(plot, full=False)
         self.overlays.draw(plot, name)
         self.marks.draw(plot, sections=name == "basins")
-
-
-# Tools that draw a box. With renderers, Bokeh would change the look of the image outside the box.
-_BOX_TOOLS = {Drag.ZOOM: partial(BoxZoomTool, match_aspect=True), Drag.COUNT: partial(BoxSelectTool, renderers=[])}
-
-
-def _toolbar(pan: PanTool, *hovers: HoverTool) -> Toolbar:
-    """Return the toolbar of all pictures."""
-    wheel = WheelZoomTool()
-    spans = [Span(dimension=dimension, line_alpha=0.35) for dimension in ("width", "height")]
-    return Toolbar(tools=[pan, wheel, CrosshairTool(overlay=spans), *hovers], active_drag=pan, active_scroll=wheel)
 
 
 def _blank() -> dict[str, list[Any]]:

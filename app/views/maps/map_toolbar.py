@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from enum import StrEnum
+from functools import partial
+from typing import Any
 
 import panel as pn
+from bokeh.models import BoxSelectTool, BoxZoomTool, CrosshairTool, HoverTool, PanTool, Span, Toolbar, WheelZoomTool
 
 from app.state.view_state import ViewState
 from app.views.components.widgets import SegmentedControl, button, flex_row, keep_place
@@ -18,6 +21,43 @@ class Drag(StrEnum):
     ZOOM = "Zoom"
     COUNT = "Count"
     SCROLL = "Scroll"
+
+
+# Tools that draw a box. With renderers, Bokeh would change the look of the image outside the box.
+_BOX_TOOLS = {Drag.ZOOM: partial(BoxZoomTool, match_aspect=True), Drag.COUNT: partial(BoxSelectTool, renderers=[])}
+
+
+class MapTools:
+    """The tools of all pictures: `toolbar` contains them. They follow touch input.
+
+    Parameters
+    ----------
+    state
+        View state.
+    *hovers
+        Tools with texts of the pixels.
+    """
+
+    def __init__(self, state: ViewState, *hovers: HoverTool) -> None:
+        pan, wheel = PanTool(), WheelZoomTool()
+        spans = [Span(dimension=dimension, line_alpha=0.35) for dimension in ("width", "height")]
+        tools = [pan, wheel, CrosshairTool(overlay=spans), *hovers]
+        self.toolbar = Toolbar(tools=tools, active_drag=pan, active_scroll=wheel)
+        self._drags: dict[Drag, Any] = {Drag.PAN: pan}
+        state.param.watch(lambda event: self._begin_touch(), "touch")
+
+    def set_drag(self, drag: Drag) -> None:
+        """Choose the effect of dragging over a picture."""
+        if drag in _BOX_TOOLS and drag not in self._drags:
+            self._drags[drag] = _BOX_TOOLS[drag]()
+            self.toolbar.tools = [*self.toolbar.tools, self._drags[drag]]
+        self.toolbar.active_drag = self._drags.get(drag)
+
+    def _begin_touch(self) -> None:
+        """Adapt to touch input: two fingers zoom."""
+        # The wheel tool would also respond to two fingers.
+        tools = [tool for tool in self.toolbar.tools if not isinstance(tool, WheelZoomTool)]
+        self.toolbar.update(tools=tools, active_scroll=None)
 
 
 class MapToolbar:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import panel as pn
 
 from app.browser.components.orbit_components import OrbitPlayer
-from app.views.components.in_turns import InTurns, Later
+from app.views.components.collapsible_section import InTurns, Later
 from app.views.components.widgets import FULL_HEIGHT
 from app.views.orbits.orbit_controls import OrbitControls
 from app.views.orbits.orbit_plots import OrbitPlots
@@ -26,6 +26,7 @@ class Inspector:
         self._head: list[pn.viewable.Viewable] = []
         self._details: list[pn.viewable.Viewable] = []
         self._figure_panes: list[pn.viewable.Viewable] = []
+        self._build_later = later(self._build_texts)
         self._figures_in_turns = InTurns([*plots.parts(), separation.build], self._add_figures, later)
         self._entry = controls.entry()
         self._grid = pn.Column(
@@ -40,10 +41,15 @@ class Inspector:
         """Show the panes that are needed for a number of starts, and for the orbits among them."""
         self._start_count, self._orbit_count = starts, orbits
         if starts >= 1 and not self._head:
-            self._head, self._details = [self._controls.head(self._player)], self._controls.details()
+            self._build_later()
         if orbits >= 1:
             self._figures_in_turns.begin()
         self._arrange()
+
+    def _build_texts(self) -> None:
+        if not self._head:
+            self._head, self._details = [self._controls.head(self._player)], self._controls.details()
+            self._arrange()
 
     def _add_figures(self, figures: Sequence[pn.viewable.Viewable]) -> None:
         self._figure_panes += figures

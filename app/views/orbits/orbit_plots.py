@@ -25,7 +25,7 @@ from bokeh.models import (
 from bokeh.plotting import figure
 
 from app.state.view_state import ViewState
-from app.views.components.in_turns import Make
+from app.views.components.collapsible_section import Build
 from app.views.components.orbit_lines import (
     band_columns,
     band_style,
@@ -71,7 +71,7 @@ class OrbitPlots:
         self._time_mark = Span(location=0.0, dimension="height", line_color=MARK_EDGE, line_dash="dotted", visible=False)
         self._orbits: list[tuple[int, OrbitCurves]] = []
 
-    def parts(self) -> list[Make]:
+    def parts(self) -> list[Build]:
         """Return functions that make the figures, one of each of `ORBIT_QUANTITIES`."""
         return [partial(self._build, quantity) for quantity in ORBIT_QUANTITIES]
 

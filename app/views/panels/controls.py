@@ -42,7 +42,7 @@ STOP = "■ Stop"
 """Label of the button that stops the animation."""
 
 # Space at the ends of the rail of a slider: half the width of the thumb, see theme.css.
-_THUMB = "9px"
+_THUMB = "8px"
 # Style of a tick below the slider.
 _TICK = "position:absolute;left:{share:.2%};width:1px;height:6px;background:var(--ui-edge-strong)"
 # Style of the label of a tick.

@@ -91,8 +91,7 @@ def advance_states(kernels: ModuleType, states: np.ndarray, durations: np.ndarra
     """Return `states` (n, 4) after `durations` (n,) of at most one integrator step, with one series each."""
     jets = np.empty((2, ORDER + 1, len(states)))
     kernels.jets(len(states), *(np.ascontiguousarray(column) for column in states.T), *jets)
-    later_states: np.ndarray = _evaluate(jets, np.arange(len(states)), durations).T
-    return later_states
+    return _evaluate(jets, np.arange(len(states)), durations).T
 
 
 def _evaluate(jets: np.ndarray, row: np.ndarray, tau: np.ndarray) -> np.ndarray:
@@ -126,8 +125,7 @@ def find_crossings(kernels: ModuleType, path: np.ndarray, times: np.ndarray) -> 
     first_samples = np.flatnonzero(rises | turns)
     jets = np.empty((2, ORDER + 1, first_samples.size))
     kernels.jets(first_samples.size, *(np.ascontiguousarray(row[first_samples]) for row in path), *jets)
-    points: np.ndarray = _crossings(jets, times[first_samples + 1] - times[first_samples])
-    return points
+    return _crossings(jets, times[first_samples + 1] - times[first_samples])
 
 
 @kernel

@@ -10,7 +10,8 @@ import functools
 import math
 import operator
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any, NamedTuple
+from dataclasses import dataclass
+from typing import Any, ClassVar
 
 from engine.expressions.polynomials import derivative
 from engine.integrator.source.cauchy_products import (
@@ -44,9 +45,6 @@ _PLANS = 64
 # Radius of a circle that contains all steps of orbits inside the exits of a well of size 1.
 _REACH = 3.0
 
-# Largest norm of the last coefficients; above it, the step would be too short to change t.
-_LARGEST_NORM = 1e90
-
 Terms = tuple[tuple[int, int, float], ...]
 """((i, j, c), …): the terms c x^i y^j of V."""
 
@@ -66,10 +64,12 @@ _GRADIENT_AND_HESSIAN = (*_GRADIENT, *_HESSIAN)
 _Difference = tuple[Product, Product] | None
 
 
-class PolynomialStructure(NamedTuple):
+@dataclass(frozen=True)
+class PolynomialStructure:
     """The facts about a polynomial V on which generated code depends.
 
-    `difference` is the result of `_find_difference` for the gradient alone, and `tangent_difference` its result for the gradient
+    `can_hide` tells whether the signs of y at the ends of a step can miss two crossings of y = 0 in the step. `difference` is the
+    result of `_find_difference` for the gradient alone, and `tangent_difference` its result for the gradient
     and the Hessian.
     """
 
@@ -79,20 +79,12 @@ class PolynomialStructure(NamedTuple):
     difference: _Difference
     tangent_difference: _Difference
 
-    @property
-    def has_many_scales(self) -> bool:
-        """Return False: the well sets the only scale."""
-        return False
-
-    @property
-    def largest_norm(self) -> float:
-        """Return the norm for a step of 3e-7."""
-        return _LARGEST_NORM
-
-    @property
-    def carries_remainders(self) -> bool:
-        """Return False: a polynomial is smooth everywhere."""
-        return False
+    has_many_scales: ClassVar[bool] = False
+    """Whether frequencies can differ strongly from place to place: no, the well sets the only scale."""
+    largest_norm: ClassVar[float] = 1e90
+    """Norm of the last coefficients, that of a step of 3e-7, above which an orbit fails."""
+    carries_remainders: ClassVar[bool] = False
+    """Whether steps carry the rounding errors of x and y along: no, a polynomial is smooth everywhere."""
 
     def orbit(self, program: StraightLine, _remainders: Mapping[str, Value] = NO_REMAINDERS) -> tuple[Series, Series]:
         """Return the series of x and y, from the products for the equations of motion only."""

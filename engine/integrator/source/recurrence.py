@@ -4,7 +4,7 @@ Along an orbit every quantity is a power series in time, and the series of a pro
 and V a polynomial, coefficient k + 2 of x and y follows from coefficients 0 … k of the monomials in V_x and V_y (Jorba & Zou
 2005, Experimental Mathematics 14, 99). Written as one assignment per coefficient inside one loop over orbits, this recurrence has
 neither branches nor calls, so the compiler vectorises all of it. Formulas with other functions have the recurrences of
-`engine.integrator.source.expression_recurrence`; the following functions are the same for both.
+`engine.integrator.source.graph_series`; the following functions are the same for both.
 
 For each potential there are four functions with a loop over lanes `i`, and one or two for a single point:
 
@@ -32,16 +32,15 @@ import numpy as np
 
 from engine.expressions.nodes import Expression
 from engine.foundations.arrays import read_only
-from engine.integrator.source.expression_recurrence import structure_of_expression
+from engine.integrator.source.expression_recurrence import ExpressionStructure, structure_of_expression
 from engine.integrator.source.generated_functions import GeneratedFunction, Place, lane_loop, point_function
-from engine.integrator.source.polynomial_recurrence import Terms, structure_of_polynomial
+from engine.integrator.source.polynomial_recurrence import PolynomialStructure, Terms, structure_of_polynomial
 from engine.integrator.source.series import (
     LONGEST_STEP,
     ORDER,
     ROTATION,
     Series,
     Setting,
-    Structure,
     add_coriolis,
     cauchy,
     total,
@@ -85,6 +84,9 @@ _STRUCTURES = 32
 
 Definition = Terms | Expression
 """A potential: ((i, j, c), …) of V = Σ c x^i y^j in any order, or an expression."""
+
+Structure = PolynomialStructure | ExpressionStructure
+"""The facts on which the generated code of a potential depends, hashable, with the recurrence of its orbits."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -280,14 +282,11 @@ def code_digest(definition: Definition, setting: Setting) -> str:
     return _write_code(find_structure(definition, setting)).digest
 
 
-@functools.singledispatch
-def find_structure(definition: Any, setting: Setting) -> Structure:
+def find_structure(definition: Definition, setting: Setting) -> Structure:
     """Return the structure of a potential, on which its generated functions depend."""
-    raise TypeError(f"definition={definition!r}: must be terms or an expression")
-
-
-find_structure.register(tuple, structure_of_polynomial)
-find_structure.register(Expression, structure_of_expression)
+    if isinstance(definition, Expression):
+        return structure_of_expression(definition, setting)
+    return structure_of_polynomial(definition, setting)
 
 
 @functools.lru_cache(maxsize=_STRUCTURES)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import functools
 import operator
-from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
-from typing import Any, NamedTuple, Protocol
+from typing import NamedTuple
 
 from engine.integrator.source.straight_line import StraightLine, Value
 
@@ -54,45 +54,6 @@ class Setting(NamedTuple):
     def needs_whole_steps(self) -> bool:
         """Whether an orbit can cross and recross an exit within a step. Exits over saddles in a frame at rest exclude this."""
         return bool(self.sides) or self.rotates
-
-
-class Structure(Hashable, Protocol):
-    """The hashable facts on which the generated code of a potential depends. Polynomials and expressions have one class each."""
-
-    @property
-    def setting(self) -> Setting:
-        """The facts besides V on which the code depends."""
-
-    @property
-    def carries_remainders(self) -> bool:
-        """Whether steps carry the rounding errors of x and y along, because every digit matters near a body."""
-
-    @property
-    def can_hide(self) -> bool:
-        """Whether the signs of y at the ends of a step can miss two crossings of y = 0 in the step."""
-
-    @property
-    def has_many_scales(self) -> bool:
-        """Whether frequencies can differ strongly from place to place."""
-
-    @property
-    def largest_norm(self) -> float:
-        """Norm of the last coefficients above which steps would be too short to change t; an orbit fails there, as with NaN."""
-
-    def orbit(self, program: StraightLine, remainders: Mapping[str, Value] = NO_REMAINDERS) -> tuple[Series, Series]:
-        """Append the recurrence of the motion, and return the series of x and y to `ORDER`.
-
-        The inputs are x0, x1, y0 and y1; `remainders` are added to x0 and y0.
-        """
-
-    def hessian(self, program: StraightLine) -> Hessian:
-        """Append the recurrence of the motion with the same inputs, and return the second derivatives of −V along the orbit."""
-
-    def point_functions(self) -> PointFunctions:
-        """Return functions of one point."""
-
-    def tabulate(self, definition: Any, entries: Sequence[Any]) -> list[float]:
-        """Return the values of the entries of the table for a potential of this structure."""
 
 
 def total(program: StraightLine, terms: Iterator[Value]) -> Value:

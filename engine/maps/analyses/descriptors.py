@@ -11,7 +11,6 @@ from typing import Any, ClassVar
 import numpy as np
 
 from engine.exits.exit_rows import exit_curves_at
-from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.validation import checked_number, checks_types
 from engine.maps.parameter_map import Place, analyse_map
@@ -65,6 +64,7 @@ class DescriptorMap(PixelAnalysis):
     pixel_arrays: ClassVar = {"descriptor": (np.float64, np.nan)}
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         # Files contain the direction as text.
         object.__setattr__(self, "direction", TimeDirection(self.direction))
 
@@ -230,4 +230,4 @@ class _DescriptorRun:
         values = self._values * (units.length**power * units.time ** (1.0 - power))
         self._mirror.copy_to_second_images(values)
         complete = self._done_count == self._pixels.size
-        return DescriptorMap(self._given_spec, read_only(values), self._duration, power, self._direction, complete=complete)
+        return DescriptorMap(self._given_spec, values, self._duration, power, self._direction, complete=complete)

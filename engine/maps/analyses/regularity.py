@@ -17,9 +17,8 @@ from engine.maps.parameter_map import analyse_map
 from engine.maps.pixels import PixelAnalysis, PixelCodes, code_share
 from engine.maps.result import EscapeMap, MapLike, as_complete_map
 from engine.maps.stages import OnChange, Stage
-from engine.propagation.deviation_vectors import attach_deviations, propagate_deviations
-from engine.propagation.evidence import Evidence
-from engine.propagation.fates import MIN_REGULAR_TIME, Fate, Regularity, is_chaotic
+from engine.propagation.fates import MIN_REGULAR_TIME, Evidence, Fate, Regularity, is_chaotic
+from engine.propagation.fixed_steps import attach_deviations, propagate_deviations
 
 # Times up to which SALI is computed, with a test for tori after each, in units of the well. The SALI of strongly chaotic orbits
 # falls early, and most regular orbits are found to be on a torus, so only few orbits are integrated to t_max.

@@ -64,8 +64,7 @@ def _shifted_towards_zero(coordinate: np.ndarray, pixel: float) -> np.ndarray:
     """Return coordinates (n,) shifted towards 0, given the side of a pixel."""
     distance = np.maximum(min(SHIFT, LARGEST_SHARE_OF_PIXEL * pixel), FINEST_PIXEL * np.maximum(1.0, np.abs(coordinate)))
     # A start on y = 0 is shifted up, because from below it would cross y = 0 once more.
-    shifted: np.ndarray = np.where(coordinate > 0.0, coordinate - distance, coordinate + distance)
-    return shifted
+    return np.where(coordinate > 0.0, coordinate - distance, coordinate + distance)
 
 
 def _same_starts(_spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
@@ -102,8 +101,7 @@ class Rerun:
 
     def is_decided(self) -> np.ndarray:
         """Return whether each orbit has a fate, of shape (n,)."""
-        decided: np.ndarray = self.batch.fate != Fate.NOT_COMPUTED
-        return decided
+        return self.batch.fate != Fate.NOT_COMPUTED
 
     def has_changed(self) -> np.ndarray:
         """Return whether each outcome differs from that of the map, of shape (n,).
@@ -115,5 +113,4 @@ class Rerun:
         has_other_crossings = (batch.fate == self.fate) & (batch.crossings != self.crossings)
         is_delayed = (batch.fate == self.fate) & (np.abs(batch.t - self.escape_time) > self.largest_delay)
         has_other_escape = has_escaped & (has_other_crossings | is_delayed | (batch.crossings > self.crossings))
-        has_changed: np.ndarray = has_other_fate | has_other_escape
-        return has_changed
+        return has_other_fate | has_other_escape

@@ -24,9 +24,7 @@ from engine.maps.result import EscapeMap, MapLike, as_complete_map
 from engine.maps.run import FIRST_TEST_TIME, looks_for_tori, rising_horizons
 from engine.maps.stages import OnChange, Stage
 from engine.propagation.batch import OrbitBatch, propagate_batch
-from engine.propagation.evidence import Evidence
-from engine.propagation.fates import CHAOS_THRESHOLD, Fate
-from engine.systems.compiled import kernels_of
+from engine.propagation.fates import CHAOS_THRESHOLD, Evidence, Fate
 
 CHAOTIC_DISTANCE = SHIFT / CHAOS_THRESHOLD
 """Distance of two reruns in phase space, in units of the well, above which a bounded orbit is chaotic.
@@ -183,8 +181,7 @@ def _find_without_evidence(escape_map: EscapeMap) -> np.ndarray:
     """Return whether each pixel is bounded, above the escape energy, without evidence, of shape (rows, columns)."""
     spec = escape_map.spec
     energy = spec.energies(*np.meshgrid(escape_map.x, escape_map.ordinate))
-    lacks_evidence: np.ndarray = (escape_map.evidence == Evidence.INTEGRATED) & ~spec.potential.well.is_closed_at(energy)
-    return lacks_evidence
+    return (escape_map.evidence == Evidence.INTEGRATED) & ~spec.potential.well.is_closed_at(energy)
 
 
 class TrustTest:
@@ -256,7 +253,7 @@ class TrustTest:
     def _find_chaotic(self, time: float) -> None:
         """Find pixels bounded without evidence whose reruns are farther apart than `CHAOTIC_DISTANCE` at t = `time`."""
         tested = self._undecided[self._without_evidence[self._undecided]]
-        kernels = kernels_of(self.spec.potential)
+        kernels = self.spec.potential.well.kernels
         batches = [rerun.batch for rerun in self._reruns]
         states = np.array([advance_states(kernels, batch.state[tested], time - batch.t[tested]) for batch in batches])
         self._chaotic[tested] = np.linalg.norm(states[0] - states[-1], axis=1) > CHAOTIC_DISTANCE

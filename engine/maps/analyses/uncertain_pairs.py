@@ -8,14 +8,12 @@ from dataclasses import replace
 import numpy as np
 
 from engine.exits.exit_rows import exit_curves_at
-from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.validation import checked_count, checks_types, short_repr
 from engine.maps.spec import MapSpec
 from engine.measures.power_law_fit import MIN_EXPECTED_PAIRS, UncertaintyExponent, fit_uncertainty, predict_shares
 from engine.propagation.batch import OrbitBatch, propagate_batch
-from engine.propagation.evidence import Evidence
-from engine.propagation.fates import Fate
+from engine.propagation.fates import Evidence, Fate
 
 HORIZON = 1e4
 """Longest integration time of the pairs, in units of the well.
@@ -187,8 +185,7 @@ class _PairSampler:
         counts[share * most_pairs < MIN_EXPECTED_PAIRS] = 0.0
         cost = _PAIR_COST + self.integrated_time / self.pairs.sum()
         affordable_count = max(work / cost - self.pairs.sum(), 0.0)
-        affordable_counts: np.ndarray = (counts * min(1.0, affordable_count / max(counts.sum(), 1.0))).astype(np.int64)
-        return affordable_counts
+        return (counts * min(1.0, affordable_count / max(counts.sum(), 1.0))).astype(np.int64)
 
     def sample(self, counts: np.ndarray, execution: Execution) -> None:
         """Draw and integrate `counts` (m,) more pairs at each separation, and count their outcomes."""
@@ -278,5 +275,4 @@ class _PairSampler:
     def fit(self) -> UncertaintyExponent:
         """Fit the exponent to all pairs so far."""
         fit = fit_uncertainty(self.separations, self.pairs, self.uncertain)
-        one_inside, both_inside = read_only(self.one_inside), read_only(self.both_inside)
-        return replace(fit, one_inside=one_inside, both_inside=both_inside, horizon=self.horizon)
+        return replace(fit, one_inside=self.one_inside, both_inside=self.both_inside, horizon=self.horizon)

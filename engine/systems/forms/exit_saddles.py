@@ -13,7 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from engine.systems.forms.form import NO_POINTS, DescentError, Form, Velocity
+from engine.systems.forms.expression_form import Form
+from engine.systems.forms.form import NO_POINTS, DescentError, Velocity
 
 # Distance from the saddle at which a descent starts, in units of the distance to the nearest other critical point.
 _START_DISTANCE = 1e-3
@@ -145,8 +146,7 @@ class _Descent:
     def _steady_flow(self, time: float, place: np.ndarray) -> np.ndarray:
         """Return the flow scaled to speed 1."""
         velocity = self.flow(time, place)
-        steady: np.ndarray = velocity / np.hypot(*velocity)
-        return steady
+        return velocity / np.hypot(*velocity)
 
     def _follow(self, method: Any, flow: Velocity, saddle: int, side: float) -> int | None:
         """Descend along a flow by one of SciPy's methods, and return the result of `_descend`; None if the end is not reached."""
@@ -181,5 +181,4 @@ class _Descent:
         return high - low > self.largest_rise + _RISE * abs(low)
 
     def _distances(self, place: np.ndarray) -> np.ndarray:
-        distances: np.ndarray = np.hypot(*(self.points - place).T)
-        return distances
+        return np.hypot(*(self.points - place).T)

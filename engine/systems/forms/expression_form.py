@@ -18,7 +18,7 @@ from engine.expressions.polynomials import Terms
 from engine.expressions.singularities import singular_bases
 from engine.expressions.text import write_expression
 from engine.foundations.arrays import read_only
-from engine.systems.forms.form import NO_POINTS, Form, NotIsolatedError, UndecidedError, Velocity
+from engine.systems.forms.form import NO_POINTS, NotIsolatedError, UndecidedError, Velocity
 from engine.systems.forms.interval_newton import Derivatives
 from engine.systems.forms.polynomial_form import PolynomialForm, checked_form
 from engine.systems.forms.stationary_points import find_stationary_points
@@ -227,6 +227,10 @@ def _expansions_about_zeros(expression: Expression) -> dict[Expression, Expressi
     return expansions
 
 
+Form = PolynomialForm | ExpressionForm
+"""A function V(x, y) with its derivatives, immutable and hashable. Equal forms have results that are equal to the bit."""
+
+
 def as_form(given: Any) -> Form:
     """Return the form of an expression, or of the terms of a polynomial; ValueError if they are invalid."""
     if isinstance(given, PolynomialForm | ExpressionForm):
@@ -262,5 +266,4 @@ def _isolated_zeros(expression: Expression) -> np.ndarray:
         return NO_POINTS
     curvature = np.abs(np.broadcast_arrays(*form.hessian(*points.T))).max(axis=0)
     scale = curvature * (1.0 + (points**2).sum(axis=1))
-    zeros: np.ndarray = points[np.abs(form.value(*points.T)) <= _ZERO * scale]
-    return zeros
+    return points[np.abs(form.value(*points.T)) <= _ZERO * scale]

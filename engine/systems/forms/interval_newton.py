@@ -104,8 +104,7 @@ def box(centres: np.ndarray, half: float) -> tuple[Interval, Interval]:
 
 def excludes_zero(slopes: Enclosure) -> np.ndarray:
     """Return whether at least one derivative vanishes nowhere in each box, of shape (n,)."""
-    excluded: np.ndarray = np.any([each.excludes_zero() for each in slopes.values[1:]], axis=0)
-    return excluded
+    return np.any([each.excludes_zero() for each in slopes.values[1:]], axis=0)
 
 
 def solve(derivatives: Derivatives, centres: np.ndarray, half: float) -> tuple[np.ndarray, np.ndarray]:
@@ -143,8 +142,7 @@ def _inverse(matrices: np.ndarray) -> np.ndarray:
     magnitude = np.abs(matrices).max(axis=(1, 2))[:, None, None]
     (a, b), (c, d) = np.moveaxis(matrices / magnitude, 0, -1)
     adjugate = np.moveaxis(np.array([[d, -b], [-c, a]]), -1, 0)
-    inverse: np.ndarray = adjugate / (a * d - b * c)[:, None, None] / magnitude
-    return inverse
+    return adjugate / (a * d - b * c)[:, None, None] / magnitude
 
 
 def refined(derivatives: Derivatives, points: np.ndarray) -> np.ndarray:

@@ -132,8 +132,7 @@ class PolynomialForm:
             factors[:, 1:] = place[:, None]
             powers_of_x, powers_of_y = np.multiply.accumulate(factors, axis=1)
             downhill = table @ powers_of_y @ powers_of_x
-            slowed: np.ndarray = downhill / (1.0 + (np.hypot(*place) / length) ** (highest - 1))
-            return slowed
+            return downhill / (1.0 + (np.hypot(*place) / length) ** (highest - 1))
 
         return velocity
 

@@ -150,8 +150,7 @@ def _find_within(
 def _are_near(points: np.ndarray, others: np.ndarray, distance: float | np.ndarray) -> np.ndarray:
     """Return whether each point (n, 2) is within a distance of any of the others (m, 2)."""
     nearest_distance = np.hypot(*np.moveaxis(points[:, None] - others, -1, 0)).min(axis=1, initial=np.inf)
-    are_near: np.ndarray = nearest_distance <= distance
-    return are_near
+    return nearest_distance <= distance
 
 
 def _lie_on_curve(derivatives: Derivatives, centres: np.ndarray, half: float) -> bool:

@@ -28,8 +28,7 @@ def stored_points(kind: str, form: object, find: Callable[[], np.ndarray]) -> np
     """
     key = repr((form, _versions()))
     path = cache_folder() / f"{kind}.{hashlib.sha256(key.encode()).hexdigest()[:24]}{SUFFIX}"
-    stored: np.ndarray = np.load(io.BytesIO(read_or_make(path, "points", lambda: _to_bytes(find()))), allow_pickle=False)
-    return stored
+    return np.load(io.BytesIO(read_or_make(path, "points", lambda: _to_bytes(find()))), allow_pickle=False)
 
 
 def _to_bytes(points: np.ndarray) -> bytes:

@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-import functools
-from typing import Any
-
 from engine.expressions.text import join_signed, monomial_term, write_expression
 from engine.foundations.validation import checked_count, checks_types
-from engine.systems.forms.expression_form import ExpressionForm
-from engine.systems.forms.polynomial_form import PolynomialForm
+from engine.systems.forms.expression_form import ExpressionForm, Form
 from engine.systems.formulas.outcome_clauses import write_clauses
 from engine.systems.potential import Potential
 
@@ -42,20 +38,11 @@ def write_formula(potential: Potential, digits: int | None = None) -> str:
     return _write_form(potential.form, digits) + write_clauses(potential.ends, potential.exit_names, potential.mass)
 
 
-@functools.singledispatch
-def _write_form(form: Any, digits: int | None) -> str:
-    raise TypeError(form)
-
-
-@_write_form.register
-def _write_polynomial(form: PolynomialForm, digits: int | None) -> str:
+def _write_form(form: Form, digits: int | None) -> str:
+    if isinstance(form, ExpressionForm):
+        return write_expression(form.expression, digits)
     terms = sorted(form.terms, key=by_degree)
     return join_signed([(c, monomial_term(i, j, abs(c), digits)) for i, j, c in terms]) or "0"
-
-
-@_write_form.register
-def _write_other(form: ExpressionForm, digits: int | None) -> str:
-    return write_expression(form.expression, digits)
 
 
 def by_degree(term: tuple[int, int] | tuple[int, int, float]) -> tuple[int, int]:

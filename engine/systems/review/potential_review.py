@@ -15,7 +15,6 @@ from engine.systems.catalogue.entry import EnergyRange
 from engine.systems.formulas.formula_writer import write_formula
 from engine.systems.merged_channels import name_channels
 from engine.systems.potential import Potential
-from engine.systems.provenance import describe_potential
 from engine.systems.review.classified_points import CriticalPoint, PointKind, other_well
 from engine.systems.review.energy_ranges import energy_range
 from engine.systems.review.refusals import find_points_or_refusal
@@ -81,7 +80,7 @@ class PotentialReview(Result):
 
     def provenance(self) -> dict[str, Any]:
         """Return the potential and the version."""
-        return super().provenance() | describe_potential(self.potential)
+        return self.potential.provenance()
 
     def columns(self) -> Mapping[str, np.ndarray]:
         """Return place, kind, energy and channel of each critical point."""

@@ -61,5 +61,4 @@ def _origin_refusal(potential: Potential) -> str | None:
 def _is_beyond(potential: Potential, x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Return whether points are beyond an end that is not an exit over a saddle."""
     # Without ends, no point is beyond an end.
-    is_beyond: np.ndarray = np.any([np.zeros(x.shape, bool), *(end.contains(x, y) for end in potential.ends)], axis=0)
-    return is_beyond
+    return np.any([np.zeros(x.shape, bool), *(end.contains(x, y) for end in potential.ends)], axis=0)

@@ -8,9 +8,8 @@ from collections.abc import Callable, Iterator
 import numpy as np
 import pytest
 
-from app.job_clients.divergent_start_requests import DivergentStartRequests
+from app.job_clients.chosen_orbit_requests import DivergentStartRequests, SeparationRequests
 from app.job_clients.orbit_requests import ChosenOrbit, OrbitRequests
-from app.job_clients.separation_requests import SeparationRequests
 from app.state.view_state import ViewState
 from engine import System, integrate_orbit
 from engine.jobs.client import JobClient

@@ -68,6 +68,14 @@ def test_a_call_that_gets_no_processor_is_refused_and_the_next_one_is_answered()
     process.close()
 
 
+def test_a_process_that_was_started_answers_the_next_call() -> None:
+    process, children = LimitedProcess(), {child.pid for child in psutil.Process().children()}
+    process.start()
+    started = {child.pid for child in psutil.Process().children()} - children
+    assert process(os.getpid) in started
+    process.close()
+
+
 def test_a_call_that_nobody_waits_for_ends_before_its_limit() -> None:
     process, abandoned = LimitedProcess(seconds=1000), threading.Event()
     abandoned.set()

@@ -10,6 +10,8 @@ from urllib.parse import urlencode
 
 import pytest
 
+from app.runtime.limited_process import LimitedProcesses
+from app.runtime.process_state import ProcessState
 from app.session.explorer import Explorer
 from app.state.system_review import review_catalogue_entry
 from engine import CASES, Plane, System, Window, parse_formula
@@ -19,7 +21,7 @@ from engine.systems.review.potential_review import review_system
 from engine.systems.system import TYPED
 from engine.systems.well import find_maxima_beside, leads_out_of_well
 from tests.app.other_loop import run_on_new_loop
-from tests.app.session.opened_page import opened_page, tell_ready, wait_for
+from tests.app.session.opened_page import on_loop, opened_page, tell_ready, wait_for
 
 CIRCULAR = {"case": TYPED, "V": "r^2/2 - r^4 + r^6 - r^8 + r^10 - 1.0183r^12"}
 LEGAL = {"case": TYPED, "V": "½(x² + y²) − 0.83x²y²"}
@@ -53,6 +55,34 @@ def with_page(parameters: dict[str, str], check: Callable[[Explorer], Coroutine[
         async with opened_page(parameters) as (explorer, session):
             await tell_ready(session)
             await check(explorer)
+
+    run_on_new_loop(run)
+
+
+class StartedProcesses(LimitedProcesses):
+    """Processes for formulas that only count their starts."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.starts = 0
+
+    def start(self) -> None:
+        self.starts += 1
+
+
+@pytest.mark.parametrize(("link", "starts"), [(LEGAL, [1, 2, 2]), ({}, [0, 1, 1])])
+def test_the_process_for_formulas_starts_with_the_page_of_a_formula_and_with_the_drawer_of_the_potential(
+    start_state: Callable[..., ProcessState], link: dict[str, str], starts: list[int]
+) -> None:
+    processes = start_state().limited = StartedProcesses()
+
+    async def run() -> None:
+        async with opened_page(link) as (explorer, session):
+            counts = [processes.starts]
+            for _ in ("open", "close"):
+                await on_loop(session, lambda: explorer.controls.other.param.trigger("clicks"))
+                counts.append(processes.starts)
+            assert counts == starts
 
     run_on_new_loop(run)
 

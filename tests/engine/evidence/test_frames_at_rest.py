@@ -27,7 +27,7 @@ from engine import (
 from engine.evidence.birkhoff_averages import TORUS_DIGITS
 from engine.evidence.exit_entry_points import find_entry_points
 from engine.maps.run import looks_for_tori
-from engine.propagation.evidence import Evidence
+from engine.propagation.fates import Evidence
 from engine.systems.outcomes import Centre
 from engine.trajectories.birkhoff_digits import compute_birkhoff_digits
 from engine.trajectories.unstable_manifold import UnstableManifold

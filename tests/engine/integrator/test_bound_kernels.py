@@ -8,8 +8,8 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 from engine.integrator import bound_kernels
-from engine.integrator.source.recurrence import GeneratedCode, generate
-from engine.integrator.source.series import Setting, Structure
+from engine.integrator.source.recurrence import GeneratedCode, Structure, generate
+from engine.integrator.source.series import Setting
 from tests.waiting import SECONDS
 
 TERMS = ((2, 0, 0.5), (0, 2, 0.5))

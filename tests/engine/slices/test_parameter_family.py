@@ -40,7 +40,7 @@ def test_exits_keep_their_numbers_and_a_new_exit_gets_the_next(value: float, exp
 
 
 def test_a_value_that_the_parameter_cannot_have_is_refused() -> None:
-    with pytest.raises(ValueError, match=r"epsilon=-1\.0: must be between"):
+    with pytest.raises(ValueError, match=r"epsilon=-1\.0: must be from"):
         ParameterFamily(EPSILON).member(-1.0)
 
 

@@ -22,8 +22,7 @@ from engine import (
     compute_sweep,
 )
 from engine.sweeps.measured_map import MeasuredMap, SweepPoint
-from engine.sweeps.measures import CURVES
-from engine.sweeps.points import compute_point, measure_map
+from engine.sweeps.measures import CURVES, compute_point, measure_map
 from tests.extending import run_example
 
 ROOT = Path(__file__).parents[3]
@@ -44,7 +43,7 @@ def example() -> Measure:
 def test_the_example_of_the_guide_is_measured_like_any_other(
     sea: EscapeMap, example: Measure, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("engine.sweeps.points.MEASURES", {example.name: example})
+    monkeypatch.setattr("engine.sweeps.measures.MEASURES", {example.name: example})
     found = measure_map(sea, example.name)
     assert 0.0 < found.low < found.share < found.high < 1.0
     assert example.sentence is not None

@@ -27,8 +27,7 @@ from engine import (
 from engine.results import Sweep
 from engine.slices.default_window import default_window
 from engine.sweeps.measured_map import SweepPoint
-from engine.sweeps.measures import QUICK_CURVES
-from engine.sweeps.points import compute_point
+from engine.sweeps.measures import QUICK_CURVES, compute_point
 from tests.engine.slices.test_parameter_family import THIRD_EXIT
 
 SPEC = SweepSpec(CASES["II"], Plane.X_PX, (0.3, 0.1, 0.2, 0.25, 0.2), (40, 40), t_max=500.0, measures=QUICK_CURVES)

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from engine import parse_formula, review_potential
-from engine.systems.formulas.stored_potential import read_potential
-from engine.systems.provenance import describe_potential
+from engine.systems.formulas.formula_parser import read_potential
 
 CALDERA = "5(x² + y²) + 3y + 0.3(x⁴ + y⁴ − 6x²y²)"
 MUELLER_BROWN = (
@@ -62,5 +61,5 @@ def test_bodies_move_with_the_axes() -> None:
 
 def test_files_keep_the_origin() -> None:
     moved = parse_formula(f"{CALDERA}; well (0, 0)")
-    read = read_potential(describe_potential(moved))
+    read = read_potential(moved.provenance())
     assert (read, read.origin) == (moved, moved.origin)

@@ -273,7 +273,6 @@ class Watch {
     if (!this.#well.isConnected) shown.host.append(this.#well, this.#section)
     const time = this.#time * shown.system.units.time
     this.#rail.valueAsNumber = (STEPS * this.#time) / LONGEST
-    this.#rail.style.setProperty("--share", String(this.#time / LONGEST))
     this.#timeText.textContent = `t = ${time.toFixed(time < 100 ? 1 : 0)}`
     this.#paintWell(ensemble, shown)
     this.#paintSection(ensemble, shown)

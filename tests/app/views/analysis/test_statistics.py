@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import panel as pn
 import pytest
 from bokeh.plotting import figure
 
@@ -43,7 +42,7 @@ def view(state: ViewState, results: ShownResults, frame: EscapeMap) -> Statistic
 @pytest.fixture(autouse=True)
 def charts(view: StatisticsView) -> list[figure]:
     """The figures of the section after building it."""
-    return [part.objects[0].object for part in view.build()[1:] if isinstance(part, pn.Column)]
+    return [part.objects[0].object for make in view.parts()[1:] for part in make()]
 
 
 def test_the_charts_count_every_escape(state: ViewState, view: StatisticsView, charts: list[figure], frame: EscapeMap) -> None:

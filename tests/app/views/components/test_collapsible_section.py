@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import panel as pn
 import pytest
 from bokeh.document import Document
@@ -34,7 +36,7 @@ def texts(column: pn.Column) -> list[str]:
 
 
 def test_a_stack_shows_one_content_under_its_head_built_once(builds: Builds) -> None:
-    stack = Stack({"a": builds.maker("a"), "b": builds.maker("b")}, "stack", head=[pn.pane.HTML("head")])
+    stack = Stack({name: [builds.maker(name)] for name in "ab"}, "stack", head=[pn.pane.HTML("head")])
     assert builds.made == []
     shown = []
     for name in ("a", "b", None, "a"):
@@ -42,6 +44,20 @@ def test_a_stack_shows_one_content_under_its_head_built_once(builds: Builds) -> 
         shown.append(texts(stack.layout()))
     assert shown == [["head", "a"], ["head", "b"], ["head"], ["head", "a"]]
     assert builds.made == ["a", "b"]
+
+
+def test_the_other_parts_of_a_content_follow_in_turns_while_the_content_is_shown(builds: Builds) -> None:
+    turns = list[Callable[[], None]]()
+    makes = {"long": [builds.maker(name) for name in "abc"], "short": [builds.maker("d")]}
+    stack = Stack(makes, "stack", later=lambda call: lambda: turns.append(call))
+    stack.show("long")
+    shown = [texts(stack.layout())]
+    for name in ("long", "short"):
+        turns.pop(0)()
+        stack.show(name)
+        shown.append(texts(stack.layout()))
+    stack.show("long")
+    assert [*shown, texts(stack.layout())] == [["a"], ["a", "b"], ["d"], ["a", "b", "c"]]
 
 
 @pytest.fixture

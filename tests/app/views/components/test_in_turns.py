@@ -7,7 +7,7 @@ from functools import partial
 
 import panel as pn
 
-from app.views.components.in_turns import InTurns
+from app.views.components.collapsible_section import InTurns
 
 
 def make(name: str) -> list[pn.viewable.Viewable]:

@@ -46,7 +46,7 @@ def test_all_figures_share_one_toolbar(state: ViewState, maps: MapsView) -> None
 )
 def test_the_mode_chooses_the_active_tool(maps: MapsView, drag: Drag, kind: type) -> None:
     for mode in (drag, Drag.PAN, drag):
-        maps.set_drag(mode)
+        maps.tools.set_drag(mode)
     assert isinstance(maps.figures["basins"].toolbar.active_drag, kind)
     # The tool is made once, when it is first chosen.
     assert len(tools(maps, BoxZoomTool)) == (drag is Drag.ZOOM)

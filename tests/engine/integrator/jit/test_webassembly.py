@@ -18,7 +18,6 @@ from engine.integrator.source.recurrence import TOLERANCE, generate_code
 from engine.integrator.source.series import ORDER
 from engine.propagation.batch import OrbitBatch
 from engine.slices.portable_system import make_portable_system
-from engine.systems.compiled import kernels_of
 from engine.systems.outcomes import Centre
 from tests.node import needs_node, run_node
 
@@ -53,7 +52,7 @@ def starts(potential: Potential) -> np.ndarray:
 
 def native(potential: Potential, state: np.ndarray, curves: np.ndarray) -> dict[str, np.ndarray]:
     """Return the first steps of an orbit by the kernels for this machine, its crossings, and the series of the first step."""
-    kernels, steps = kernels_of(potential), np.zeros((STEPS, 5))
+    kernels, steps = potential.well.kernels, np.zeros((STEPS, 5))
     batch = OrbitBatch.from_starts(state[None], np.zeros(1, np.int64))
     exits = Exits(exit_gates(curves), curves[None], batch.curve_row)
     orbits = batch.for_kernels(np.ones(1, np.uint8))

@@ -17,7 +17,6 @@ from engine.maps.analyses.trust import CHAOTIC_DISTANCE, Trust, TrustMap, comput
 from engine.maps.spec import FINEST_PIXEL
 from engine.propagation.batch import OrbitBatch, propagate_batch
 from engine.slices.default_window import default_window
-from engine.systems.compiled import kernels_of
 
 SAMPLE = 60
 ZOOM = Window(0.25739561116 - 5e-10, 0.25739561116 + 5e-10, 0.13079102903 - 5e-10, 0.13079102903 + 5e-10)
@@ -48,7 +47,7 @@ def rerun(whole: EscapeMap, x: np.ndarray, ordinate: np.ndarray, tolerance: floa
     batch = OrbitBatch.from_starts(whole.spec.start_states(x, ordinate), row)
     propagate_batch(potential, curves, batch, np.arange(x.size), t_max, final=True, tolerance=tolerance)
     remaining = np.where(batch.fate == Fate.BOUNDED, t_max - batch.t, 0.0)
-    return batch, advance_states(kernels_of(potential), batch.state, remaining)
+    return batch, advance_states(potential.well.kernels, batch.state, remaining)
 
 
 @pytest.mark.parametrize(

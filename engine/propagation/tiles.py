@@ -1,4 +1,4 @@
-"""Parallel fixed-step computations on many orbits, in tiles of at most `LANES` orbits on any executor."""
+"""Parallel computations on many orbits, in tiles of at most `LANES` orbits on any executor."""
 
 from __future__ import annotations
 
@@ -102,8 +102,7 @@ def _lanes_per_tile(count: int, workers: int) -> int:
     """Return the number of lanes with which all workers have equally many tiles: whole SIMD vectors, at most `LANES`."""
     tiles_per_worker = max(1, math.ceil(count / (workers * LANES)))
     share = max(1, math.ceil(count / (tiles_per_worker * workers)))
-    lanes: int = fill_vectors(share)
-    return lanes
+    return fill_vectors(share)
 
 
 def _copy_tile(states: np.ndarray, begin: int, lanes: int) -> np.ndarray:

@@ -1,0 +1,134 @@
+"""A Lyapunov orbit: its path, its exit and its stability."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, ClassVar
+
+import numpy as np
+
+from engine.exits.exit_shapes import line_points, mirrored_curve
+from engine.exits.periodic_orbits import monodromy_matrix, multipliers_of
+from engine.foundations.arrays import read_only
+from engine.foundations.result import Result
+from engine.integrator.kernels import exit_geometry as geometry
+from engine.systems.merged_channels import name_channels
+from engine.systems.potential import Potential
+from engine.systems.well_units import ENERGY, LENGTH, MOMENTUM, TIME, WellUnits
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class LyapunovOrbit(Result):
+    """One Lyapunov orbit; lengths and times are dimensionless. The arrays are read-only.
+
+    Attributes
+    ----------
+    channel
+        Number of the exit channel, from 1.
+    energy
+        Energy h of the orbit.
+    period
+        Period of the orbit.
+    x, y
+        (201,) path over one period, evenly spaced in time, from one side of the channel to the other and back; the first and the
+        last point are equal.
+    curve
+        (columns,) row of the exit for the kernels of the integrator.
+    velocity
+        (2,) px and py at the first point, for a mass of 1 the velocity; 0 unless the frame rotates.
+    others
+        Other channels of the same exit, above the maxima between the channels; `channel` is the lowest of their numbers.
+    potential
+        The `Potential`.
+    """
+
+    channel: int
+    energy: float = field(metadata=ENERGY)
+    period: float = field(metadata=TIME)
+    x: np.ndarray = field(metadata=LENGTH)
+    y: np.ndarray = field(metadata=LENGTH)
+    curve: np.ndarray
+    velocity: np.ndarray = field(default_factory=lambda: np.zeros(2), metadata=MOMENTUM)
+    others: tuple[int, ...] = ()
+    potential: Potential = field(kw_only=True, repr=False)
+
+    inner_names: ClassVar = Result.inner_names | {"mirrored", "restored", "symmetrized"}
+
+    def find_multipliers(self) -> np.ndarray:
+        """Return the stability of the orbit: the eigenvalues of the flow linearised along one period, the largest modulus first.
+
+        The result is complex, of shape (4,): 1, 1, λ and 1/λ. If the modulus of λ is not 1, the orbit is unstable. The double
+        eigenvalue 1 has only one eigenvector, so rounding changes it by the square root of the error of the matrix, 1e-8 to 1e-6.
+
+        Examples
+        --------
+        >>> from escape_explorer import CASES, find_lyapunov_orbits
+        >>> orbit = find_lyapunov_orbits(CASES["I"], 0.19)[0]
+        >>> round(float(abs(orbit.find_multipliers()[0])), 2)
+        93.85
+        """
+        units = self.potential.units
+        return read_only(
+            multipliers_of(monodromy_matrix(self.potential.in_well_units, self.start / units.state, self.period / units.time))
+        )
+
+    @property
+    def start(self) -> np.ndarray:
+        """(4,) x, y, px and py at the first point."""
+        return np.array([self.x[0], self.y[0], *self.velocity])
+
+    def provenance(self) -> dict[str, Any]:
+        """Return the potential, the energy, the integrator and the version."""
+        return self.potential.describe_run(energy=self.energy)
+
+    def columns(self) -> Mapping[str, np.ndarray]:
+        """Return the path and its times."""
+        return {"t": np.linspace(0.0, self.period, self.x.size), "x": self.x, "y": self.y}
+
+    @property
+    def name(self) -> str:
+        """The name of the exit, such as "L1"; without names its channel number, "1", or "1+3" if two channels form the exit."""
+        named = self.potential.exit_names if len(self.potential.exit_names) == self.potential.channels else ()
+        return name_channels((self.channel, *self.others), named)
+
+    @property
+    def outward(self) -> np.ndarray:
+        """(2,) unit vector out of the well, across the exit."""
+        return self.curve[geometry.OUTWARD_X : geometry.OUTWARD_Y + 1]
+
+    @property
+    def half_path(self) -> np.ndarray:
+        """(101, 2) half a period of the path, from one side of the channel to the other; the other half retraces it.
+
+        In a rotating frame, this is the whole closed path, (201, 2).
+        """
+        path = np.column_stack([self.x, self.y])
+        return path if self._is_closed_curve else path[: self.x.size // 2 + 1]
+
+    @property
+    def exit_path(self) -> np.ndarray:
+        """(n, 2) the exit across the channel: half the path, or in a rotating frame points of the parabola outside the orbit."""
+        return line_points(self.curve) if self._is_closed_curve else self.half_path
+
+    @property
+    def _is_closed_curve(self) -> bool:
+        return bool(self.curve[geometry.SHAPE] == geometry.LINE)
+
+    def restored(self, units: WellUnits) -> LyapunovOrbit:
+        """Convert the orbit from units of the well to those of its potential."""
+        if units == WellUnits():
+            return self
+        curve = self.curve * units.length
+        # These columns have no unit.
+        unitless = slice(geometry.OUTWARD_X, geometry.SHAPE + 1)
+        curve[unitless] = self.curve[unitless]
+        return replace(units.restore(self), curve=curve)
+
+    def mirrored(self, channel: int) -> LyapunovOrbit:
+        """Return the exact image under x → −x, so that mirror images of orbits escape at exactly the same time."""
+        return replace(self, channel=channel, x=-self.x, curve=mirrored_curve(self.curve))
+
+    def symmetrized(self) -> LyapunovOrbit:
+        """Return an orbit over a saddle on the y axis, with an exit curve that is exactly symmetric."""
+        return replace(self, curve=0.5 * (self.curve + mirrored_curve(self.curve)))
