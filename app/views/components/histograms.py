@@ -75,8 +75,11 @@ class HistogramView:
         plot.update(**CHART_BORDERS)
         if plot.name != self._frame.name:
             style_chart(plot, self._frame.name, self._frame.title)
+            bars = drawing.handles["glyph_renderer"]
+            # HoloViews names it after the values, as other models of the page are named.
+            bars.name = f"{self._frame.name}_bars"
             # The hover tool describes a bar also while the mouse is above its top.
-            plot.add_tools(chart_hover(self._text, [drawing.handles["glyph_renderer"]], mode="vline"))
+            plot.add_tools(chart_hover(self._text, [bars], mode="vline"))
 
 
 def prepare() -> None:
