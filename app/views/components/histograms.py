@@ -76,8 +76,9 @@ class HistogramView:
         if plot.name != self._frame.name:
             style_chart(plot, self._frame.name, self._frame.title)
             bars = drawing.handles["glyph_renderer"]
-            # HoloViews names it after the values, as other models of the page are named.
-            bars.name = f"{self._frame.name}_bars"
+            # HoloViews names them after the values, but names are unique on the page.
+            for model in (plot.x_range, plot.y_range, bars):
+                model.name = None
             # The hover tool describes a bar also while the mouse is above its top.
             plot.add_tools(chart_hover(self._text, [bars], mode="vline"))
 
