@@ -77,9 +77,12 @@ class MapPresenter:
         else:
             self._state.window = window
 
-    def move(self, change: Callable[[Window], Window | None]) -> None:
-        """Show the window to which `change` leads from the window in view; ValueError if the window in view is not known."""
-        self.show_window(change(self._state.find_window()))
+    def move(self, change: Callable[[Window], Window] | None) -> None:
+        """Show the window to which `change` leads from the window in view, or the whole interior for None.
+
+        Raises ValueError if `change` needs the window in view, and this is not known or too small for double precision.
+        """
+        self.show_window(None if change is None else change(self._state.find_window()))
 
     def _zoom_to(self, window: Window | None) -> None:
         self._history.begin_gesture()

@@ -20,10 +20,10 @@ DIVE_FACTOR = 4.0
 
 
 class Move(NamedTuple):
-    """A change of the window by a key: its words, and a function of the window in view. None is the whole interior."""
+    """A change of the window by a key: its words, and a function of the window in view, or None for the whole interior."""
 
     words: str
-    change: Callable[[Window], Window | None]
+    change: Callable[[Window], Window] | None
 
 
 def pan(x_direction: int, ordinate_direction: int, window: Window) -> Window:
@@ -62,7 +62,7 @@ WINDOW_MOVES: Mapping[str, Move] = MappingProxyType(
         "ArrowDown": Move("move down", partial(pan, 0, -1)),
         "+": Move("zoom in", lambda window: zoom(window, ZOOM_FACTOR)),
         "-": Move("zoom out", lambda window: zoom(window, 1.0 / ZOOM_FACTOR)),
-        "h": Move("whole plane", lambda window: None),
+        "h": Move("whole plane", None),
     }
 )
 """The moves of the keys, by the key's name in `KeyboardEvent.key`."""

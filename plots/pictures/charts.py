@@ -203,7 +203,7 @@ def survival_chart(laws: DecayLaws, t_end: float | None = None) -> Chart:
     fits = [fit for fit in (laws.exponential, laws.power_law) if fit is not None]
     survivors = Series("starts", MEASURED, steps[:, 0], steps[:, 1], Shape.STEPS)
     series = [survivors, *(_law(fit, preferred=laws.preferred is fit.law) for fit in fits)]
-    return Chart(SURVIVAL, series, ((begin, t_end or 1.5 * latest), find_decades(float(steps[:, 1].min()), 1.0)))
+    return Chart(SURVIVAL, series, ((begin, t_end or 1.5 * latest), find_decades(0.99 * float(steps[:, 1].min()), 1.0)))
 
 
 def _law(fit: LawFit, *, preferred: bool) -> Series:

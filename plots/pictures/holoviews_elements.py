@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import holoviews as hv
 import numpy as np
 
@@ -22,6 +24,12 @@ def chart_elements(chart: Chart) -> list[hv.Element]:
             low, high = series.bars
             elements.append(hv.ErrorBars((series.x, series.y, series.y - low, high - series.y), x, [y, "below", "above"]))
     return elements
+
+
+def axis_options(chart: Chart) -> dict[str, Any]:
+    """Return the options of the elements of a chart for its axes."""
+    limits = {f"{axis}lim": ends for axis, ends in zip("xy", chart.limits, strict=True) if ends is not None}
+    return {**limits, **{f"log{axis}": True for axis in chart.frame.logarithmic}}
 
 
 def _histogram(series: Series, x: str, y: str) -> hv.Histogram:

@@ -99,12 +99,18 @@ def to_holoviews(result: Result) -> Any:
     require_package("holoviews", "page")
     import holoviews as hv
 
-    from plots.pictures.holoviews_elements import chart_elements
+    from plots.pictures.holoviews_elements import axis_options, chart_elements
 
     if isinstance(result, EscapeMap | PixelAnalysis):
         return hv.Dataset(result.to_xarray()).to(hv.Image, list(result.spec.plane.axis_names))
     if charts := _find_charts(result, PAPER):
-        return hv.Layout([hv.Overlay(chart_elements(chart)) for chart in charts]).cols(2)
+        overlays = [hv.Overlay(chart_elements(chart)) for chart in charts]
+        # Options need an extension of HoloViews, which notebooks load.
+        if hv.Store.loaded_backends():
+            for overlay, chart in zip(overlays, charts, strict=True):
+                for element in overlay:
+                    element.opts(**axis_options(chart))
+        return hv.Layout(overlays).cols(2)
     table = result.to_pandas()
     if result.row_dimension:
         table = table.rename_axis(result.row_dimension).reset_index()

@@ -192,5 +192,9 @@ class InTurns:
 
     def _make_next(self) -> None:
         if self._missing:
-            self._add(self._missing.popleft()())
-            self.begin()
+            make = self._missing.popleft()
+            try:
+                self._add(make())
+            finally:
+                # An error in one part does not prevent the others.
+                self.begin()

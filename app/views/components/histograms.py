@@ -14,7 +14,7 @@ from app.browser.javascript import callback_code
 from app.browser.module_files import NUMBERS
 from app.views.components.plots import CHART_BORDERS, chart_hover, style_chart
 from plots.pictures.charts import Chart, Frame, Series, Shape
-from plots.pictures.holoviews_elements import chart_elements
+from plots.pictures.holoviews_elements import axis_options, chart_elements
 from plots.pictures.palette import MEASURED
 
 _TICK = callback_code(NUMBERS, "number(tick)")
@@ -49,15 +49,13 @@ class HistogramView:
 
     def _draw(self, data: Chart) -> hv.Histogram:
         (element,) = chart_elements(data)
-        x_limits, y_limits = data.limits
-        scale: dict[str, Any] = {}
+        x_limits = data.limits[0]
+        ticks: dict[str, Any] = {}
         if "x" in self._frame.logarithmic and x_limits is not None:
-            scale = {"logx": True, "xticks": _few_ticks(*x_limits), "xformatter": CustomJSTickFormatter(code=_TICK)}
+            ticks = {"xticks": _few_ticks(*x_limits), "xformatter": CustomJSTickFormatter(code=_TICK)}
         return element.opts(
             color=MEASURED,
             line_color=None,
-            xlim=x_limits,
-            ylim=y_limits,
             framewise=True,
             responsive=True,
             aspect=_ASPECT,
@@ -65,7 +63,8 @@ class HistogramView:
             toolbar=None,
             default_tools=[],
             hooks=[self._style],
-            **scale,
+            **axis_options(data),
+            **ticks,
         )
 
     def _style(self, drawing: Any, _element: hv.Element) -> None:

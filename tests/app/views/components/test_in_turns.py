@@ -6,6 +6,7 @@ from collections.abc import Callable
 from functools import partial
 
 import panel as pn
+import pytest
 
 from app.views.components.collapsible_section import InTurns
 
@@ -31,3 +32,21 @@ def test_each_part_has_a_turn_of_its_own_and_is_made_once() -> None:
         counts.append(len(made))
     assert made == ["a", "b", "c"]
     assert counts[:3] == [1, 2, 3]
+
+
+def test_an_error_in_one_part_does_not_prevent_the_others() -> None:
+    turns: list[Callable[[], None]] = []
+    made: list[str] = []
+
+    def fail() -> list[pn.viewable.Viewable]:
+        raise OSError("a full disk")
+
+    def later(call: Callable[[], None]) -> Callable[[], None]:
+        return lambda: turns.append(call)
+
+    parts = InTurns([fail, partial(make, "b")], lambda added: made.extend(part.object for part in added), later)
+    parts.begin()
+    with pytest.raises(OSError, match="a full disk"):
+        turns.pop(0)()
+    turns.pop(0)()
+    assert made == ["b"]
