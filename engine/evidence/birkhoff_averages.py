@@ -7,9 +7,9 @@ Yorke 2017, Nonlinearity 30, 4111; Duignan & Meiss 2023, Physica D 449, 133749).
 by chance. A third average, over a window that overlaps half of each of the two, must therefore also agree. The observables are x²
 and y², sampled at a fixed time step.
 
-The weight exp(−1/(s(1 − s))), s = t/T, of these papers converges faster than any power of T. Here, eight digits are enough. With
-the Kaiser window (Kaiser & Schafer 1980, IEEE Trans. ASSP 28, 105), averages reach eight digits for motion that completes 7 or
-more revolutions within T, whereas the weight of these papers requires 30 revolutions.
+With the weight exp(−1/(s(1 − s))), s = t/T, of these papers, averages converge faster than any power of T. Here, eight digits are
+enough. With the Kaiser window (Kaiser & Schafer 1980, IEEE Trans. ASSP 28, 105), averages reach eight digits for motion that
+completes 7 or more revolutions within T. The weight of these papers requires 30 revolutions.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ Of 1975 orbits on five maps that escape after t = 1000, none exceeded 6.1 digits
 """
 
 REGULAR_DIGITS = 7.0
-"""Smallest number of agreeing digits of averages over its halves with which an orbit is regular, see `benchmarks.verdicts`."""
+"""Smallest number of digits from `compare_halves` with which an orbit counts as regular, see `benchmarks.verdicts`."""
 
 # Shape parameter β of the Kaiser window. A larger β gives smaller weights at the ends but needs a longer window.
 _KAISER_SHAPE = 20.0
@@ -66,7 +66,7 @@ def count_agreeing_digits(
     Returns
     -------
     −log10 of the largest relative difference of the averages, from 0 to 16, of shape (n,). It is 0 for an orbit that escapes,
-    whose energy is not conserved, or along which one observable is always 0. An orbit with `TORUS_DIGITS` or more counts as
+    that does not conserve its energy, or along which x or y is always 0. An orbit with `TORUS_DIGITS` or more counts as
     quasi-periodic.
     """
     return compare_averages(potential, states, window, execution=execution)[:, 1]
@@ -87,7 +87,7 @@ def compare_averages(
 
 
 def compare_halves(x: np.ndarray, y: np.ndarray) -> float:
-    """Return the digits to which weighted averages of x² and y² agree over both halves of one orbit and a window between them.
+    """Return the digits to which averages of x² and y² over the halves of one orbit, and over a window between them, agree.
 
     Parameters
     ----------
@@ -131,7 +131,7 @@ def _digits(averages: np.ndarray) -> np.ndarray:
 
 @functools.lru_cache(maxsize=16)
 def window_weights(window: float, step: float) -> np.ndarray:
-    """Return Kaiser weights I0(β √(1 − (2s − 1)²)), s = t/T, of the samples of a window of length T, normalised to sum 1.
+    """Return the Kaiser weights I0(β √(1 − (2s − 1)²)) of samples at s = t/T in a window of length T. Their sum is 1.
 
     Parameters
     ----------

@@ -39,7 +39,7 @@ _CURVE_TIME = 8000.0
 _MAX_CURVES_PER_ROUND = 192
 # Time to find the first section point of an orbit, in units of the well.
 _FIRST_POINT_TIME = 30.0
-# Largest number of points to which one worker applies barriers faster than several workers, which have to share them.
+# Up to this number of points, one worker applies barriers faster than several workers, which each need a copy of the barriers.
 _FEW_POINTS = 2000
 
 
@@ -62,7 +62,7 @@ class BoundedOrbitSearch:
     execution
         How the computation runs.
     tested_for
-        `time_left` of an earlier test of the same orbits, because its windows are not used again; 0 without an earlier test.
+        `time_left` of an earlier test of the same orbits, whose windows are not used again; 0 without an earlier test.
     digits
         (n,) digits from the earlier test; None without an earlier test.
 
@@ -71,7 +71,7 @@ class BoundedOrbitSearch:
     evidence
         (n,) int8 `Evidence` codes found so far.
     digits
-        (n,) digits to which the averages over the two longest windows of the tests agree; infinite before the first test.
+        (n,) digits to which the averages over two consecutive windows agreed in the last test; infinite before the first test.
     """
 
     def __init__(
@@ -98,9 +98,9 @@ class BoundedOrbitSearch:
             self._separated = np.zeros((len(states), len(self._entry_points)), bool)
 
     def run(self, on_round: Callable[[], None]) -> bool:
-        """Find evidence for as many orbits as possible; `on_round` is called after each round of tests.
+        """Find evidence for as many orbits as possible, and call `on_round` after each round of tests.
 
-        Returns whether the search was completed; False if it was cancelled.
+        Returns True if the search was completed, and False if it was cancelled.
         """
         for window, tested in self._rounds():
             if self._execution.is_cancelled:
@@ -229,9 +229,9 @@ def _exit_sides(curve: InvariantCurve, mirror: bool, entry_points: tuple[np.ndar
 
 
 def _without_enclosed(barriers: list[_Barrier | None], points: np.ndarray, separated: np.ndarray) -> list[_Barrier]:
-    """Return the barriers of those orbits, at `points` (n, 2), that other barriers in the result do not enclose.
+    """Return the barriers of the orbits at `points` (n, 2), except of orbits that earlier barriers of the result enclose.
 
-    An orbit is enclosed if it is separated from all exits; `separated`, (n, channels), is what earlier rounds found.
+    An orbit is enclosed if it is separated from all exits. `separated`, (n, channels), holds the separations of earlier rounds.
     """
     result = []
     for index in _alternating_by_size([0.0 if barrier is None else barrier.curve.area for barrier in barriers]):

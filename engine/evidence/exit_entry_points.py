@@ -17,7 +17,7 @@ from engine.systems.potential import Potential
 
 # Samples of the path of a Lyapunov orbit at which orbits start: every tenth, except near its ends.
 _POSITIONS = slice(10, -10, 10)
-# Angles of their velocities to the inward direction, in radians.
+# Angles of the velocities of these orbits to the inward direction, in radians.
 _ANGLES = np.radians([-60.0, -30.0, 0.0, 30.0, 60.0])
 # Longest time to the first crossing of the section, in units of the well.
 _MAX_ENTRY_TIME = 30.0

@@ -3,7 +3,8 @@
 At an energy h above the saddle, such an orbit oscillates between two points where it is at rest (Contopoulos 1990, Astron.
 Astrophys. 231, 41). A trial orbit that starts at rest on the zero-velocity curve moves inward if its start is too close to the
 well, and outward if its start is too far out. In between is the start for which the velocity along the channel is 0 at the
-turning point across the channel. All quantities are in units of the well.
+turning point across the channel. The zero-velocity curve along a side of the channel is a wall. All quantities are in units of
+the well.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from engine.systems.potential import Potential
 
 # Lengths of the search from the saddle along the channel, in units of the distance of the saddle from the origin.
 
-# A trial orbit farther from the saddle than this has left the saddle.
+# Distance from the saddle beyond which a trial orbit has left the saddle.
 _LARGEST_EXCURSION = 1.0
 # First step of the bracket search.
 _FIRST_STRIDE = 0.01
@@ -34,7 +35,7 @@ _LARGEST_OFFSET = 2.0
 _STARTS = 241
 # Farthest start along the channel, in units of the size of the search.
 _FARTHEST_START = 1.5
-# A trial orbit that has moved farther than this along the channel has left, in the same unit.
+# Distance moved along the channel with which a trial orbit has left, in the same unit.
 _LARGEST_MOVE = 0.6
 
 # Lengths of the continuation, in units of the distance between the ends of the preceding orbit.
@@ -81,7 +82,7 @@ class BrakeOrbit(NamedTuple):
 
 
 class Axes(NamedTuple):
-    """Coordinates of a channel: u along `outward` from `origin`, and q 90° counterclockwise from `outward`. Both are (2,)."""
+    """Coordinates u, q of a channel: u along the unit vector `outward`, (2,), from `origin`, (2,), and q 90° to the left of u."""
 
     origin: np.ndarray
     outward: np.ndarray
@@ -109,7 +110,10 @@ class _Search(NamedTuple):
 
 
 class _Shot(NamedTuple):
-    """A trial orbit, at rest at its start and nearly at rest at its end: Taylor coefficients (2, 20, n) and begins of n steps."""
+    """A trial orbit of n steps, at rest at its start and nearly at rest at its end.
+
+    `coefficients`, (2, ORDER + 1, n), are the Taylor coefficients of x and y; `begins`, (n,), are the times at which steps begin.
+    """
 
     coefficients: np.ndarray
     begins: np.ndarray
@@ -151,7 +155,7 @@ def find_directly(potential: Potential, energy: float, channel: int) -> BrakeOrb
 def find_from_both_ends(potential: Potential, energy: float, channel: int) -> BrakeOrbit | None:
     """Return the orbit over a saddle at one energy, shot from both ends and joined in its middle; None if it is not found.
 
-    Errors grow over only a quarter of a period, and the zero-velocity curve may bend away at the first end.
+    Errors of a shot then grow over only a quarter of a period. The zero-velocity curve may also bend away at the first end.
     """
     axes = saddle_axes(potential, channel)
     # With reversed axes, the shot starts at the second end.

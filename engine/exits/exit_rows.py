@@ -27,8 +27,8 @@ def closed_exits(potential: Potential) -> np.ndarray:
     Raises
     ------
     ValueError
-        If it is undefined which orbits escape, because there are no exits although the well is not closed, or if V is not defined
-        somewhere within the escape radius.
+        With an escape radius: if V is not defined somewhere within this radius. Without one: if there are no exits although the
+        well is not closed.
     """
     if potential.escape_radius is not None:
         check_defined(potential)
@@ -61,9 +61,9 @@ def exit_curves_at(potential: Potential, energies: np.ndarray, execution: Execut
 
 
 def exits_of_orbit(potential: Potential, energy: float) -> tuple[np.ndarray, str]:
-    """Return the `exit_curves` for one orbit, and the reason why exits over saddles are unknown, or "" if they are known.
+    """Return the `exit_curves` for one orbit, and the reason why the exits over saddles are unknown; "" if they are known.
 
-    Where exits over saddles are unknown, they count as absent: no orbit crosses them. Other ends remain.
+    Unknown exits over saddles count as absent: no orbit crosses them. Other ends remain.
     """
     try:
         return exit_curves(potential, energy), ""
@@ -90,7 +90,7 @@ def exit_gates(curves: np.ndarray) -> np.ndarray:
 
 def _lines_inside(rows: np.ndarray) -> np.ndarray:
     """Return lines across channels, slightly inside their exits (energies, channels, columns), of shape (channels, 3)."""
-    # Axes of u, q, x and y: energies, channels, points.
+    # The array axes of u, q, x and y are energies, channels and points.
     s = np.linspace(-1.0, 1.0, 201)
     u = chebyshev.chebval(s, np.moveaxis(rows[..., geometry.COEFFICIENTS :], -1, 0))
     q = rows[..., geometry.MIDDLE, None] + rows[..., geometry.HALF_WIDTH, None] * s

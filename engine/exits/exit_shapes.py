@@ -1,4 +1,7 @@
-"""Exits over saddles as rows of numbers for the kernels of `integrator.kernels.exit_geometry`: closed channels, curves, lines."""
+"""Exits over saddles as rows of numbers for the kernels of `integrator.kernels.exit_geometry`: closed channels, curves, lines.
+
+An exit is a graph u = f(s) in the axes of a saddle (`brake_orbits.Axes`), with s = (q − middle)/half_width, from −1 to 1.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +15,7 @@ from engine.systems.potential import Potential
 
 # Largest distance of a curve from the path that it follows, in units of the well.
 _LARGEST_FIT_ERROR = 1e-9
-# Smallest |s| − 1 of the samples along the straight lines beyond the ends of an exit, see `find_reach`.
+# Smallest |s| − 1 of samples on the straight lines beyond the ends of an exit, see `find_reach`.
 _FIRST_BEYOND = 1e-3
 # Length of these lines, in units of the distance of the saddle from the origin or, if larger, of the half width of the exit.
 _FARTHEST_BEYOND = 2.0
@@ -20,7 +23,7 @@ _FARTHEST_BEYOND = 2.0
 _SAMPLES_BEYOND = 400
 # Half the length of the line across a closed saddle, in units of the saddle's distance from the origin.
 _CLOSED_HALF_WIDTH = 1e-3
-# Distance of the line beyond the saddle, in the same unit; in spite of rounding, an orbit at rest on the saddle starts inside.
+# Distance of this line beyond the saddle, in the same unit. An orbit at rest on the saddle starts inside in spite of rounding.
 _CLOSED_OFFSET = 1e-9
 # Number of steps in which walls are followed from the saddle to the line.
 _WALL_STEPS = 32
@@ -36,7 +39,7 @@ _LINE_POINTS = 41
 _RIDGE_STEP = 1e-3
 # Largest change of a wall's position in a step, in units of the neck's width; a larger change can be a jump to another wall.
 _LARGEST_WALL_STEP = 0.25
-# Two orbits have the same ends if these are closer than this, in units of the well.
+# Largest distance between ends of two orbits that count as the same end, in units of the well.
 _SAME_END = 1e-6
 
 
@@ -59,7 +62,7 @@ def absent_channel(axes: Axes, saddle: np.ndarray) -> np.ndarray:
 
 
 def ridge_bend(potential: Potential, channel: int) -> float:
-    """Return a of the ridge u = a q² of V, on which V_u = 0, near a saddle in its axes.
+    """Return a of the ridge u = a q² near a saddle, in the axes of the saddle. On the ridge, V_u = 0.
 
     a = −V_uqq/(2 V_uu). A central difference suffices for V_uqq, because any a near the exact value gives an exit.
     """
@@ -72,9 +75,9 @@ def ridge_bend(potential: Potential, channel: int) -> float:
 
 
 def line_across(potential: Potential, energy: float, channel: int, edge: float) -> np.ndarray | None:
-    """Return the row of the exit u = edge + a q² between the walls of a neck, in the axes of the saddle; a: `ridge_bend`.
+    """Return the row of the exit u = edge + a q², a of `ridge_bend`, between the walls of a neck, in the axes of the saddle.
 
-    The walls are followed from the saddle to the exit. The result is None if they do not lead there.
+    The walls are followed from the saddle to the exit. The result is None if the walls do not reach it.
     """
     axes, bend = saddle_axes(potential, channel), ridge_bend(potential, channel)
     walls = _find_walls(potential, energy, axes, np.linspace(0.0, edge, _WALL_STEPS + 1), bend)

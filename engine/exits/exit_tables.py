@@ -1,8 +1,8 @@
 """Exits tabulated over a range of energies, for programs that interpolate exits because they cannot compute Lyapunov orbits.
 
 The Lyapunov orbit over a saddle of energy E depends smoothly on σ = √(h − E). The width of the orbit is proportional to σ, its
-height to σ². The table has the columns of the exit curve, in the axes of the orbit's chord, at Chebyshev nodes in σ, for
-barycentric interpolation (Berrut & Trefethen 2004, SIAM Review 46, 501).
+height to σ². The table holds the columns of the exit curve, in the axes of the orbit's chord, at Chebyshev nodes in σ. They are
+meant for barycentric interpolation (Berrut & Trefethen 2004, SIAM Review 46, 501).
 """
 
 from __future__ import annotations
@@ -143,7 +143,7 @@ def _tabulate(curves_at: _Curves, channel: int, saddle: float, highest: float) -
                 [curves_at(saddle + sigma**2)[channel] for sigma in sigmas.tolist()] for sigmas in (nodes, test_sigmas)
             )
         except ValueError:
-            # An exit is undefined in this range: try the next one.
+            # An exit is undefined in this range: try the next range.
             continue
         rows = np.array([_row(curve) for curve in node_curves])
         interpolated = [_points(_interpolate(nodes, rows, sigma**2), _POSITIONS) for sigma in test_sigmas.tolist()]

@@ -1,4 +1,4 @@
-"""The interior of a potential at an energy h: all points with V ≤ h that a path with V ≤ h joins to the origin across no exit.
+"""The interior of a potential at an energy h: all points that a path with V ≤ h joins to the origin without crossing an exit.
 
 With an escape radius, the interior consists of all points within that radius, except points beyond another end.
 """

@@ -36,7 +36,7 @@ class LyapunovOrbit(Result):
     curve
         (columns,) row of the exit for the kernels of the integrator.
     velocity
-        (2,) px and py at the first point, for a mass of 1 the velocity; 0 unless the frame rotates.
+        (2,) px and py at the first point, equal to the velocity for a mass of 1; 0 unless the frame rotates.
     others
         Other channels of the same exit, above the maxima between the channels; `channel` is the lowest of their numbers.
     potential
@@ -108,7 +108,7 @@ class LyapunovOrbit(Result):
 
     @property
     def exit_path(self) -> np.ndarray:
-        """(n, 2) the exit across the channel: half the path, or in a rotating frame points of the parabola outside the orbit."""
+        """(n, 2) points of the exit: half the path, or, in a rotating frame, the parabola just outside the orbit."""
         return line_points(self.curve) if self._is_closed_curve else self.half_path
 
     @property

@@ -29,7 +29,7 @@ from engine.integrator.kernels import exit_geometry as geometry
 from engine.systems.merged_channels import MergedExit
 from engine.systems.potential import Potential
 
-# Reasons why an exit of several channels is not defined; the search reports the largest.
+# Reasons why an exit of several channels is not defined, by rank. If orbits fail for different reasons, the highest is reported.
 _NO_ORBIT, _SHARP_BEND, _RETURNS = range(3)
 _REASONS = {
     _NO_ORBIT: "no orbit at rest on both of its outer walls was found with all its saddles between; choose another energy",
@@ -72,8 +72,8 @@ def find_lyapunov_orbits(potential: Potential, energy: float) -> tuple[LyapunovO
     ------
     ValueError
         If `energy` is not finite, or if the exits are not defined at this energy: a Lyapunov orbit is not found or is not a graph
-        over a line; in a rotating frame, its tangent line does not end on the walls of its channel, or channels form one exit;
-        exits meet; or the channels above a maximum form one exit all around the well.
+        over a line, two exits meet, or channels form one exit all around the well. In a rotating frame also if several channels
+        form one exit, or if the parabola outside an orbit does not end on the walls of its channel.
 
     Examples
     --------
@@ -221,7 +221,7 @@ def _find_orbit(potential: Potential, energy: float, channel: int, follow: bool)
 
 
 def _exit_over(potential: Potential, energy: float, channel: int, orbit: BrakeOrbit, curve: np.ndarray) -> LyapunovOrbit:
-    """Return an orbit between two points at rest, with its exit `curve`, in which the reach is set in place."""
+    """Return an orbit between two points at rest, with its exit `curve`. The reach is written into `curve`."""
     curve[geometry.REACH] = find_reach(potential, energy, curve)
     x, y = orbit.path
     there_and_back = np.concatenate([np.arange(x.size), np.arange(x.size - 1)[::-1]])

@@ -23,7 +23,7 @@ _POINTS = np.arange(5, 100, 10)
 _ANGLES = np.radians([-75.0, -40.0, 0.0, 40.0, 75.0])
 # Time for which these orbits are followed, in units of the well.
 _FOLLOWED_TIME = 30.0
-# All points are beyond this gate.
+# A gate that all points have passed, so that each step is tested.
 _NO_GATES = np.array([[0.0, 0.0, -1.0]])
 
 
@@ -59,7 +59,7 @@ def has_returns(potential: Potential, energy: float, orbit: BrakeOrbit, curve: n
     for start in _leaving_states(potential, energy, orbit.path):
         # The first piece holds thousands of steps, far more than the time requires.
         steps, _ = next(trace_pieces(kernels, start, _FOLLOWED_TIME, len(potential.outcomes)))
-        # In backward time an orbit that returns is an orbit that leaves. The first step begins on the exit.
+        # An orbit that returns is, in backward time, an orbit that leaves. The first step begins on the exit and is left out.
         for (x0, y0), (x1, y1) in zip(steps[1:-1, :2], steps[2:, :2], strict=True):
             if events.crossed_exit(x1, y1, x0, y0, curve[None], _NO_GATES):
                 return True

@@ -2,10 +2,10 @@
 
 The motion linearised at a saddle of the effective potential Φ has a pair of eigenvalues ±iν: small oscillations of period 2π/ν,
 which span its centre subspace. By Lyapunov's centre theorem, a family of periodic orbits begins with these oscillations. Let E be
-the energy of the saddle and σ = √(h − E). Small orbits are proportional to σ, and
-(position − saddle)/σ and the period depend smoothly on σ. Each orbit is predicted from orbits at smaller σ. Newton's method
-corrects several states of one period at once, so errors grow over a part of the period only (multiple shooting; Stoer & Bulirsch
-2002, Introduction to Numerical Analysis, section 7.3.5). All quantities are in units of the well.
+the energy of the saddle and σ = √(h − E). The size of small orbits is proportional to σ. The period and (position − saddle)/σ
+depend smoothly on σ. Each orbit is predicted from orbits at smaller σ. Newton's method corrects several states of one period at
+once, so errors grow over only a part of the period (multiple shooting; Stoer & Bulirsch 2002, Introduction to Numerical Analysis,
+section 7.3.5). All quantities are in units of the well.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _POINTS_PER_NODE = 25
 _MOST_CORRECTIONS = 12
 # Relative size below which corrections that no longer decrease are rounding errors.
 _NEARLY_EXACT = 1e-6
-# Smallest value of this limit near the saddle, in roundings of the energy, relative to σ².
+# Lower bound of this size, which matters near the saddle: a number of roundings of the energy, divided by σ².
 _ROUNDINGS = 64
 # Largest relative change of a prediction by its corrections; a larger change can be a jump to another orbit.
 _LARGEST_CHANGE = 0.1
@@ -198,7 +198,7 @@ def _correct(family: _Family, sigma: float, predicted: np.ndarray) -> np.ndarray
 
 
 def _relative_size(change: np.ndarray, unknowns: np.ndarray) -> float:
-    """Return the largest change, of a state relative to the largest state or of the period relative to itself."""
+    """Return the larger of two changes: of the states relative to the largest state, and of the period relative to itself."""
     states = np.abs(change[:-1]).max() / np.abs(unknowns[:-1]).max()
     return float(max(states, np.abs(change[-1] / unknowns[-1])))
 

@@ -67,4 +67,4 @@ class JobClient:
 
 
 JobSubmitter = Jobs | JobClient
-"""Accepts requests."""
+"""What accepts requests: the job manager itself, or one of its clients."""

@@ -26,7 +26,7 @@ class Queue(Enum):
     """The function itself is one call of up to seconds."""
 
     LIMITED = "limited"
-    """The function itself is one call on text typed by a visitor, resource-limited if `Jobs` can; one per account at a time."""
+    """The function itself is one call on a visitor's text. `Jobs` limits its resources if it can, and runs one per account."""
 
     COMPILATION = "compilation"
     """The function itself is one call that compiles kernels. Only one such call runs at a time in the process."""
@@ -36,8 +36,8 @@ class Queue(Enum):
 class Job[Result]:
     """A function and its arguments, hashable. Equal jobs are computed once.
 
-    If the function has parameters with these names, the manager also passes ``execution``, ``on_frame`` to call with partial
-    results, ``resume``, and ``find_result``, which returns the result of another job.
+    The manager also passes ``execution``, ``on_frame`` to call with partial results, ``resume``, and ``find_result``, which
+    returns the result of another job, as far as the function has parameters with these names.
 
     Attributes
     ----------

@@ -29,7 +29,7 @@ DEFAULT_CACHE_BYTES = 512 * 2**20
 """Default memory limit of cached results, in bytes."""
 
 DEFAULT_ORBITS = 4 * 2**20
-"""Default limit on the number of orbits of large running jobs, which take about 500 MiB."""
+"""Default limit on the number of orbits of all large running jobs. So many orbits take about 500 MiB."""
 
 # Number of coordinating threads, one for each running job. They mostly wait for the pool. Further jobs are queued.
 _COORDINATORS = 1024
@@ -59,7 +59,7 @@ class _Run:
             executor.cancel_futures()
 
     def release(self) -> list[Subscription]:
-        """Drop all references, so that reference counting alone frees the memory, and return the subscriptions."""
+        """Return the subscriptions, and drop all references so that reference counting alone frees the memory."""
         subscriptions, self.subscriptions, self.executors, self.partial_result = self.subscriptions, [], {}, None
         return subscriptions
 
@@ -191,7 +191,7 @@ class Jobs:
         self._scheduler.prefer_first_frames(preferred)
 
     def pause_background(self, paused: bool) -> None:
-        """Pause or resume all but first frames, long calls and calls of other processes; see `FairScheduler.pause_background`."""
+        """Pause or resume all calls but first frames, long calls and limited calls; see `FairScheduler.pause_background`."""
         self._scheduler.pause_background(paused)
         self._compilations.pause_background(paused)
 
@@ -234,7 +234,7 @@ class Jobs:
                 subscription.deliver(result, last=True)
 
     def _compute(self, job: Job[Any], run: _Run, publish: Callable[[Any], None] | None) -> Any:
-        """Call the function of a job: the job of the run, or a job whose result it needs."""
+        """Call the function of a job: of the run's own job, or of a job whose result that job needs."""
         arguments = [self._find_result(run, value) if isinstance(value, Job) else value for value in job.arguments]
         executors: Mapping[Queue, Executor] = dict.fromkeys(Queue, self._executor) if self._executor else run.executors
         offered_arguments = {

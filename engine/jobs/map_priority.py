@@ -11,11 +11,11 @@ REST_SECONDS = 1.0
 """Time after the request of a map, in seconds, during which the map is often replaced: its user is still searching."""
 
 CROWDED_REST_SECONDS = 3.0
-"""This time while the process is crowded, in seconds. Most maps are then replaced before a second frame is computed."""
+"""The same time while the process is crowded, in seconds. Most maps are then replaced before a second frame is computed."""
 
 
 class MapPriority:
-    """Priority of the calls of one map. Construct it at the request, because its times count from then.
+    """Priority of the calls of one map. Construct it at the request of the map, because times count from the construction.
 
     Calls until the first frame have `Priority.FIRST_FRAME`. Calls with longer integration times, which change few pixels, have
     `Priority.UNSETTLED` during the first `REST_SECONDS`: other calls run first, but no thread stays idle. While the process is
@@ -24,7 +24,7 @@ class MapPriority:
     Parameters
     ----------
     is_crowded
-        Returns whether the process is crowded.
+        Returns whether the process is crowded: whether `FairScheduler.prefer_first_frames` is in force.
     clock
         The clock; by default the clock of this process.
     """

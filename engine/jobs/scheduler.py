@@ -125,7 +125,7 @@ class FairScheduler:
         client
             The client of the job. All jobs of one client share its turn.
         priority
-            Returns the present priority of the calls; it is asked whenever a thread is free.
+            Returns the present priority of the calls. It is called whenever a thread is free.
         """
         return QueueExecutor(self, client, priority)
 
@@ -147,11 +147,11 @@ class FairScheduler:
             self._start_threads(self.threads if resumed else 1)
 
     def prefer_first_frames(self, preferred: bool) -> None:
-        """Start or end the preference for first frames. It keeps one thread free for them, and delays `Priority.UNSETTLED` calls.
+        """Start or end a preference that keeps one thread free for first frames, and delays `Priority.UNSETTLED` calls.
 
         When other programs use the processor, short calls take long, and the first frame of a map would wait for several of them.
-        A single thread is not kept free. Delayed calls whose priority has changed start only when this method is called: call it
-        about every 0.1 s.
+        The only thread of a pool is not kept free. Delayed calls whose priority has changed start only when this method is
+        called, so call it about every 0.1 s.
         """
         with self._lock:
             ended, self.first_frames_preferred = self.first_frames_preferred and not preferred, preferred
@@ -204,7 +204,7 @@ class FairScheduler:
                 self._next_long_call = self._clock.monotonic() + _PAUSE_PER_LONG_CALL * duration
 
     def _take_next(self) -> tuple[_Call, Priority] | None:
-        """Take the next call that may start from its queue. If there is none, count the thread as ended and return None."""
+        """Remove the next call that may start from its queue, and return it; without such a call, count the thread as ended."""
         with self._lock:
             chosen = self._find_next()
             if chosen is None:
@@ -231,6 +231,7 @@ class FairScheduler:
         return next((candidate for candidate in candidates if candidate[1] is priority), None)
 
     def _forget_if_empty(self, client: Hashable) -> None:
+        # The default keeps an absent client from being deleted.
         if not self._pending.get(client, True):
             del self._pending[client]
 
