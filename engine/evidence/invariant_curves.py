@@ -25,9 +25,9 @@ LEAST_POINTS = 40
 """Smallest number of points of a loop."""
 
 # Distance from the polygon within which the curve is assumed to lie, in units of the height g θ/8 of an arc. The arc turns by θ
-# over a gap g between points. With even gaps, the polygon turns by θ at each point. Near a resonance p/q, the points form q bunches
-# with wide gaps between the bunches. At the edge of a bunch, the polygon turns only by θ/2, the angle between the curve and the gap.
-# Even then, the curve stays within a quarter of the margin.
+# over a gap g between points. With even gaps, the polygon turns by θ at each point. Near a resonance p/q, the points form q
+# bunches with wide gaps between them. At the edge of a bunch, the polygon turns only by θ/2, the angle between the curve and the
+# gap. Even then, the curve stays within a quarter of the margin.
 _MARGIN_FACTOR = 8.0
 # Largest margin accepted, relative to the square root of the enclosed area.
 _MAX_RELATIVE_MARGIN = 0.1

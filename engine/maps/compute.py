@@ -53,7 +53,7 @@ def compute_map(
         Called in this thread with the map so far, at increasing intervals: first at coarse resolution, then at full resolution,
         then with longer integration times. A map of more than 2²⁰ pixels is filled block by block.
     cancel, executor, on_progress
-        Replace the fields of `execution` with these names. All other long functions have only the parameter `execution`.
+        Override the fields of `execution` that have these names. All other long functions have only the parameter `execution`.
     resume
         An earlier map, complete or cancelled, whose orbits are continued. Its spec must be equal, but its t_max may be smaller.
         Maps computed in blocks cannot be resumed.
@@ -114,7 +114,7 @@ def _check_resumable(spec: MapSpec, resume: EscapeMap) -> None:
 
 
 def _with_rounded_share(result: EscapeMap, execution: Execution) -> EscapeMap:
-    """Add, in a deep zoom, the share of pixels that double precision does not support to a map of `_begin_computation`."""
+    """In a deep zoom, add to a map of `_begin_computation` the share of pixels that double precision does not support."""
     spacings = (np.ptp(axis) / max(axis.size - 1, 1) for axis in (result.x, result.ordinate))
     # The spacing of a single row or column is 0.
     is_deep = result.spec.plane.parameter is None and 0.0 < min(spacings) < DEEP_PIXEL

@@ -35,7 +35,7 @@ class OriginFateMap(PixelAnalysis):
         (columns,), (rows,) pixel centres.
     origin, fate
         (rows, columns) int8: the outcome k ≥ 1, such as the channel through which the orbit entered or leaves, or a `Fate`.
-        `Fate.BOUNDED` means that the orbit is inside since −t_max, or until t_max. Read-only.
+        `Fate.BOUNDED` means that the orbit has been inside since −t_max, or stays inside until t_max. Read-only.
     """
 
     x: np.ndarray
@@ -80,7 +80,7 @@ class OriginFateMap(PixelAnalysis):
 def compute_origin_fates(spec: MapSpec, *, execution: Execution = DEFAULT_EXECUTION) -> OriginFateMap:
     """Follow the orbit through each pixel in both time directions.
 
-    As H is even in the momenta, the past of (x, y, px, py) is the future of (x, y, −px, −py).
+    The past of (x, y, px, py) is the future of (x, y, −px, −py), in a rotating frame with −Ω for Ω.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """Maps along a parameter, in which each row, or each column, is a map with its own potential.
 
-Each line has the units of its own well and its own exits, and is computed like any map of its potential. The lines of a whole map
-are computed one by one.
+Such a line has the units of its own well and its own exits, and is computed like any map of its potential. Several lines are
+computed at the same time.
 """
 
 from __future__ import annotations
@@ -117,7 +117,7 @@ class LineStack:
     resume
         An earlier map to continue from.
     keeps_states
-        Whether the states of orbits are kept; large maps would need too much memory.
+        Whether the states of orbits are kept. Those of a large map would need too much memory.
     """
 
     def __init__(self, spec: MapSpec, resume: EscapeMap | None = None, *, keeps_states: bool = True) -> None:

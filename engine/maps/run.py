@@ -123,6 +123,7 @@ class MapRun:
         first_horizon, *later_horizons = rising_horizons(_FIRST_HORIZON, _HORIZON_FACTOR, self.spec.t_max)
         for pixels, stride in self._refinements():
             yield pixels, stride, first_horizon
+        # These are the pixels and the stride of the last refinement.
         for horizon in later_horizons:
             yield pixels, stride, horizon
 

@@ -61,9 +61,9 @@ class MapSpec:
         the whole interior, also after ``dataclasses.replace(spec, energy=…)``. With an odd number of columns or rows, a line of
         pixels could lie on a line of symmetry, on which orbits stay for ever. The default window is then shifted by half a pixel.
     t_max
-        Integration time, 0 < t_max ≤ 1e8, dimensionless. The default is 1e5; in rotating frames 1000/abs(Ω), and otherwise
-        1000 with bodies or an escape radius. The default is shorter there because bounded orbits are integrated to the end. If
-        the unit of time 1/ω of the well is above 1, the limit is 1e8 in this unit.
+        Integration time, 0 < t_max ≤ 1e8, dimensionless. The default is 1000/abs(Ω) in a rotating frame, otherwise 1000 with
+        bodies or an escape radius, and otherwise 1e5. The first two are shorter because bounded orbits are then integrated to
+        the end. If the unit of time 1/ω of the well is above 1, the limit is 1e8 in this unit.
     use_evidence
         Whether an orbit may be called bounded before t_max, on evidence that it never escapes, see `Evidence`.
     backward
@@ -97,7 +97,7 @@ class MapSpec:
     use_evidence: bool = True
     backward: bool = False
 
-    # `__init__` accepts more types than the fields have, and converts them. This declaration tells type checkers.
+    # `__init__` accepts more types than the fields have, and converts them. This declaration tells type checkers so.
     if TYPE_CHECKING:
 
         def __init__(

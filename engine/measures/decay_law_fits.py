@@ -26,10 +26,10 @@ from engine.measures.starts import Measurable, Starts, read_starts
 _DEVIATIONS = 1.96
 # Number of escapes in the next window that is tried, as a share of the number in the present window.
 _WINDOW_RATIO = 0.9
-# Share of the escapes in the first window in which a law appears to hold, the latest, that the fit uses; with all of them, an
+# The fit uses this share of the escapes in the first window in which a law appears to hold: the latest. With all of them, an
 # undetectable remainder of the transient would bias the rate.
 _SETTLED_SHARE = 0.5
-# Degrees of the Legendre polynomials in the test of a law; degree 1 is almost the score.
+# Degrees of the Legendre polynomials in the test of a law. Degree 1 is left out: it is almost the score, which the fit makes 0.
 _DEGREES = (2, 3, 4)
 # Factors that normalise these polynomials.
 _NORMS = np.sqrt(2.0 * np.array(_DEGREES) + 1.0)
@@ -210,6 +210,7 @@ def _fit_steepness(u: np.ndarray) -> float:
     def excess(k: float) -> float:
         return float(0.5 * special.hyp1f1(2.0, 3.0, -k) / special.exprel(-k)) - falling_mean
 
+    # The mean is below 1/k, so k is below the upper end of this bracket.
     steepness = find_root(excess, 0.0, 2.0 / falling_mean, absolute=2e-12, relative=4 * float(np.finfo(float).eps))
     return float(np.copysign(steepness, 0.5 - mean))
 

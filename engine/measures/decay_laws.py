@@ -16,7 +16,7 @@ from engine.foundations.result import RecordedResult
 from engine.foundations.wording import format_count, format_number, format_whole
 
 MIN_ESCAPES = 100
-"""Smallest number of escapes in a window for a fit, which gives the rate to about 20 %; choosing a window takes twice as many."""
+"""Smallest number of escapes for a fit. They give the rate to about 20 %. Choosing a window takes twice as many."""
 
 MIN_P_VALUE = 0.1
 """Laws with a smaller p value are ruled out (Clauset, Shalizi & Newman 2009, SIAM Rev. 51, 661, section 4.1)."""

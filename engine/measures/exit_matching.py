@@ -61,7 +61,7 @@ class ExitMatching(OrbitResult):
         return ["stays" if end == Fate.BOUNDED else name_fate(end, self.outcomes) for end in self.ends.tolist()]
 
     def numbers(self) -> dict[str, Any]:
-        """Return the number of orbits, and the share that leaves through the exit of its entrance."""
+        """Return the number of orbits, and the `returning_share`."""
         return {"orbits": int(self.counts.sum()), "returning_share": self.returning_share}
 
     def columns(self) -> Mapping[str, np.ndarray]:
@@ -85,7 +85,7 @@ def compute_exit_matching(entrances: Any, outcomes: Measurable | Starts) -> Exit
     """Count entering orbits by the exit through which they enter and the exit through which they leave.
 
     If orbits forget how they entered before they leave, the shares are the same for all entrances: the shares of the exits in the
-    flux. Differences are due to orbits that pass quickly along the tubes that connect entrances and exits, which is called
+    flux. Differences are due to orbits that pass quickly along the tubes that connect entrances and exits. This is called
     "dynamical matching" (Collins, Kramer, Carpenter, Ezra & Wiggins 2014, J. Chem. Phys. 141, 034111).
 
     Parameters
@@ -115,7 +115,7 @@ def compute_exit_matching(entrances: Any, outcomes: Measurable | Starts) -> Exit
     starts, entered = read_starts("outcomes", outcomes), checked_integers("entrances", entrances)
     if entered.shape != starts.fate.shape or entered.ndim != 1 or (entered.size and entered.min() < 1):
         raise ValueError(f"entrances of shape {entered.shape}: must be one integer of 1 or more per orbit, {starts.fate.shape}")
-    # Without known outcomes, the fates are the outcomes.
+    # If the outcomes are not known, the largest fate is their number.
     outcome_count = max([len(starts.outcomes), *starts.fate.tolist()])
     occurring = [end for end in range(1, outcome_count + 1) if end > len(starts.outcomes) or starts.outcomes[end - 1].occurs]
     rows, ends = np.unique(entered), np.array([int(Fate.BOUNDED), *occurring])

@@ -29,7 +29,7 @@ MAX_BEND = 2.0
 """Largest quadratic term of log f in log ε, in standard errors, at which the curve counts as a straight line."""
 
 TRANSITION_FACTOR = 10.0
-"""Ratio of the largest separation of the straight range and the largest separation of the fit; noise hides the end of a bend.
+"""Ratio of the largest separation of the straight range to that of the fit, because noise hides where a bend ends.
 
 In trials with shares that saturate at some ε, the 95 % interval contained the exponent in 63 to 76 % of the cases without this
 factor, and in 94 to 97 % with it.
@@ -72,7 +72,7 @@ class UncertaintyExponent(RecordedResult):
         χ² per degree of freedom of the used shares about the fitted line; NaN if the shares are too few for a fit.
     one_inside, both_inside
         (m,) int64, number of pairs of which one orbit, or both orbits, are still inside at the horizon. A longer integration
-        could change these pairs only. The pairs of `one_inside` are part of `uncertain`. Empty if not known.
+        could change only these pairs. The pairs of `one_inside` are part of `uncertain`. Empty if not known.
     horizon
         Integration time of the orbits, dimensionless; NaN if not known.
     """
@@ -195,7 +195,10 @@ def _checked_counts(separations: Any, pairs: Any, uncertain: Any) -> tuple[np.nd
 
 @dataclass(frozen=True, eq=False)
 class _Law:
-    """The most likely power law for the shares at the separations `used` (indices), and its goodness of fit."""
+    """The most likely power law for the shares at the separations `used` (indices), and its goodness of fit.
+
+    The law is `plausible` if the shares do not scatter too much about it. It `holds` if an exponent can be claimed.
+    """
 
     used: np.ndarray
     exponent: float = np.nan
@@ -218,7 +221,7 @@ def _find_law(epsilon: np.ndarray, n: np.ndarray, k: np.ndarray) -> _Law:
             break
         last_attempt = line
         if line.plausible and abs(line.bend) <= MAX_BEND:
-            # Beyond the transition.
+            # Separations below the transition from the straight range to a bend.
             inner = tail[epsilon[tail] * TRANSITION_FACTOR <= epsilon[tail[0]] * (1.0 + _ROUNDING)]
             law = _fit_law(_with_enough_pairs(inner, epsilon, n, k), epsilon, n, k)
             if law is None:
@@ -302,7 +305,7 @@ def _maximise_likelihood(design: np.ndarray, n: np.ndarray, k: np.ndarray) -> tu
         share = np.exp(design @ coefficients)
         return design.T @ (design * (n * share / (1.0 - share))[:, None]) / n.sum()
 
-    # A constant share.
+    # The search starts from a constant share.
     guess = np.eye(1, design.shape[1])[0] * np.log(k.sum() / n.sum())
     options = {"gtol": _TOLERANCE}
     coefficients = optimize.minimize(loss, guess, method="trust-exact", jac=gradient, hess=information, options=options).x

@@ -24,7 +24,7 @@ Z_95 = 1.959963984540054
 
 # Description of legal starts, for messages.
 _LEGAL_STARTS = "an EscapeMap, or a dataset of one, or Outcomes"
-# Names of the attributes of datasets that contain results, not the provenance.
+# Names of the attributes of datasets that are results, unlike the provenance.
 _RESULT_ATTRIBUTES = {"result", "outcomes", "worst_energy_error", "complete", "counts", "rounded_share"}
 
 
@@ -33,7 +33,7 @@ class Classified(Protocol):
 
     @property
     def fate(self) -> np.ndarray:
-        """`Fate` codes, and the numbers of outcomes from 1 on."""
+        """`Fate` codes, or the numbers 1, 2, … of outcomes."""
 
     @property
     def escape_time(self) -> np.ndarray:

@@ -36,8 +36,9 @@ class WadaTest(RecordedResult):
     basins
         The labels of the basins in increasing order.
     radius
-        Smallest integer r for which every pixel of every slim boundary is within r pixels of each slim boundary. Infinite if a
-        basin touches no other basin; NaN for fewer than three basins or without a boundary. A single pixel can decide the radius.
+        Smallest integer r for which every pixel of every slim boundary, see `compute_wada_test`, is within r pixels of each slim
+        boundary. Infinite if a basin touches no other basin; NaN for fewer than three basins or without a boundary. A single
+        pixel can decide the radius.
     radius_99
         Smallest r for which this holds for 99 % of the boundary pixels.
     boundary_pixels

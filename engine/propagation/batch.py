@@ -21,12 +21,12 @@ LARGEST_TILE = 2048
 """Largest number of orbits per tile."""
 
 STEP_BUDGET = 2_000_000
-"""Largest number of steps of all lanes in one kernel call, indices takes 20 to 50 ms.
+"""Largest number of steps of all lanes in one kernel call. The call takes 20 to 50 ms.
 
 Cancellation and progress are handled between calls.
 """
 
-# Number of active orbits below indices too many lanes are empty: a worker returns these orbits, to be combined with other orbits.
+# Number of active orbits below which too many lanes are empty. A worker returns fewer orbits, to be combined with other orbits.
 _FULL_LANES = LANES - 2 * VECTOR
 
 
@@ -37,7 +37,7 @@ class OrbitBatch:
     Attributes
     ----------
     state
-        (n, 4) x, y, px, py at time `t`, at indices the orbit escaped or its next step starts.
+        (n, 4) x, y, px, py at time `t`, when the orbit escaped or its next step starts.
     t
         (n,) time reached; the escape time of an escaped orbit.
     crossings
@@ -49,7 +49,7 @@ class OrbitBatch:
     curve_row
         (n,) the row of the exit curves array for the energy of this orbit.
     outside
-        (n,) int8: number of the exit beyond indices the start lies; 0 for a start inside.
+        (n,) int8: number of the exit beyond which the start lies; 0 for a start inside.
     evidence
         (n,) int8 codes, see `Evidence`: why an orbit is bounded although it was not integrated to t_max; 0 for other orbits.
     remainder
@@ -57,7 +57,7 @@ class OrbitBatch:
     tested
         (n,) time on the orbit of the last test for evidence, dimensionless; 0 before the first test.
     digits
-        (n,) digits to indices averages agreed in the last test; infinite before the first test; see `BoundedOrbitSearch`.
+        (n,) digits to which averages agreed in the last test, see `BoundedOrbitSearch`; infinite before the first test.
     """
 
     state: np.ndarray
@@ -117,7 +117,7 @@ class OrbitBatch:
         *,
         execution: Execution = DEFAULT_EXECUTION,
     ) -> np.ndarray:
-        """Set `outside` and `fate` of those of the given orbits that start outside the exits.
+        """Set `outside` and `fate` of the orbits among `indices` that start outside the exits.
 
         Returns the indices of the orbits that were tested: all, unless the test was cancelled.
         """
@@ -186,7 +186,7 @@ class OrbitBatch:
 
 
 def _find_outside(potential: Potential, states: np.ndarray, curves: np.ndarray, curve_row: np.ndarray) -> np.ndarray:
-    """Return the number of the exit beyond indices each start lies, 0 inside; int8, of shape (n,). Called in a worker."""
+    """Return the number of the exit beyond which each start lies, 0 inside; int8, of shape (n,). Called in a worker."""
     x, y = np.ascontiguousarray(states[:, :2].T)
     with np.errstate(invalid="ignore"):
         # At the centre of a body V = −∞, so a start of any energy has an infinite momentum there.
@@ -301,9 +301,9 @@ def propagate_batch(
     batch
         The orbits.
     indices
-        Indices of the orbits; those that are not undecided are left as they are.
+        Indices of the orbits; decided orbits are left as they are.
     horizon
-        Time at indices to stop, dimensionless.
+        Time at which to stop, dimensionless.
     final
         Whether the horizon is t_max: orbits that reach it become bounded.
     execution

@@ -55,8 +55,8 @@ class Regularity(IntEnum):
     """Character of a bounded orbit.
 
     ``NOT_APPLICABLE``: the orbit escapes or does not exist. ``REGULAR``: averages agree as on a torus. ``CHAOTIC``: SALI fell to
-    1e-7 or below. ``NO_SIGN_OF_CHAOS``: neither happened until t_max; the orbit may be sticky. ``NOT_JUDGED``: not computed
-    yet.
+    1e-7 or below. ``NO_SIGN_OF_CHAOS``: neither happened until t_max; the orbit may be weakly chaotic. ``NOT_JUDGED``: not
+    computed yet.
     """
 
     NOT_APPLICABLE = 0

@@ -51,7 +51,7 @@ def propagate_deviations(
 
 
 def _propagate_tile(potential: Potential, tile: np.ndarray, steps: int) -> np.ndarray:
-    """Return the orbits of a tile (13, lanes), which the kernel changes in place, after some steps; of shape (lanes, 13)."""
+    """Integrate the orbits of a tile (13, lanes) by some steps, in place, and return them, of shape (lanes, 13)."""
     with np.errstate(invalid="ignore"):
         potential.well.kernels.fixed_step_sali(potential.well.fixed_step, steps, tile[:4], tile[4:8], tile[8:12], tile[12])
     return tile.T
@@ -90,7 +90,7 @@ def find_section_points(
 
 
 def trace_section_points(potential: Potential, tile: np.ndarray, count: int, duration: float) -> np.ndarray:
-    """Apply `find_section_points` to a tile (4, lanes) of whole SIMD vectors, which is changed; called in a worker."""
+    """Apply `find_section_points` to a tile (4, lanes) of whole SIMD vectors, and change the tile; called in a worker."""
     # x, px and time of each point.
     points = np.full((tile.shape[1], count, 3), np.nan)
     counts = np.zeros(tile.shape[1], np.int64)

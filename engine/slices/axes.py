@@ -21,7 +21,7 @@ class Coordinate(Enum):
 
     `THETA` is the angle of the velocity from the +x axis, px = v cos θ, py = v sin θ. `BETA` is the angle of the velocity from
     the outward radial direction, or at the origin from the +y axis: 0 is radially outward, π/2 tangential, counterclockwise.
-    `SPEED` is v, which is always determined by the energy.
+    `SPEED` is v, which is always determined by the energy. `H` is the energy h.
     """
 
     X = "x"
@@ -199,7 +199,7 @@ class ParameterAxis(_SystemAxis):
     low, high
         Range of the parameter in the default window, dimensionless, low < high, within `System.range_of`.
     system
-        The system, or its potential. At all values of the parameter, an exit has its number at this system's own value.
+        The system, or its potential. At all values of the parameter, an exit keeps its number at this system's own value.
 
     Raises
     ------
@@ -213,7 +213,7 @@ class ParameterAxis(_SystemAxis):
     high: float
     system: System
 
-    # Type checkers accept the types that are converted; the fields have the types of the stored values.
+    # `__init__` also accepts types that it converts. The fields have the types of the stored values.
     if TYPE_CHECKING:
 
         def __init__(self, key: str, low: float, high: float, system: System | Potential) -> None: ...

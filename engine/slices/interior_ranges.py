@@ -27,12 +27,12 @@ from engine.systems.well_units import WellUnits
 MARGIN = 0.03
 """Margin of the default window on each side, as a share of the size of the interior."""
 
-# Share of the positions whose momenta the window shows, in a system with gaps, near which momenta are unbounded.
+# In a system with gaps, near which momenta are unbounded: share of the positions whose momenta the window shows.
 _SHOWN_MOMENTA = 0.9
 # Number of positions along an axis from which the range of momenta is found; lines have four times as many points, rays half.
 _SCAN_POINTS = 801
-# First radius of the search for the interior, in units of the distance of the nearest exit saddle from the origin; the radius is
-# doubled while the interior reaches it.
+# First radius of the search for the interior, in units of the distance of the nearest exit saddle from the origin. The radius is
+# doubled while the interior extends to this radius.
 _SEARCH_LENGTHS = 4.0
 # Radius at which doubling ends in any case, in units of the distance of the outermost exit saddle.
 _SEARCH_SADDLE_DISTANCES = 2.0
@@ -135,7 +135,7 @@ def _position_ranges(potential: Potential, plane: Slice, energy: float) -> dict[
 
 
 def _check_fixed_momentum(potential: Potential, energy: Energy, plane: Slice, ranges: dict[Coordinate, Range]) -> None:
-    """Raise ValueError if a fixed momentum exceeds the largest momentum in the ranges of x and y, in units of the well."""
+    """Raise ValueError if a fixed momentum exceeds the largest momentum in `ranges`, those of x and y in units of the well."""
     units = potential.units
     highest = highest_energy(energy) / units.energy
     x, y = np.meshgrid(*(np.linspace(*ranges[coordinate], _SCAN_SIDE) for coordinate in (Coordinate.X, Coordinate.Y)))

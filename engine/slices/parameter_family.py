@@ -38,7 +38,7 @@ _LARGEST_SHARE = 0.5
 _SAME = 1e-7
 
 MOST_FOUND = 120
-"""Largest number of potentials of a family whose critical points are searched, which takes about 10 s."""
+"""Largest number of potentials of a family whose critical points are searched. The search takes about 10 s in all."""
 
 
 class ManyExitsError(ValueError):
@@ -70,7 +70,7 @@ class Member:
 
     @property
     def of_others(self) -> np.ndarray:
-        """The fates in the family of the outcomes that are not exits."""
+        """The fates, in the family, of the outcomes that are not exits."""
         return self.numbers[self.potential.channels + 1 :]
 
 
@@ -114,7 +114,7 @@ class ParameterFamily:
         Raises
         ------
         ManyExitsError
-            If the exits change too often between the value of the system and this one.
+            If the exits change too often between the system's own value and this value.
         ValueError
             If the system has no potential at this value.
         """
@@ -239,7 +239,7 @@ def parameter_family(axis: ParameterAxis) -> ParameterFamily:
 
 
 def find_members(axis: ParameterAxis) -> None:
-    """Find potentials along a whole axis, to time the lines of a map and to store the critical points on disk.
+    """Find potentials along a whole axis and store their critical points on disk, so that later searches take little time.
 
     Raises
     ------
@@ -294,7 +294,7 @@ def _separation(points: np.ndarray) -> np.ndarray:
 
 
 def _nearest(points: Sequence[np.ndarray] | np.ndarray, position: np.ndarray) -> int | None:
-    """Return the index of the point at a position, to `_SAME`; None if no point is there."""
+    """Return the index of the point at a position, within `_SAME`; None if no point is there."""
     if not len(points) or not np.isfinite(position).all():
         return None
     distances = np.hypot(*(np.asarray(points) - position).T)

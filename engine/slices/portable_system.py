@@ -21,7 +21,7 @@ from engine.systems.forms.polynomial_form import PolynomialForm
 from engine.systems.potential import Potential
 from engine.systems.well_units import WellUnits
 
-# Number of the columns of an exit, and place and values of the shape in them, for JavaScript.
+# For JavaScript: the number of columns of an exit, the column of its shape, and the codes of the shapes.
 _EXIT_COLUMNS = {
     "count": exit_geometry.CURVE_COLUMNS,
     "shape": exit_geometry.SHAPE,

@@ -83,7 +83,7 @@ def sample_starts(
     batches = [np.empty((0, 4))]
     drawn_count = inside_count = 0
     while inside_count < count:
-        # A little more than the number of points that are expected to contain enough starts inside.
+        # A fifth more points than are expected to contain the missing starts.
         expected_size = 1.2 * (count - inside_count) * (drawn_count + 1) / (inside_count + 1)
         size = int(np.clip(expected_size, _LEAST_POINTS, _MOST_POINTS))
         batches.append(_draw(potential, h, None if plane is None else window_plane, edges, size, random))

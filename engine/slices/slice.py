@@ -52,7 +52,7 @@ class Slice:
     sign: int = 1
     fixed: tuple[tuple[Coordinate, float], ...] = ()
 
-    # Type checkers accept the types that are converted; the fields have the types of the stored values.
+    # `__init__` also accepts types that it converts. The fields have the types of the stored values.
     if TYPE_CHECKING:
 
         def __init__(
@@ -101,7 +101,7 @@ class Slice:
 
     @property
     def decided(self) -> Coordinate:
-        """The coordinate that the energy determines: px, py or the speed; `solved`, which `__post_init__` always sets."""
+        """The coordinate that the energy determines: px, py or the speed. This is `solved`, which is never None here."""
         assert self.solved is not None
         return self.solved
 
@@ -218,7 +218,10 @@ class Slice:
         return compute_states(self, potential, energy, x, ordinate)
 
     def required_energy(self, potential: Potential, x: np.ndarray, ordinate: np.ndarray) -> np.ndarray:
-        """Return the lowest energy of a start at each point; with an axis h, minus the h of the point: positive if forbidden."""
+        """Return the lowest energy of a start at each point.
+
+        With an axis h, this energy is relative to the h of the point, so forbidden points are positive.
+        """
         return compute_required_energy(self, potential, x, ordinate)
 
     def of_system(self, system: System) -> Slice:
@@ -251,7 +254,7 @@ class Slice:
         return potential if self.parameter is None else self.system_at(self.parameter.system, x, ordinate).potential
 
     def energy_groups(self, rows: int, columns: int) -> np.ndarray:
-        """Return the number of the energy of each pixel, (rows · columns,): the pixel's index along an axis h, otherwise 0."""
+        """Return the index of the energy of each pixel, (rows · columns,): the pixel's index along an axis h, otherwise 0."""
         groups = np.zeros((rows, columns), np.int64)
         if self.energy_axis == 0:
             groups += np.arange(columns)

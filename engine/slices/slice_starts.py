@@ -1,4 +1,4 @@
-"""Starts at the points of a slice: when each point is one start, the starts, and the lowest energy at which they exist."""
+"""Starts at the points of a slice: a check that each point has one start, the starts, and the lowest energies of starts."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ def compute_states(plane: Slice, potential: Potential, energy: Any, x: np.ndarra
 
 
 def compute_required_energy(plane: Slice, potential: Potential, x: np.ndarray, ordinate: np.ndarray) -> np.ndarray:
-    """Return the lowest energy of a start at each point; with an axis h, minus the h of the point: positive if forbidden."""
+    """Return the lowest energy of a start at each point, see `Slice.required_energy`."""
     if plane.parameter is not None:
         required = np.full(np.shape(x), np.inf)
         for mask, line, line_potential in _lines(plane, x, ordinate):

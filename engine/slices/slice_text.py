@@ -13,7 +13,7 @@ AXIS_NAMES = tuple(coordinate.key for coordinate in Coordinate if coordinate is 
 """Names of the coordinates that can be axes."""
 
 _COORDINATES = {coordinate.key: coordinate for coordinate in Coordinate}
-# Keys by other names of coordinates and parameters that are accepted.
+# Keys of coordinates and parameters, by the other names that are accepted.
 _ALIASES = {
     **{coordinate.symbol: coordinate.key for coordinate in Coordinate},
     **{parameter.symbol: key for key, parameter in WELL_PARAMETERS.items()},

@@ -40,7 +40,7 @@ def members_job(axis: ParameterAxis | None) -> Job[None] | None:
 
 
 def measure_job(spec: MapSpec, name: str, box: Window | None = None) -> Job[Any]:
-    """Return the job of a measure of a map, or of the starts in a box; a measure of a `place` ignores the box."""
+    """Return the job of a measure of a map, or of the starts in a box. A measure with a `Measure.place` ignores the box."""
     # Slow measures make many short calls.
     queue = Queue.BACKGROUND if MEASURES[name].slow else Queue.LONG_CALL
     return Job(measure_map, (map_job(spec), name, None if MEASURES[name].place else box), queue=queue)

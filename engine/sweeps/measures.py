@@ -268,10 +268,10 @@ CURVES = tuple(name for name, measure in MEASURES.items() if measure.curve != NO
 """Names of all measures that are drawn as curves against the energy or a parameter."""
 
 QUICK_CURVES = tuple(name for name in CURVES if not MEASURES[name].slow)
-"""Names of the measures that take little longer than the map."""
+"""Names of the measures in `CURVES` that take little time in addition to the map."""
 
 
-# Number of additional orbits of a measure, as a share of the usual number, because a sweep measures many maps.
+# Share of the usual number of additional orbits that a measure integrates, because a sweep measures many maps.
 _EFFORT = 0.1
 
 

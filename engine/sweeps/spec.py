@@ -51,8 +51,8 @@ class SweepSpec:
         Columns and rows of the map at each value, each 1 to 4096.
     window
         The window of all maps, see `MapSpec`. None for the default window of each map, which contains the whole interior. With
-        the measure "maps", whose arrays have common axes, None stands for the default window of the highest energy. In the three
-        cases the interior grows with h on both planes, so this window contains the windows of all other energies.
+        the measure "maps", whose arrays have common axes, None stands for the default window of the highest energy. In cases I to
+        III the interior grows with h on (x, y) and (x, px), so this window contains the windows of all other energies.
     t_max
         Integration time, dimensionless, 0 < t_max ≤ 1e8; by default as in `MapSpec`.
     use_evidence
@@ -85,7 +85,7 @@ class SweepSpec:
     energy: float | None = None
     refine: int = 0
 
-    # Type checkers accept the types that are converted; the fields have the types of the stored values.
+    # `__init__` also accepts types that it converts. The fields have the types of the stored values.
     if TYPE_CHECKING:
 
         def __init__(

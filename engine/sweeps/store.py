@@ -112,8 +112,8 @@ class SweepStore:
 
 
 def check_same_sweep(label: str, found: Mapping[str, Any], wanted: Mapping[str, Any], *, but: Sequence[str] = ()) -> None:
-    """Raise a ValueError that names the difference if attributes, which have other types in files, belong to another sweep."""
-    # A default window follows from the other differences.
+    """Raise a ValueError that names the difference if the attributes `found` belong to another sweep."""
+    # The window is compared last, because a default window follows from other attributes. Types differ in files.
     for name, value in sorted(wanted.items(), key=lambda item: item[0] == "window"):
         if name not in {*but, *_WORDS} and (name not in found or np.ravel(found[name]).tolist() != np.ravel(value).tolist()):
             raise ValueError(f"{label}: holds another sweep, with {name}={found.get(name)!r}; must have {name}={value!r}")

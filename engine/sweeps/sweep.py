@@ -69,7 +69,7 @@ class Sweep(Result):
         return np.asarray(self.dataset[name].values)
 
     def interval(self, name: str) -> tuple[np.ndarray, np.ndarray]:
-        """Return the ends of the 95 % interval of a measure, or the measure minus and plus its error, 0 if it has none."""
+        """Return the ends of the 95 % interval of a measure, or the measure minus and plus its error; a missing error is 0."""
         if f"{name}_low" in self.dataset:
             return self[f"{name}_low"], self[f"{name}_high"]
         error = self[f"{name}_error"] if f"{name}_error" in self.dataset else 0.0

@@ -56,7 +56,7 @@ def compute_birkhoff_digits(
     state
         (4,) x, y, px, py at the start of the first window; finite, dimensionless.
     t_max
-        Largest total time of two windows, 0 < t_max ≤ 1e8, dimensionless. No window uses more than 128 000.
+        Largest total time of two windows, 0 < t_max ≤ 1e8, dimensionless. At most 128 000 time units of the well are used.
     execution
         How the computation runs.
 

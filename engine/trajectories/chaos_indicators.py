@@ -5,8 +5,8 @@ not that an orbit is regular: sticky orbits follow a torus for a long time befor
 torus make an orbit regular. An escaping orbit can be chaotic while it is inside; no other verdict on it is possible.
 
 The thresholds below were calibrated on 850 orbits bounded until t = 1e5 on six maps (I at h = 0.12 and 0.13, II at 0.16 and 0.17,
-III at 0.24 and 0.26). "Tori" are those of the 850 orbits with 8 agreeing digits. `benchmarks.verdicts` counts how many verdicts
-turn out wrong later.
+III at 0.24 and 0.26). In the texts on thresholds, "tori" are those of the 850 orbits with 8 or more agreeing digits.
+`benchmarks.verdicts` counts how many verdicts turn out wrong later.
 """
 
 from __future__ import annotations
@@ -108,7 +108,7 @@ class Indicator:
     judge
         Returns the verdict on a bounded orbit, and its reason in words.
     judge_inside
-        Returns the verdict on an orbit that escapes; None if the indicator cannot show chaos before the escape.
+        Returns the verdict on an orbit that escapes; None if the indicator shows no chaos before the escape.
     applies
         Returns whether an orbit has this indicator.
     of_deviations

@@ -106,7 +106,7 @@ def sample_entrances_by_exit(potential: Potential, energy: float, count: int, *,
 
 
 class _ExitLine:
-    """Half a Lyapunov orbit, the line across its exit. Draws states that cross it inward, with the distribution of the flux."""
+    """Draws states that cross an exit inward, with the distribution of the flux. Half a Lyapunov orbit is the line of the exit."""
 
     def __init__(self, potential: Potential, orbit: LyapunovOrbit) -> None:
         # The import is slow and seldom needed.
@@ -145,6 +145,7 @@ class _ExitLine:
     def _find_side(self) -> float:
         """Return the side of the well, while `_side` is 1: a point a little to the left of the middle of the line decides."""
         middle, _, left = self._frame(self.times[[_POINTS // 2]])
+        # The point is so far from the line that rounding does not decide.
         test_point = middle + 1e3 * _SHIFT * self._length * left
         outside = find_outside_channels(self._potential, self._energy, *np.ascontiguousarray(test_point.T))
         return -1.0 if outside[0] else 1.0

@@ -167,7 +167,7 @@ def _interior_area(potential: Potential, h: float) -> tuple[float, float]:
     # The length of a row is the sum of its right edges minus the sum of its left edges.
     np.add.at(lengths, row, np.where(inside[row, column], edge_x, -edge_x))
     area = float(lengths.sum()) * row_height
-    # The lengths behave like square roots at their ends, so the middle rows of each three alone give 3^1.5 times the error.
+    # The lengths behave like square roots at their ends. The middle row of every three rows therefore has 3^1.5 times the error.
     return area, abs(area - 3.0 * row_height * float(lengths[1::3].sum())) / (3.0**1.5 - 1.0)
 
 

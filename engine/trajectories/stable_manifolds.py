@@ -38,7 +38,7 @@ MOST_IMAGES = 6
 """Largest number of images; the arcs of later images are too fine and too many to plot."""
 
 ORBITS_PER_IMAGE = 20_000
-"""Largest number of orbits integrated per channel and image, about 0.3 s of work; what they do not resolve is left out."""
+"""Largest number of orbits per channel and image, about 0.3 s of work. Arcs that these orbits do not resolve are left out."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -23,7 +23,7 @@ from engine.systems.well_units import AREA, ENERGY, LENGTH, MOMENTUM, RATE, TIME
 from engine.trajectories.birkhoff_digits import BirkhoffDigits, compute_birkhoff_digits
 
 MAX_ORBIT_TIME = 1e7
-"""Largest t_max of `integrate_orbit`, for which its samples take 3 GB."""
+"""Largest t_max of `integrate_orbit`. The samples of such an orbit take 3 GB."""
 
 # Interval between samples, in units of the well, unless it gives too few or too many samples.
 _SAMPLE_INTERVAL = 0.02
@@ -222,6 +222,7 @@ def _sample_orbit(
     """Return times (n,), path (4, n), SALI (n,) and Lyapunov exponent (n,) from start to end, all in units of the well."""
     steps, t_end = recorded.steps, recorded.t_end
     if t_end == 0.0:
+        # The deviation vectors are orthonormal, so SALI is √2.
         return np.zeros(1), start[:, None].copy(), np.full(1, np.sqrt(2.0)), np.full(1, np.nan)
     kernels = potential.well.kernels
     times = np.linspace(0.0, t_end, _sample_count(t_end, len(steps)))

@@ -22,7 +22,7 @@ from engine.propagation.speed_integrals import integrate_speed
 from engine.systems.potential import Potential
 
 DEFAULT_DURATION = 10.0
-"""Default τ in units of the well, about one and a half periods of the motion in the well."""
+"""Default τ in time units of the well: about one and a half periods of the motion in the well."""
 
 # Number of parts into which the pixels are divided. The parts are computed one after the other.
 _PARTS = 16
@@ -176,7 +176,7 @@ def _checked_direction(direction: TimeDirection | str) -> TimeDirection:
 
 
 def _specs(spec: MapSpec, direction: TimeDirection) -> list[MapSpec]:
-    """Return the maps whose orbits run in these directions of time, in units of the well."""
+    """Return one request for each direction of time, in units of the well."""
     reversed_spec = replace(spec, backward=not spec.backward)
     specs = {
         TimeDirection.FORWARD: [spec],
@@ -187,7 +187,7 @@ def _specs(spec: MapSpec, direction: TimeDirection) -> list[MapSpec]:
 
 
 class _DescriptorRun:
-    """Computes the integrals of the pixels of a map of one potential, or of a line, in units of the well."""
+    """Computes the integrals of the pixels of a map of one potential, such as a line of a larger map, in units of the well."""
 
     def __init__(self, escape_map: EscapeMap, duration: float, power: float, direction: TimeDirection) -> None:
         self._given_spec, self._duration, self._power, self._direction = escape_map.spec, duration, power, direction

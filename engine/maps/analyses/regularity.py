@@ -85,7 +85,7 @@ def compute_regularity(
     An orbit is regular if the map has evidence of its torus, or if its Birkhoff averages show a torus, over windows before t_max
     or over both halves of the orbit. An orbit is chaotic if its SALI falls to 1e-7 by t_max (Zotos 2014, eq. 9). Any other orbit
     shows no sign of chaos until t_max; Zotos (2014) calls it regular. An orbit that is bounded on the map only because of
-    rounding, but runs to infinity here, is judged by its smallest SALI until then.
+    rounding can run to infinity in this second integration. Such an orbit is judged by its smallest SALI until then.
 
     Parameters
     ----------
@@ -154,12 +154,12 @@ class _RegularityClassification:
         self._judge(is_chaotic(orbits[:, -1]), Regularity.CHAOTIC)
 
     def _find_tori(self, window: float, execution: Execution) -> None:
-        """Judge orbits as regular whose averages agree as on a torus, over windows from the time reached."""
+        """Judge orbits as regular if their averages agree as on a torus, over windows that begin at the time reached."""
         digits = count_agreeing_digits(self._spec.potential, self._orbits[:, :4], window, execution=execution)
         self._judge(digits >= TORUS_DIGITS, Regularity.REGULAR)
 
     def _compare_halves(self, execution: Execution) -> None:
-        """Judge orbits as regular whose averages agree over both halves, from the start to t_max."""
+        """Judge orbits as regular if their averages agree over both halves of the time from the start to t_max."""
         starts = self._spec.start_states(*self._map.coordinates(self._pixels))
         digits = count_agreeing_digits(self._spec.potential, starts, 0.5 * self._spec.t_max, execution=execution)
         self._judge(digits >= REGULAR_DIGITS, Regularity.REGULAR)

@@ -36,12 +36,12 @@ _MIN_ZOOM_SEPARATION = 1e-13
 _MAX_SEPARATIONS = 100
 # Largest initial number of pairs at each separation.
 _MAX_PAIRS = 100_000
-# Number of uncertain pairs wanted at each separation, which determines a share to 7 %. The law fitted to the initial pairs tells
+# Number of uncertain pairs wanted at each separation. They determine a share to 7 %. The law fitted to the initial pairs predicts
 # how many pairs this takes.
 _WANTED_UNCERTAIN = 200
 # Largest ratio of the final to the initial number of pairs. The total integration time also limits the number of pairs.
 _MAX_GROWTH = 2000
-# Cost of a pair besides its integration, in time units of integration.
+# Cost of a pair in addition to its integration, as an integration time in units of the well.
 _PAIR_COST = 20.0
 # Number of pairs drawn and integrated together.
 _CHUNK = 2**17
@@ -81,9 +81,9 @@ def compute_uncertainty_exponent(
     Parameters
     ----------
     spec
-        Plane, energy, window, direction of time and t_max. The largest ε is the shorter side of a pixel. The
-        smallest ε is 1e-10 length units of the well or, in a deep zoom, four decades below a pixel, but not below 1e-13 units.
-        Momenta are measured in units in which the unit of time of the well is 1.
+        Plane, energy, window, direction of time and t_max. The largest ε is the shorter side of a pixel. The smallest ε is 1e-10
+        length units of the well or, in a deep zoom, four decades below a pixel, but not below 1e-13 units. Momenta are measured
+        in units in which the unit of time of the well is 1.
     pairs
         Initial number of pairs at each separation, 10 to 100 000.
     separations
@@ -118,7 +118,7 @@ def compute_uncertainty_exponent(
     pairs = checked_count("pairs", pairs, 10, _MAX_PAIRS)
     separations = checked_count("separations", separations, 5, _MAX_SEPARATIONS)
     seed = checked_count("seed", seed, 0, 2**63 - 1)
-    # For type checkers, the type of `work` is known, and the check of it could not fail.
+    # Type checkers know the type of `work` and would report that this check cannot fail; an `object` prevents this.
     given_work: object = work
     if not isinstance(given_work, numbers.Real) or not work > 0.0:
         raise ValueError(f"work={short_repr(work)}: must be above 0")
@@ -269,6 +269,7 @@ class _PairSampler:
         points[1 - axis] = random.uniform(*edges[1 - axis], pair_count)
         rows = random.integers(0, self.row_energy.size, pair_count)
         points[axis] = self.row_energy[rows]
+        # The cosine of 0 or π is a random sign.
         shift[1 - axis] = self.separations[index] * np.cos(np.pi * random.integers(0, 2, pair_count))
         return np.concatenate([points, points + shift], axis=1), rows
 
