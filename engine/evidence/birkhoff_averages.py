@@ -4,8 +4,8 @@ Along a quasi-periodic orbit, the average of a smooth observable, weighted by a 
 ends, converges fast with the window length T. Along a chaotic orbit, the average converges no faster than 1/√T. The averages over
 two consecutive windows therefore agree to many digits on an invariant torus and to few digits otherwise (Das, Saiki, Sander &
 Yorke 2017, Nonlinearity 30, 4111; Duignan & Meiss 2023, Physica D 449, 133749). On a weakly chaotic orbit two averages can agree
-by chance. A third average, over a window that overlaps half of each of the two, must therefore also agree. The observables are x²
-and y², sampled at a fixed time step.
+by chance. A third average, over a window that overlaps half of each of these windows, must therefore also agree. The observables
+are x² and y², sampled at a fixed time step.
 
 With the weight exp(−1/(s(1 − s))), s = t/T, of these papers, averages converge faster than any power of T. Here, eight digits are
 enough. With the Kaiser window (Kaiser & Schafer 1980, IEEE Trans. ASSP 28, 105), averages reach eight digits for motion that
@@ -37,7 +37,7 @@ REGULAR_DIGITS = 7.0
 
 # Shape parameter β of the Kaiser window. A larger β gives smaller weights at the ends but needs a longer window.
 _KAISER_SHAPE = 20.0
-# Largest change of the energy of an orbit whose averages count, in units of the well.
+# Largest change of the energy along an orbit whose averages count, in units of the well.
 _ENERGY_TOLERANCE = 1e-9
 # Largest number of digits, which stands for equal averages.
 _MOST_DIGITS = 16.0

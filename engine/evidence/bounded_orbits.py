@@ -20,12 +20,12 @@ from engine.propagation.fixed_steps import find_section_points, trace_section_po
 from engine.propagation.tiles import run_tiles
 from engine.systems.potential import Potential
 
-# Number of digits to which averages must agree for a test of the orbit with the next window.
+# Smallest number of agreeing digits with which an orbit is tested with the next window.
 _PROMISING_DIGITS = 3.5
 # Largest cost of a test with a window that takes longer than the time left, as a share of the work left. Such a window is used
 # for the few most promising orbits alone, because their curves can enclose other orbits.
 _MAX_WORK_SHARE = 0.15
-# Largest number of these orbits in a round.
+# Largest number of these most promising orbits in a round.
 _MAX_SEEDS = 2 * LANES
 # Distances in pixels between the orbits of successive rounds.
 _LATTICE_STRIDES = (16, 8, 4, 2, 1)

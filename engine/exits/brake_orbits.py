@@ -54,8 +54,8 @@ _FIRST_ENERGY_STEP = 2.0**-4
 _SMALLEST_ENERGY_STEP = 2.0**-14
 _MOST_ENERGY_STEPS = 256
 
-# Largest speed at the second end, in units of the well; a root with a larger speed is a discontinuity of the velocity. It is also
-# the largest distance between two shots that are joined.
+# Largest speed at the second end, in units of the well. A root with a larger speed is a discontinuity of the velocity. Also the
+# largest distance between two shots that are joined.
 _REST = 1e-8
 # Largest speed at the second end of a shot that is joined with another.
 _NEARLY_AT_REST = 1e-3
@@ -274,7 +274,8 @@ class _Trials:
         return float(self._kernels.shoot(u, *self._arguments)[0])
 
     def solve(self, bracket: tuple[float, float], largest_speed: float) -> _Shot | None:
-        """Return the orbit that starts between two offsets and comes to rest, up to a largest speed; None if no orbit does."""
+        """Return the orbit that starts between two offsets and ends slower than `largest_speed`; None if no orbit does."""
+        # The tolerances are those of rounding.
         u = find_root(self.outward_velocity, *bracket, absolute=1e-17, relative=4 * float(np.finfo(float).eps))
         velocity, half_period, count = self._kernels.shoot(u, *self._arguments)
         if not (np.isfinite(half_period) and abs(velocity) < largest_speed):

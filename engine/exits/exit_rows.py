@@ -1,4 +1,4 @@
-"""All exits of a system at an energy as the arrays that the kernels take."""
+"""All exits of a system at an energy as the arrays that the kernels take: exits over saddles, and other ends (`End`)."""
 
 from __future__ import annotations
 

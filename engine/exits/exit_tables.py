@@ -41,6 +41,7 @@ _POSITIONS = np.linspace(-1.0, 1.0, 21)
 # Columns of an exit curve that follow gate and reach in a row of a table, see `engine.integrator.kernels.exit_geometry`.
 _CURVE_COLUMNS = np.r_[geometry.ORIGIN_X : geometry.OUTWARD_Y + 1, geometry.MIDDLE : geometry.CURVE_COLUMNS]
 
+# Returns the exit curves at an energy, by channel.
 _Curves = Callable[[float], dict[int, np.ndarray]]
 
 

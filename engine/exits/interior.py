@@ -72,6 +72,7 @@ def _finder(potential: Potential) -> Callable[..., None]:
     if isinstance(potential.form, ExpressionForm):
         return functools.partial(potential.well.kernels.find_outside, find_inner_radius(potential))
     polynomial = tabulate_polynomial(potential.form)
+    # The zeros are work space.
     return functools.partial(interior.find_outside_polynomial, *polynomial, np.zeros((3, len(polynomial.bernstein))))
 
 

@@ -54,7 +54,7 @@ def find_merged_orbits(potential: Potential, energy: float, channels: tuple[int,
 
 
 def has_returns(potential: Potential, energy: float, orbit: BrakeOrbit, curve: np.ndarray) -> bool:
-    """Return whether any of 50 orbits that leave across an exit, a row `curve`, returns through it."""
+    """Return whether any of 50 orbits that leave across an exit, a row `curve`, returns across this exit."""
     kernels = potential.well.kernels
     for start in _leaving_states(potential, energy, orbit.path):
         # The first piece holds thousands of steps, far more than the time requires.

@@ -84,7 +84,7 @@ class Jobs:
     threads
         Size of the manager's own thread pool; None for the default pool of this process.
     run_limited
-        Runs a function in a resource-limited process, and aborts it when the event is set; None for a thread of this process.
+        Runs a function in a resource-limited process, which it ends when the event is set; None for a thread of this process.
     most_limited_calls
         Largest number of calls of `run_limited` at a time, each for a different account.
     clock
@@ -133,7 +133,8 @@ class Jobs:
         job
             The job.
         on_result
-            Called from another thread with the result; if results have an attribute ``complete``, also with partial results.
+            Called with the result and, if results have an attribute ``complete``, with partial results: in this thread if they
+            are at hand, otherwise from another thread.
         on_error
             Called from another thread with the exception if the computation fails.
         client

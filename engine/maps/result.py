@@ -70,8 +70,8 @@ class EscapeMap(MapResult):
         int8, the `Evidence` of each bounded orbit: the reason why it is called bounded. Crossings and energy error of an orbit
         that is bounded on evidence refer to the time up to which it was integrated.
     outside
-        int8, for a start that is outside, the number of the outcome there, as in `fate`: of an exit, a disc, or the escape
-        radius; 0 inside.
+        int8, for a start outside, the number, as in `fate`, of the exit, disc or escape radius beyond which it lies; 0 for other
+        starts.
     stride
         Side, in pixels, of squares in which at least one pixel has been started; 1 if all pixels have been started.
     horizon
@@ -208,7 +208,7 @@ class EscapeMap(MapResult):
 
         Returns
         -------
-        The arrays, of (rows, columns) / `stride` rounded up, and the window that they cover. This window can extend beyond the
+        The arrays, with a row for each row of squares, and the window that the squares cover. This window can extend beyond the
         window of the map by less than one square, because the last squares may be incomplete.
         """
         names = ("fate", "escape_time", "crossings", "evidence")

@@ -10,7 +10,7 @@ from engine.integrator.source.recurrence import ROWS, TIME_ROW, TOLERANCE
 from engine.propagation.tiles import map_tiles
 from engine.systems.potential import Potential
 
-# Number of tiles that a worker computes in one call: in less than 0.1 s, so cancelling a computation takes effect soon.
+# Number of tiles that a worker computes in one call. A call takes less than 0.1 s, so cancellation takes effect soon.
 _TILES_PER_TASK = 8
 # Number of integrator steps of a tile in one call, which takes some milliseconds.
 _STEPS_PER_TILE = 100

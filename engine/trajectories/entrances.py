@@ -106,7 +106,7 @@ def sample_entrances_by_exit(potential: Potential, energy: float, count: int, *,
 
 
 class _ExitLine:
-    """Draws states that cross an exit inward, with the distribution of the flux. Half a Lyapunov orbit is the line of the exit."""
+    """Draws states that cross an exit line, half a Lyapunov orbit, inward. Their distribution is that of the flux."""
 
     def __init__(self, potential: Potential, orbit: LyapunovOrbit) -> None:
         # The import is slow and seldom needed.

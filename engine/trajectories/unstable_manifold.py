@@ -138,6 +138,7 @@ class UnstableManifold:
         displacements = self.displacements(phases)
         growth_time = self.orbit.period / math.log(self.max_displacement / self.min_displacement)
         curves = exit_curves(self.potential, self.orbit.energy)
+        # The second term is the time in which the smallest displacement would grow to 1.
         duration = count * _MAX_PERIODS_PER_PASSAGE * self.orbit.period - growth_time * math.log(self.min_displacement)
         passages = map_tiles(
             _passages, self.potential, self.start_states(displacements), count, curves, exit_gates(curves), duration,

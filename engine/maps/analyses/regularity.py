@@ -38,9 +38,9 @@ class RegularityMap(PixelAnalysis):
     character
         (rows, columns) int8 `Regularity` codes, read-only.
     sali
-        (rows, columns) the smallest SALI of each bounded orbit until it was judged, 0 to √2, sampled every few units of time: at
-        most 1e-7 if the orbit is chaotic, otherwise larger. NaN for other pixels, and for orbits that are quasi-periodic on the
-        map. Read-only.
+        (rows, columns) the smallest SALI of each bounded orbit until it was judged, 0 to √2, sampled every few units of time. It
+        is at most 1e-7 for chaotic orbits and larger for others. NaN for other pixels, and for orbits that are quasi-periodic on
+        the map. Read-only.
     complete
         Whether every bounded pixel is judged.
     """

@@ -19,7 +19,7 @@ LARGEST_SHARE_OF_PIXEL = 0.01
 """Largest shift, as a share of a pixel. It matters in deep zooms."""
 
 SECOND_TOLERANCE = 10.0 * TOLERANCE
-"""Tolerance of the second rerun. Its steps are a sixth longer, so its errors are independent of the errors of the map."""
+"""Tolerance of the second rerun. Its steps are 15 % longer, so its errors are independent of the errors of the map."""
 
 LARGEST_DELAY = 0.01
 """Largest change of an escape time by a rerun, in units of the well.

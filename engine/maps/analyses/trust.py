@@ -113,10 +113,10 @@ def compute_trust(
 
     A pixel is tested if one of its eight neighbours has another fate, or the same exit but another number of crossings, and also
     if the pixel is bounded without evidence. Its orbit is integrated twice more, from two starts shifted in different directions
-    by 1e-11 length units of the well, but at most a hundredth of a pixel; the second time with ten times the tolerance. The pixel
-    is doubtful if a rerun changes the fate, the crossings before the escape, or the escape time by more than 0.01 time units of
-    the well. Crossings of bounded orbits are not compared, because orbits that are bounded on evidence are not integrated to
-    t_max.
+    by 1e-11 length units of the well, but at most a hundredth of a pixel. The second rerun has ten times the tolerance. The pixel
+    is doubtful if a rerun changes the fate or the crossings before the escape, or changes the escape time by more than 0.01 time
+    units of the well. Crossings of bounded orbits are not compared, because orbits that are bounded on evidence are not
+    integrated to t_max.
 
     A pixel that is bounded without evidence is also doubtful if the distance of the two reruns in phase space exceeds 1e-4. Such
     an orbit is chaotic, and only chance keeps it inside until t_max. If two pixels are mirror images, only the first is tested.
