@@ -79,7 +79,7 @@ def compare_averages(
     *,
     execution: Execution = DEFAULT_EXECUTION,
 ) -> np.ndarray:
-    """Return the digits to which the first two averages of each orbit agree, and those to which all three agree, (n, 2).
+    """Return the digits to which the first two averages of each orbit agree, and the digits to which all three agree, (n, 2).
 
     The parameters are those of `count_agreeing_digits`.
     """
@@ -118,9 +118,9 @@ def _agreeing_digits(potential: Potential, tile: np.ndarray, window: float) -> n
 
 
 def _digits(averages: np.ndarray) -> np.ndarray:
-    """Return the digits to which the first two of three averages agree, and those to which all three agree, of shape (2, n).
+    """Return the digits to which the first two of three averages agree, and the digits to which all three agree, (2, n).
 
-    `averages`, (3, 2, n), are those of two observables; the observable with fewer digits decides.
+    `averages`, (3, 2, n), belong to two observables. The observable with fewer digits decides.
     """
     with np.errstate(all="ignore"):
         difference = np.array([np.ptp(averages[:count], axis=0) / np.abs(averages).max(axis=0) for count in (2, 3)])

@@ -174,7 +174,8 @@ class BoundedOrbitSearch:
         self.evidence[self._separated.all(axis=1) & self._without_evidence()] = Evidence.ENCLOSED
 
     def _separate_in_parallel(self, barriers: list[_Barrier], orbits: np.ndarray) -> None:
-        # Prepared polygons must not be used by two threads at once: each task unpickles its own copies.
+        """Apply `_separated_by_any` to some orbits in several workers."""
+        # Prepared polygons must not be used by two threads at once, so each task unpickles its own copies.
         pickled_barriers = pickle.dumps(barriers)
 
         def select(part: np.ndarray) -> tuple[Any, ...]:

@@ -128,7 +128,7 @@ def _find_loop(points: np.ndarray) -> tuple[shapely.Polygon, float] | None:
     import shapely
 
     loop = np.empty_like(points)
-    # The kernel writes the points into `loop` in their order; it returns −1 if they are not on a closed curve.
+    # The kernel writes the points into `loop` in their order along the curve. It returns −1 if there is no closed curve.
     height = arrange_loop(points, loop)
     if height < 0.0:
         return None

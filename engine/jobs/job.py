@@ -14,7 +14,7 @@ from engine.jobs.cache import ResultCache
 
 
 class Queue(Enum):
-    """The kind of the calls of a job. It decides in which queue they wait for a thread."""
+    """The kind of the calls of a job, which decides in which queue calls wait for a thread."""
 
     FIRST_FRAME = "first frame"
     """The function submits many short calls. Until its first result, they precede all other calls."""
@@ -69,7 +69,7 @@ class Job[Result]:
         return self.orbits + sum(argument.orbits_held for argument in self.arguments if isinstance(argument, Job))
 
     def keywords(self, offered: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the keyword arguments of a call: the options, and those offered values that the function has parameters for."""
+        """Return the keyword arguments of a call: the options, and the offered values for which the function has parameters."""
         names = _parameter_names(self.function)
         return {**{name: value for name, value in offered.items() if name in names}, **dict(self.options)}
 

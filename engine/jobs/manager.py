@@ -204,6 +204,7 @@ class Jobs:
             subscription.cancel()
 
     def _unsubscribe(self, job: Job[Any], subscription: Subscription) -> None:
+        """Remove a subscription; a job without subscriptions is stopped."""
         with self._lock:
             run = self._in_flight.get(job)
             if run is None or subscription not in run.subscriptions:

@@ -19,7 +19,7 @@ from engine.maps.spec import MapSpec
 from engine.propagation.fates import Fate
 from engine.systems.outcomes import Exit
 
-# Verbs for the outcomes of an orbit, by array.
+# Verbs for the outcomes of an orbit, by the name of the array.
 _VERBS = {"origin": "entered", "fate": "leaves"}
 
 

@@ -72,7 +72,7 @@ class MirrorPixels:
         self.partner = np.arange(x.size * ordinate.size) if partner is None else partner
 
     def select_first_images(self, pixels: np.ndarray) -> np.ndarray:
-        """Return those of `pixels`, of shape (n,), that are the first of their pair."""
+        """Return the pixels among `pixels`, (n,), that are the first of their pair."""
         return pixels[pixels <= self.partner[pixels]]
 
     def find_first_images(self, pixels: np.ndarray) -> np.ndarray:

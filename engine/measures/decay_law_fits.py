@@ -59,7 +59,7 @@ def fit_decay_laws(
     Parameters
     ----------
     statistics
-        The escapes; or a map, or the outcomes of `classify_orbits`, whose escapes are counted first.
+        The escapes. The escapes of a map, or of the outcomes of `classify_orbits`, are counted first.
     t_max
         Integration time of the orbits that did not escape, 0 < t_max ≤ 1e8, dimensionless; at most that of the statistics, which
         is the default. Later escapes are left out.

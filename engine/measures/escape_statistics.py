@@ -152,8 +152,8 @@ def compute_statistics(frame: Measurable | Starts, window: GivenWindow | None = 
     frame
         The map, or its dataset, such as ``dataset.sel(h=0.3)`` of a sweep; or the outcomes of `classify_orbits`.
     window
-        Rectangle, given as in `MapSpec`: only pixels whose centres lie in the rectangle, edges included, count. It can extend
-        beyond the map or miss it. None for all pixels, and for orbits that do not form a map.
+        Rectangle, given as in `MapSpec`. Only pixels whose centres lie in the rectangle, edges included, count. The rectangle can
+        extend beyond the map or miss the map. None for all pixels, and for orbits that do not form a map.
 
     Examples
     --------

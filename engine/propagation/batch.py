@@ -307,7 +307,7 @@ def propagate_batch(
     final
         Whether the horizon is t_max: orbits that reach it become bounded.
     execution
-        How the computation runs. When it is cancelled, the propagation stops early; it can be continued by another call.
+        How the computation runs. When it is cancelled, the propagation stops early; another call can continue it.
     on_tiles
         Called after each group of completed tiles.
     tolerance

@@ -159,7 +159,7 @@ class OrbitSteps:
     Attributes
     ----------
     outcomes
-        The `Outcomes` of this orbit, equal to the bit to those in a map.
+        The `Outcomes` of this orbit, equal to the bit to its outcomes in a map.
     steps
         (m, 5) x, y, px, py, t at the start of each step; (0, 5) for a start outside.
     t_end

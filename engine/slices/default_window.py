@@ -108,7 +108,7 @@ def _on_symmetry_line(potential: Potential, plane: Slice, energy: Energy, axis: 
 
 
 def _potentials(potential: Potential, plane: Slice) -> list[Potential]:
-    """Return the potentials whose interiors a window shows: those along a parameter, otherwise the potential of the map."""
+    """Return the potentials whose interiors a window shows: potentials along a parameter, or the potential of the map."""
     axis = plane.parameter
     if axis is None:
         return [potential]

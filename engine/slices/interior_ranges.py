@@ -149,7 +149,7 @@ def _check_fixed_momentum(potential: Potential, energy: Energy, plane: Slice, ra
 
 
 def _momentum_range(potential: Potential, energy: float, ranges: dict[Coordinate, Range]) -> Range:
-    """Return the range of a momentum in the ranges of x and y; with gaps, near which momenta are unbounded, it is cut off."""
+    """Return the range of a momentum in the ranges of x and y, cut off with gaps, near which momenta are unbounded."""
     x, y = (np.linspace(*ranges[coordinate], _SCAN_POINTS) for coordinate in (Coordinate.X, Coordinate.Y))
     value = potential.value(x, y)
     bottom = np.quantile(value[np.isfinite(value)], 1.0 - _SHOWN_MOMENTA) if potential.gaps else np.min(value)

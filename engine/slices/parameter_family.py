@@ -24,7 +24,7 @@ from engine.systems.potential import Potential
 _PARTS = 8
 # Largest number of parts into which nodes divide the distance from the system's own value to the farther end of the range.
 _MOST_PARTS = 24
-# Largest number of times that a part whose ends have different exits is halved.
+# Largest number of halvings of a part whose ends have different exits.
 _HALVINGS = 12
 # Largest number of steps of Newton's method.
 _NEWTON_STEPS = 20
@@ -234,7 +234,7 @@ class ParameterFamily:
 
 @functools.lru_cache(maxsize=256)
 def parameter_family(axis: ParameterAxis) -> ParameterFamily:
-    """Return the family of an axis; this takes up to a second, or less if its nodes are stored on disk."""
+    """Return the family of an axis. The search takes up to a second, or less if the nodes are stored on disk."""
     return ParameterFamily(axis)
 
 

@@ -39,7 +39,7 @@ ENERGY_SURFACE = Slice(*SPACE.axes, Coordinate.SPEED)
 """The positions with the speed that the energy determines; with all directions of the velocity, they are the energy surface."""
 
 SECTION = Plane.X_PX
-"""The slice of the states on the surface of section whose crossings are counted: y = 0, upward (Zotos 2014)."""
+"""The slice of the states on the surface of section, y = 0 upward, at which crossings are counted (Zotos 2014)."""
 
 
 def checked_slice(value: Any) -> Slice:

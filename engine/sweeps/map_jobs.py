@@ -69,7 +69,7 @@ def _measure_point(point: SweepPoint, escape_map: EscapeMap, *, execution: Execu
     return compute_point(point, escape_map=escape_map, execution=execution)
 
 
-# The manager passes the options; `find_result` returns the results of other jobs.
+# The job manager passes the keyword arguments. `find_result` returns the results of other jobs.
 def _compute_sweep(
     spec: SweepSpec,
     *,

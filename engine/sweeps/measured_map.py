@@ -19,7 +19,7 @@ from engine.slices.window import Window
 from engine.systems.outcomes import Outcome
 
 MOST_JUDGED = 2000
-"""Largest number of bounded starts, drawn at random, that are judged as regular or chaotic; it gives a 95 % interval of ± 2 %."""
+"""Largest number of bounded starts, drawn at random, that are judged. So many give a 95 % interval of ± 2 %."""
 
 
 @dataclass(frozen=True, eq=False)

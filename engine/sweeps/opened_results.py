@@ -83,6 +83,7 @@ def open_result(path: str | os.PathLike[str], kind: type[Any] = Result) -> Any:
 
 
 def _open(path: str | os.PathLike[str]) -> Any:
+    """Return the result of a file or a Zarr store; an OSError names the path."""
     # The import is slow and seldom needed.
     import xarray as xr
 

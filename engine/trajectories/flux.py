@@ -124,7 +124,7 @@ def compute_flux(potential: Potential, energy: float) -> EscapeFlux:
 
     Returns
     -------
-    The `EscapeFlux`; it has no exits at or below the escape energy.
+    The `EscapeFlux`, without exits at or below the escape energy.
 
     Raises
     ------

@@ -23,7 +23,7 @@ t = 1000 made the exponent of I at h = 0.15 too large by 0.02, because a slowly 
 """
 
 MIN_SEPARATION = 1e-10
-"""Smallest distance of two starts, in units of the well. In deep zooms, with small pixels, it can be smaller."""
+"""Smallest distance of two starts, in units of the well. Deep zooms, with small pixels, use smaller distances."""
 
 WORK = 1.5e8
 """Default limit of the total integration time of all orbits, in units of the well: a few seconds of computation."""
@@ -164,7 +164,7 @@ class _PairSampler:
         self.random = [np.random.default_rng([seed, index]) for index in range(separations.size)]
         self.pairs, self.uncertain, self.one_inside, self.both_inside = np.zeros((4, separations.size), np.int64)
         self.integrated_time = 0.0
-        # The energies of the pairs: one, or those of the pixels along an axis h.
+        # The energies of the pairs: the common energy, or the energies of the pixels along an axis h.
         axis = spec.plane.energy_axis
         self.row_energy = np.array([spec.common_energy]) if axis is None else spec.pixel_centres()[axis]
         self.is_open = ~spec.potential.well.is_closed_at(self.row_energy)
