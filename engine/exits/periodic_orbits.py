@@ -94,8 +94,8 @@ def find_orbit_in_rotating_frame(potential: Potential, energy: float, channel: i
     """Return the orbit over a saddle at an energy above it, followed from the small oscillations; None if it is not found.
 
     In a frame at rest, the result is the orbit that `brake_orbits` finds, up to rounding errors. Exits in such a frame are made
-    by `brake_orbits`, because the ends of its orbits are exactly at rest. Orbits over several saddles are not found, because they
-    do not begin as small oscillations.
+    from the orbits of `brake_orbits`, because their ends are exactly at rest. Orbits over several saddles are not found, because
+    they do not begin as small oscillations.
 
     Parameters
     ----------

@@ -49,7 +49,7 @@ class Staged[F: Frame](Protocol):
 
 
 def frame_pause(elapsed: float) -> float:
-    """Return the pause in seconds after a frame, given the time in seconds since the start of the computation."""
+    """Return the pause after a frame, see `Pause`: a share of the elapsed time, within limits."""
     return min(max(SHORTEST_PAUSE, _PAUSE_SHARE * elapsed), LONGEST_PAUSE)
 
 

@@ -115,7 +115,7 @@ class Measure:
     meaning
         Meaning of the measure in about five words.
     compute
-        Returns the result for a `MeasuredMap`; None if the measure is not defined for this map.
+        Returns the result for a measured map; None if the measure is not defined for this map.
     quantities
         Numbers of the measure.
     help

@@ -26,7 +26,7 @@ _CONDITION = "must be at least about 1e-5 above the minimum of the well; fixed v
 
 @functools.lru_cache(maxsize=1024)
 def default_window(potential: Potential, plane: Slice, energy: Energy) -> Window:
-    """Find a window that shows the whole interior: all starts that are neither forbidden nor outside.
+    """Find a window that shows the whole interior.
 
     On a slice of one energy, the window is a square in units of the well, unless one side of the interior is much longer than the
     other.

@@ -181,7 +181,7 @@ class Slice:
         }
 
     def axis_units(self, units: WellUnits) -> tuple[float, float]:
-        """Return the unit of each axis, in which values inside the well are of order 1."""
+        """Return the unit of each axis, see `Coordinate.unit`."""
         return self.abscissa.unit(units), self.ordinate.unit(units)
 
     def restore[Computed](self, result: Computed, units: WellUnits) -> Computed:

@@ -17,7 +17,7 @@ from engine.maps.spec import MapSpec
 from engine.sweeps.spec import SweepSpec
 from engine.sweeps.warmup import prepare_for_evidence, prepare_for_maps
 
-# Sides in pixels of the coarse maps on which plans are based; two sizes show the cost that is independent of the size.
+# Sides in pixels of the coarse maps on which plans are based. Two sizes show the cost that does not depend on the size.
 _COARSE_SIDES = (48, 96)
 # Largest number of values at which these maps are computed.
 _PLANNED_VALUES = 12

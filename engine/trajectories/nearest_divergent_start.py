@@ -49,7 +49,7 @@ class DivergentStart(OrbitResult):
     distance
         Distance from the given start in that plane, with momenta in units in which the unit of time of the well is 1.
     fate
-        Fate of this orbit, k ≥ 1 for the outcome ``outcomes[k - 1]``, such as channel k.
+        Fate of the neighbour's orbit, k ≥ 1 for the outcome ``outcomes[k - 1]``, such as channel k.
     reference_fate
         Fate of the given start: another outcome, or a `Fate`.
     outcomes

@@ -206,7 +206,7 @@ def _deciding_indicators(findings: Sequence[IndicatorVerdict], character: Verdic
 
 
 def _find_evidence(orbit: Orbit, birkhoff_digits: BirkhoffDigits | None, shows_chaos: bool) -> Evidence:
-    """Return the evidence of an orbit, or `Evidence.QUASI_PERIODIC` if the digits of its longest window show a torus."""
+    """Return the evidence of an orbit; `Evidence.QUASI_PERIODIC` if its longest windows show a torus and count as evidence."""
     if orbit.evidence is not Evidence.INTEGRATED or shows_chaos or birkhoff_digits is None or not birkhoff_digits.digits.size:
         return orbit.evidence
     if orbit.potential is not None and not orbit.potential.tori_are_evidence:

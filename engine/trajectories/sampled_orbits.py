@@ -96,7 +96,7 @@ def sample_orbits(potential: Potential, states: Any, times: Any, *, execution: E
 
     Returns
     -------
-    The `SampledOrbits`. `to_xarray` has the dimensions (orbit, t), or (orbit, sample) if each orbit has its own times.
+    The `SampledOrbits`.
 
     Raises
     ------

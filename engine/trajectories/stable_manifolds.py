@@ -205,7 +205,7 @@ def find_stable_manifolds(
 
 
 def _arcs_of(channel: int, arcs: dict[int, tuple[list[ManifoldArc], bool]], mirror_channel: int) -> list[ManifoldArc]:
-    """Return the arcs of a channel, computed, or mirrored from the arcs of its mirror channel."""
+    """Return the arcs of a channel, if necessary mirrored from the arcs of its mirror channel."""
     if channel in arcs:
         return arcs[channel][0]
     return [_mirrored(arc, channel) for arc in arcs[mirror_channel][0]]
