@@ -33,7 +33,7 @@ _LARGEST_OFFSET = 2.0
 
 # Number of starts.
 _STARTS = 241
-# Farthest start along the channel, in units of the size of the search.
+# Farthest start along the channel, in units of `search_size`.
 _FARTHEST_START = 1.5
 # Distance moved along the channel with which a trial orbit has left, in the same unit.
 _LARGEST_MOVE = 0.6

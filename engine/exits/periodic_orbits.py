@@ -1,7 +1,7 @@
 """Periodic orbits over a saddle in a rotating frame, found by Newton's method and continuation.
 
 The motion linearised at a saddle of the effective potential Φ has a pair of eigenvalues ±iν: small oscillations of period 2π/ν,
-which span its centre subspace. By Lyapunov's centre theorem, a family of periodic orbits begins with these oscillations. Let E be
+which span the centre subspace. By Lyapunov's centre theorem, a family of periodic orbits begins with these oscillations. Let E be
 the energy of the saddle and σ = √(h − E). The size of small orbits is proportional to σ. The period and (position − saddle)/σ
 depend smoothly on σ. Each orbit is predicted from orbits at smaller σ. Newton's method corrects several states of one period at
 once, so errors grow over only a part of the period (multiple shooting; Stoer & Bulirsch 2002, Introduction to Numerical Analysis,

@@ -70,7 +70,7 @@ class SweepSpec:
     Raises
     ------
     ValueError
-        When a parameter is invalid; the message names it, its value and the legal values.
+        When a parameter is invalid. The message names the parameter, its value and the legal values.
     """
 
     potential: Potential

@@ -1,4 +1,4 @@
-"""Compilation of kernels ahead of time, or their loading from the kernel cache.
+"""Kernels compiled ahead of time, or loaded from the kernel cache.
 
 Numba compiles one function at a time, whatever the number of threads, so the order matters: first the kernels of the first frame
 of a map, then the kernels that look for evidence, which a complete map needs, then all others. Compilation in the background

@@ -238,6 +238,7 @@ class _PairSampler:
         """Return the states, (2, n, 4), and energy rows, (n,), of at most `count` pairs at one separation."""
         states, rows = np.zeros((2, 0, 4)), np.zeros(0, np.int64)
         drawn_count = 0
+        # The 10 keeps chance from ending the search at its first draws.
         while rows.size < count and drawn_count * _MIN_YIELD < rows.size + 10:
             self.execution.raise_if_cancelled()
             candidate_count = 2 * (count - rows.size) + 100
