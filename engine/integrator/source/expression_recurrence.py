@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 from engine.expressions.calculus import curvatures, slopes
 from engine.expressions.graph import Graph, make_graph
-from engine.expressions.nodes import Expression
+from engine.expressions.nodes import Expression, as_number
 from engine.integrator.source.graph_series import GraphSeries, value_of
 from engine.integrator.source.series import NO_REMAINDERS, ORDER, Hessian, PointFunctions, Series, Setting
 from engine.integrator.source.straight_line import StraightLine, Value
@@ -80,7 +80,7 @@ class ExpressionStructure:
 
 def structure_of_expression(expression: Expression, setting: Setting) -> ExpressionStructure:
     """Return the structure of a potential that is an expression."""
-    zero = tuple(not curvature.key[1] for curvature in curvatures(expression))
+    zero = tuple(as_number(curvature) == 0.0 for curvature in curvatures(expression))
     return ExpressionStructure(setting, zero=zero, **{name: graph for name, (graph, _) in _graphs(expression).items()})
 
 

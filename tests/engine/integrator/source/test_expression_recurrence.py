@@ -81,6 +81,16 @@ def test_series_obey_the_equations_of_motion(text: str) -> None:
 
 @texts_of(fast=1)
 def test_the_tangent_map_is_the_derivative_of_the_flow(text: str) -> None:
+    assert_tangent_map(text)
+
+
+@pytest.mark.parametrize("text", ["½x² + exp(y)", "x³/6 + exp(y)", "x sin(y)"])
+def test_simple_second_derivatives_enter_the_tangent_map(text: str) -> None:
+    """V_xx is 1, x or 0."""
+    assert_tangent_map(text)
+
+
+def assert_tangent_map(text: str) -> None:
     kernels, state, h, shift = kernels_of(text), states_of(1)[0], 0.2, 1e-5
     deviations = np.eye(4)
     kernels.tangent(4, np.full(4, h), *(np.full(4, value) for value in state), *deviations)
