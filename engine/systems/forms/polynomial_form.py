@@ -120,12 +120,13 @@ class PolynomialForm:
         return find_critical_points(self.coefficients)
 
     def downhill(self, length: float, sign: float) -> Velocity:
-        """Return −sign ∇V, slowed far away, where a descent would reach infinity in a finite time."""
+        """Return −sign ∇V, slowed beyond `length`, because a line would reach infinity in a finite time."""
         highest = max(map(degree, self.slopes))
         table = np.zeros((2, highest + 1, highest + 1))
         for axis, terms in enumerate(self.slopes):
             for (i, j), c in terms.items():
                 table[axis, i, j] = -sign * c
+        # Rows 1, x, x, … and 1, y, y, …, whose cumulative products are the powers.
         factors = np.ones((2, highest + 1))
 
         def velocity(_time: float, place: np.ndarray) -> np.ndarray:
@@ -160,7 +161,7 @@ class PolynomialForm:
         return checked_form(tuple((i, j, c * _parameter_factor(i, j, omega_1, omega_2, epsilon)) for i, j, c in self.terms))
 
     def moved(self, x: float, y: float) -> PolynomialForm:
-        """Expand V about (x, y), without linear terms. Each coefficient is rounded once."""
+        """Expand V about a critical point (x, y), without linear terms. Each coefficient is rounded once."""
         terms: dict[Powers, Fraction] = {}
         for i, j, c in self.terms:
             for k in range(i + 1):
