@@ -1,4 +1,4 @@
-"""Fields of results in files, and former names. Files contain numbers and texts unchanged, tuples and dataclasses as JSON."""
+"""Fields of results in files, and their former names. Files contain numbers and texts unchanged, other values as JSON."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A cache of compiled kernels on disk, with one file for each (`engine.foundations.cache_files`).
+"""A cache of compiled kernels on disk, with one file for each kernel and signature (`engine.foundations.cache_files`).
 
 Numba's own cache loads any file without a check: a truncated file ends the program, a modified file may compute anything, and two
 processes that compile at the same time can load each other's code. `cache_files` writes a file in one step and checks it when it
@@ -118,7 +118,7 @@ class KernelCache(_Cache):
         delete_cached(self._name)
 
     def _path(self, signature: Any, codegen: Any) -> Path:
-        """Return the path for a signature; it depends on processor, source and versions too, so its content never changes."""
+        """Return the path for a signature. The path also depends on processor, source and versions, so the file never changes."""
         key = repr((signature, codegen.magic_tuple(), self._source_hash, _versions()))
         return cache_folder() / f"{self._name}.{hashlib.sha256(key.encode()).hexdigest()[:24]}{SUFFIX}"
 

@@ -39,8 +39,9 @@ _SIZE, _DOUBLE, _LONG = ir.IntType(32), ir.DoubleType(), ir.IntType(64)
 HEAP_CELL = 16
 """Address of the cell that contains the start of the free memory. The caller of a kernel restores the value of the cell."""
 
-# Numba's memory management, in place of its own. Arrays are allocated at the start of the free memory, without reference counts.
-# An array of Numba begins with the address of its metadata, which contain the address of its numbers; here both are equal.
+# Replaces the functions of Numba's memory management. Arrays are allocated at the start of the free memory, without reference
+# counts. An array of Numba begins with the address of its metadata, which contain the address of its numbers. Here both addresses
+# are equal.
 _RUNTIME = f"""
 define void @NRT_incref(ptr %info) alwaysinline {{ ret void }}
 define void @NRT_decref(ptr %info) alwaysinline {{ ret void }}

@@ -93,9 +93,9 @@ def advance_ensemble(step, jets, coefficients, tolerance, time, beyond, gates, c
 
 @kernel
 def place_ensemble(time, ensemble, places, channels):
-    """Set `places` (2, n) to x and y at a time, NaN for an orbit no longer followed, and `channels` (n,) to the exits it left by.
+    """Set `places` (2, n) to x and y at a time, NaN for an orbit no longer followed, and `channels` (n,).
 
-    The channel of an orbit inside stays 0.
+    The channel of an orbit is the exit through which it has left. That of an orbit still inside stays 0.
     """
     for orbit in range(ensemble.begin.shape[0]):
         if time >= ensemble.escape_time[orbit]:

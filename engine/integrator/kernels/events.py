@@ -1,7 +1,7 @@
 """Events within one step, located in its dense output: exits and crossings of the section y = 0.
 
 An orbit that has crossed the path of a Lyapunov orbit does not return. Any other exit can be crossed and recrossed within a step,
-so the whole step is examined for it.
+so the whole step is examined for such an exit.
 """
 
 from __future__ import annotations
@@ -153,7 +153,7 @@ def append_crossings(x_jet, y_jet, i, direction, begin, duration, crossings, fou
     """Append x, px and the time of each crossing of y = 0 within `duration` of the start of a step to `crossings` (n, m, 3).
 
     direction: as in `crossing_between`; begin: time at the start of the step; found (n,): number of crossings of each orbit,
-    raised. The row of `orbit` is filled from this index, until it has m crossings.
+    increased in place. The row of `orbit` is filled from this index, until the row has m crossings.
     """
     low = 0.0
     y_low, slope_low = direction * series_value(y_jet, i, low), direction * series_slope(y_jet, i, low)
@@ -177,6 +177,7 @@ def _exit_rate(x_jet, y_jet, i, tau, curve):
     vy = series_slope(y_jet, i, tau)
     if curve[SHAPE] == LINE:
         s = min(max(position_across(series_value(x_jet, i, tau), series_value(y_jet, i, tau), curve), -1.0), 1.0)
+        # The derivatives of the Chebyshev polynomials s and 2s² − 1 are 1 and 4s.
         slope = (curve[COEFFICIENTS + 1] + 4.0 * s * curve[COEFFICIENTS + 2]) / curve[HALF_WIDTH]
         u_rate = curve[OUTWARD_X] * vx + curve[OUTWARD_Y] * vy
         return u_rate - slope * (curve[OUTWARD_X] * vy - curve[OUTWARD_Y] * vx)

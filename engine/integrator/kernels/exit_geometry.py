@@ -18,7 +18,7 @@ import numpy as np
 
 from engine.integrator.jit.decorator import kernel, subroutine
 
-# Columns of an exit.
+# Columns of an exit. BEARING is the direction from the origin to the saddle.
 ORIGIN_X, ORIGIN_Y, OUTWARD_X, OUTWARD_Y, BEARING_X, BEARING_Y, REACH, SHAPE = range(8)
 MIDDLE, HALF_WIDTH, SLOPE_LOW, SLOPE_HIGH, COEFFICIENTS = range(8, 13)
 
@@ -29,7 +29,7 @@ CLOSED, CURVE, LINE, DISC, CIRCLE = range(5)
 CURVE_DEGREE = 40
 CURVE_COLUMNS = COEFFICIENTS + CURVE_DEGREE + 1
 
-# Columns of a table: the gate, the reach, the first of the columns ORIGIN_X to OUTWARD_Y, and the first of those from MIDDLE on.
+# Columns of a table: the gate, the reach, then copies of the columns ORIGIN_X to OUTWARD_Y, then of MIDDLE and all that follow.
 GATE_COLUMN, REACH_COLUMN, AXES_COLUMN, MIDDLE_COLUMN = 0, 1, 2, 6
 
 

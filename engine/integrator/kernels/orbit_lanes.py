@@ -26,10 +26,10 @@ _WEIGHTS = (
     0.10122853629037625915, 0.22238103445337447054, 0.31370664587788728734, 0.36268378337836198297,
     0.36268378337836198297, 0.31370664587788728734, 0.22238103445337447054, 0.10122853629037625915,
 )  # fmt: skip
-# Largest difference between the results of the rule on a part of a step and on its halves, relative to the integral over the
-# step; otherwise the part is halved.
+# Largest difference between the results of the rule on a part of a step and on both halves of the part, relative to the integral
+# over the step. Beyond this difference, the part is halved.
 _ACCURACY = 1e-13
-# Largest number of halvings; near a point of rest, a power of the speed below 1 is almost singular.
+# Largest number of halvings. Near a point of rest, |v|^power with a power below 1 is almost singular.
 _MOST_HALVINGS = 40
 
 

@@ -58,9 +58,10 @@ def shoot(
 ):
     """Start at rest on the zero-velocity curve at u, q < 0, and follow the orbit until its motion across the channel turns back.
 
-    Returns u̇ and the time at the turning point, and the number of steps: u̇ < 0 for a start too close to the well, u̇ > 0 for a
-    start too far out, u̇ = 0 for the Lyapunov orbit. If an orbit moves farther than `reach` along the channel before it turns,
-    returns −1 or 1 and NaN. Without a start, returns NaN.
+    Returns u̇ and the time at the turning point, and the number of steps. u̇ < 0 means a start too close to the well, u̇ > 0 a
+    start too far out, and u̇ = 0 the Lyapunov orbit. If an orbit moves farther than `reach` along the channel before it turns,
+    returns −1 or 1 in place of u̇, and NaN. Without a start, returns NaN.
+
     steps (m, 5): set to x, y, px, py, t at the start of each step.
     """
     now = np.zeros((ROWS, LANES))

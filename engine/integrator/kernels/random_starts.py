@@ -28,6 +28,7 @@ _FROM_EDGE = 3e-3
 @subroutine
 def _draw_number(seed):
     """Return a random number from 0 to 1; seed (1,) is changed."""
+    # The numbers are those of mulberry32; 4294967296 is 2^32.
     seed[0] = (seed[0] + 0x6D2B79F5) & _WORD
     state = seed[0]
     mixed = ((state ^ (state >> 15)) * (state | 1)) & _WORD

@@ -1,4 +1,4 @@
-"""Kernels as Python source: functions that call a straight-line program for each lane, or for one point."""
+"""Kernels as Python source: functions that call a straight-line program for each lane (an orbit), or for one point."""
 
 from __future__ import annotations
 

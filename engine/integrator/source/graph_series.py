@@ -47,9 +47,9 @@ class GraphSeries:
         self.x, self.y = ([program.input(f"{axis}{k}") for k in (0, 1)] for axis in "xy")
         self.series: list[list[Value]] = [{"x": self.x, "y": self.y}.get(node.kind, []) for node in graph.nodes]
         self._plan = plan_series(graph)
-        # k u_k of arguments of functions.
+        # The series k u_k of nodes u, for functions.
         self._slopes: dict[int, list[Value]] = {}
-        # 1 / u_0 of arguments of powers and logarithms.
+        # 1 / u_0 of divisors, roots and arguments of powers and logarithms.
         self._reciprocals: dict[int, Value] = {}
         # Sums of products, see `_inner_sum`.
         self._inner_sums: dict[tuple[int, int, bool, int], Value] = {}
@@ -108,7 +108,7 @@ class GraphSeries:
         return self._reciprocals[index]
 
     def add(self, index: int, node: Node, k: int) -> Value:
-        """Return (Σ c u)_k = Σ c u_k."""
+        """Return (Σ c u)_k = Σ c u_k, for k > 0, without the constant."""
         factors = {
             operand: self.program.entry((self.name, number)) for operand, number in zip(node.operands, node.numbers, strict=False)
         }

@@ -116,7 +116,7 @@ class GeneratedCode:
 
     @property
     def operations(self) -> int:
-        """Number of operations of all programs."""
+        """Total number of operations of the programs."""
         return sum(len(function.program.operations) for function in self.functions)
 
     def __eq__(self, other: object) -> bool:
@@ -178,9 +178,10 @@ def _horner(series: Series, h: Value) -> tuple[Value, Value]:
 
 
 def _end_of_step(series: Series, h: Value, remainder: Value | None) -> tuple[Value, Value, list[Value]]:
-    """Return value and slope as `_horner` does, with a remainder added to the first coefficient, and the remainder of the value.
+    """Return value and slope as `_horner` does, with a remainder added to the first coefficient, and [new remainder].
 
-    The latter is the rounding error of the last sum, computed exactly (Knuth's TwoSum). Without a remainder, the list is empty.
+    The new remainder is the rounding error of the last sum, computed exactly (Knuth's TwoSum). Without a remainder, the list is
+    empty.
     """
     if remainder is None:
         return *_horner(series, h), []
@@ -195,7 +196,7 @@ _START = {"x0": Place("x"), "y0": Place("y"), "x1": Place("px"), "y1": Place("py
 
 
 def _start_in(lanes: str) -> dict[str, Place]:
-    """Return the same inputs, read from the first rows of an array of lanes."""
+    """Return the inputs of `_START`, read from the first rows of an array of lanes."""
     return {name: Place(lanes, row) for row, name in enumerate(_START)}
 
 
@@ -230,7 +231,7 @@ def _fixed_step(structure: Structure, table: dict[Any, int]) -> GeneratedFunctio
     h = program.input("h")
     x_end, px_end = _horner(x, h)
     y_end, py_end = _horner(y, h)
-    # The sums are written as source, because within the program they would make it up to a sixth slower.
+    # The sums are written as source, because as operations of the program they would make it up to a sixth slower.
     writes: dict[Place, Value | str] = {
         Place("sums", 0): "weight*(x0*x0)",
         Place("sums", 1): "weight*(y0*y0)",

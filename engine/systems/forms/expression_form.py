@@ -129,7 +129,7 @@ class ExpressionForm:
         return find_stationary_points(Derivatives.of(self.expression))
 
     def downhill(self, length: float, sign: float) -> Velocity:
-        """Return −sign ∇V with limited speed: at most the slope of the quadratic part at `length`, or at a body the mean slope."""
+        """Return −sign ∇V with limited speed: at most the slope of the quadratic part at `length`; at a body, the mean slope."""
         curvature = np.abs(self.hessian(0.0, 0.0)).max()
         if np.isfinite(curvature):
             largest_speed = length * curvature
