@@ -72,7 +72,7 @@ class _Builder:
     def __init__(self) -> None:
         self.nodes: list[Node] = []
         self.numbers: list[float] = []
-        # Indices of nodes by expression. Products and inverses within a node are found by `Node`.
+        # Indices of nodes by expression, and by `Node` for products and inverses that are parts of an expression.
         self._indices: dict[Any, int] = {}
         # Indices of powers by (index of the base, exponent).
         self._powers: dict[tuple[int, float], int] = {}

@@ -14,7 +14,7 @@ Terms = Mapping[Powers, float]
 """The polynomial Σ c x^i y^j as {(i, j): c}."""
 
 HIGHEST_DEGREE = 12
-"""Highest degree of a potential. Searches for critical points are tested up to it. Taylor steps of higher degrees are slow."""
+"""Highest degree of a potential. The search for critical points is not tested beyond, and Taylor steps would be slow."""
 
 
 def degree(terms: Mapping[Powers, object]) -> int:

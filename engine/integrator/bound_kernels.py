@@ -121,7 +121,7 @@ class GeneratedFunction:
 
 
 class _BoundKernel:
-    """A kernel that passes the addresses of generated functions and the coefficients of one potential."""
+    """Calls a kernel with the addresses of generated functions and the coefficients of one potential as first arguments."""
 
     def __init__(self, function: Any, callees: tuple[GeneratedFunction, ...], coefficients: np.ndarray) -> None:
         self.function = function

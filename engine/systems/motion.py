@@ -82,8 +82,8 @@ class Motion(Result):
         """Return the Jacobi constant C = 2U − ẋ² − ẏ² of energies H in a rotating frame; arrays keep their shape.
 
         C = (Ω d)² − 2H/m, where m is the mass, and d is the distance of the origin from the axis of the frame. In the three-body
-        problem with bodies of masses μ and 1 − μ, U = (1 − μ)/r₁ + μ/r₂ + ½ (x² + y²), and the axis is at the barycentre. Seen
-        from the Moon, d = 1 − μ. Some authors add μ(1 − μ) to C.
+        problem with bodies of masses μ and 1 − μ, U = (1 − μ)/r₁ + μ/r₂ + ½ (x² + y²), and the axis is at the barycentre. In
+        axes at the body of mass μ, such as the Moon, d = 1 − μ. Some authors add μ(1 − μ) to C.
 
         Raises
         ------

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 # Default of `centres` and `escape_radius`, which leaves `ends` unchanged.
 _AS_IN_ENDS: Any = ...
 
-# Default t_max if bounded orbits are integrated to the end, in units of 1/|Ω|; dimensionless without rotation.
+# Default t_max if bounded orbits are integrated to the end, in units of 1/|Ω|, or of 1 without rotation.
 _SHORT_TIME = 1000.0
 
 

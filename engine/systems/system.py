@@ -19,7 +19,7 @@ TYPED = "typed"
 """The case of a potential that is given by a formula."""
 
 SHOWN_DIGITS = 12
-"""Number of significant digits of coefficients in formulas. 1.46²/2 is then shown as 1.0658, without a rounding error."""
+"""Significant digits of coefficients in formulas. With 12 digits, 1.46²/2 is shown as 1.0658, without a rounding error."""
 
 
 @dataclass(frozen=True)

@@ -126,7 +126,7 @@ class Well(ReadOnlyArrays):
         )
 
     def is_closed_at(self, energy: Any) -> Any:
-        """Return whether orbits with an energy cannot leave the well: all saddles are higher, and there are no other ends.
+        """Return whether no orbit of the well with this energy has an end: no saddle is lower, and there are no other ends.
 
         With an escape radius, the result is always False. The criterion also holds in a rotating frame, because orbits cannot
         pass the zero-velocity curve V = h.
@@ -180,7 +180,7 @@ class Well(ReadOnlyArrays):
             return ()
         form = self.form
         points, indices = self.critical_points, self.critical_indices
-        # Indices of the exit saddles among the critical points. They are not equal, because `saddles` are rounded.
+        # Indices of the exit saddles among the critical points: the nearest, because `saddles` are rounded.
         saddles = np.array([np.argmin(np.hypot(*(points - saddle).T)) for saddle in self.saddles], int)
         # Whether each critical point is a maximum beside each exit, of shape (channels, points).
         is_beside = stored_points("maxima", form, lambda: find_maxima_beside(form, points, indices, saddles))

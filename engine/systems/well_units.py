@@ -88,6 +88,9 @@ class WellUnits:
 
 
 def nearest_power_of_two(value: float) -> float:
-    """Return the power of 2 nearest to a finite value above 0 on a logarithmic scale. 2^k times the value gives 2^k times it."""
+    """Return the power of 2 nearest to a finite value above 0 on a logarithmic scale.
+
+    A factor of 2^k in the value is a factor of 2^k in the result.
+    """
     mantissa, exponent = math.frexp(value)
     return math.ldexp(1.0, exponent if mantissa * mantissa >= 0.5 else exponent - 1)

@@ -39,7 +39,7 @@ PACKAGE = Path(__file__).parents[1]
 """The package that contains all source compiled into kernels."""
 
 DEFINE = "define"
-"""Name of a function in a generated module. It can be sent to another process, where it defines the same module."""
+"""Name of a function in each generated module. Another process that receives the function defines the same module by it."""
 
 log = logging.getLogger(__name__)
 

@@ -107,7 +107,7 @@ def _hide(module: Any, exported: set[str]) -> None:
 
 
 def _wrapper(name: str, symbol: str, signature: Signature) -> ir.Module:
-    """Return a function with numbers as arguments that calls a kernel."""
+    """Return a module with a function that takes numbers and calls a kernel."""
     context = cpu_target.target_context
     module = ir.Module(name)
     argument_types = [kind for argument in signature.args for kind in _passed_types(argument)]
@@ -132,7 +132,7 @@ def _as_size(builder: ir.IRBuilder, value: ir.Value) -> ir.Value:
 
 
 def _passed_types(kind: Any) -> list[ir.Type]:
-    """Return the types of the numbers as which an argument or a result of a type of Numba is passed."""
+    """Return the types of the numbers that stand for an argument or a result of a Numba type."""
     if isinstance(kind, types.NamedTuple):
         return [passed for element in kind.types for passed in _passed_types(element)]
     if isinstance(kind, types.Array):

@@ -113,7 +113,7 @@ def find_zero(jet, i, low, high):
 
 @subroutine
 def crossing_between(jet, i, direction, low, y_low, slope_low, high, y_high, slope_high):
-    """Return times before and after the crossing of the section, in some direction, in a part of a step; equal times for none.
+    """Return times before and after the crossing of y = 0, in a direction, in a part of a step; equal times for none.
 
     jet: series of y; direction: 1 for crossings from y < 0 to y ≥ 0, −1 for crossings from y > 0 to y ≤ 0; low, high: the ends of
     the part; y_…, slope_…: y and ẏ at these ends, times `direction`. A crossing may be one of a pair in opposite directions.

@@ -5,10 +5,10 @@ is a row of numbers, which has an origin and a half width for all shapes. The or
 of a disc or of the escape circle is the radius.
 
 In a well that does not rotate, an exit is the path of a Lyapunov orbit. The coordinates are u outward and q across, 90°
-counterclockwise from u; u is measured from the saddle along its unstable direction, or from the chord of the orbit along its
-normal. The exit is the graph u = f(s) of a polynomial f, with s = (q − middle)/half_width ∈ [−1, 1]. Beyond its ends, which lie
-on the zero-velocity curve, straight lines continue the exit through the forbidden region, up to |s| = reach. A closed channel is
-a short straight line across its saddle, in the forbidden region but for the saddle itself. In a rotating frame, an exit is a
+counterclockwise from u; u is measured from the saddle along its unstable direction, or from the chord of the orbit, normal
+to the chord. The exit is the graph u = f(s) of a polynomial f, with s = (q − middle)/half_width ∈ [−1, 1]. Beyond its ends, which
+lie on the zero-velocity curve, straight lines continue the exit through the forbidden region, up to |s| = reach. A closed channel
+is a short straight line across its saddle, in the forbidden region but for the saddle itself. In a rotating frame, an exit is a
 "line": a parabola u = c + a q² along the ridge of V at the saddle.
 """
 

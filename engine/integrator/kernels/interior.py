@@ -1,4 +1,4 @@
-"""Tests which points of the Hill region are inside: connected to the origin below the energy without crossing an exit.
+"""Tests which points of the Hill region are inside: a path below the energy leads to the origin without crossing an exit.
 
 A path leads downhill from the point until V on the straight line to the origin is below the energy. The path ends with this line,
 and the point is inside if the whole path crosses the exits an even number of times. If the path leads to another minimum, or to a

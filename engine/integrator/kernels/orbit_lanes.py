@@ -166,7 +166,7 @@ def integrate_speed(step, jets, coefficients, tolerance, duration, power, budget
 
 @subroutine
 def _time_inside(now, new, i, flags, duration, x_jet, y_jet, curves, gates):
-    """Return how long, within its step and `duration`, the orbit of lane i is inside, and whether the orbit ends."""
+    """Return how long, within its step and until the time `duration`, the orbit of lane i is inside, and whether it ends."""
     is_late = flags & OVERSHOOT != 0
     time_inside = min(new[SIZE_ROW, i], duration - now[TIME_ROW, i])
     channel = 0

@@ -21,7 +21,7 @@ _FURTHEST_WALL = 20.0
 _BISECTIONS = 80
 # Largest number of steps of half a period.
 _MOST_STEPS = 400
-# Number of gates: at least the number of saddles of any potential of the highest supported degree.
+# Number of gates: no fewer than the saddles of any potential of the highest supported degree.
 _MOST_CHANNELS = 128
 
 
@@ -33,6 +33,7 @@ def find_wall(potential_value, coefficients, u, saddle_x, saddle_y, outward_x, o
     """
     x = saddle_x + u * outward_x
     y = saddle_y + u * outward_y
+    # `low` and `high` are values of −q.
     high = 0.0
     if call_potential_value(potential_value, coefficients, x, y) >= energy:
         return np.nan

@@ -63,7 +63,7 @@ def draw_at_exits(potential_value, coefficients, curves, energy, of_tubes, seed,
     tube, where orbits pass the exit, and half outside, where orbits turn back. In a rotating frame the exits are lines, not
     Lyapunov orbits, and have no tubes. seed (1,) is changed.
     """
-    # The flux through all parts up to each part of an exit.
+    # The flux through all parts of all exits up to and including each part.
     flux = np.zeros(curves.shape[0] * _PARTS)
     total = 0.0
     for exit in range(curves.shape[0]):

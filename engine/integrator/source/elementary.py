@@ -28,7 +28,7 @@ _EXPONENT = 1 << 52
 _ONE_BITS = 1023 << 52
 _ROOT_HALF_BITS = 0x3FE6A09E667F3BCD
 
-# Largest argument of exp, in place of larger arguments, because no orbit meets such a force.
+# Largest argument of exp. This argument replaces larger ones, because no orbit meets such a force.
 _LARGEST_EXPONENT = 700.0
 # Smallest normal double, for log.
 _SMALLEST_NORMAL = 2.0**-1022

@@ -136,9 +136,9 @@ def _step_size(program: StraightLine, x: Series, y: Series, structure: Structure
     """Return the h whose 16th power times a norm of the last coefficients is the tolerance, without calls and branches.
 
     The norm contains three orders of both coordinates, so that a step is not too long if one coefficient happens to vanish. In a
-    well of one frequency, this h is the size of the step. Where frequencies differ from place to place, it defines units of time
-    and length in which the size is found: in these units h is 0.35, and the orbit moves by about 1 in a unit of time. Thus steps
-    and their errors become smaller near bodies. NaN marks an orbit that has failed.
+    well of one frequency, this h is the size of the step. Where frequencies differ from place to place, this h defines units of
+    time and length: in these units h is 0.35, and the orbit moves by about 1 in a unit of time. The size is found in these units,
+    so steps and their errors become smaller near bodies. NaN marks an orbit that has failed.
     """
     last, second_last, third_last = (abs(x[-k]) + abs(y[-k]) for k in range(1, _ORDERS_OF_NORM + 1))
     norm = last + second_last + _EARLIER_WEIGHT * third_last

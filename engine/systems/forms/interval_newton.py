@@ -109,7 +109,7 @@ def excludes_zero(slopes: Enclosure) -> np.ndarray:
 
 
 def solve(derivatives: Derivatives, centres: np.ndarray, half: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return the points (m, 2) of boxes with exactly one, and for each box whether it is proved to have one point or none (n,).
+    """Return the points (m, 2) of boxes with exactly one point, and flags (n,) of boxes proved to have one point or none.
 
     The operator of Krawczyk maps a box c ± h to K = c − Y f + (I − Y J)(± h). Here, f are the two derivatives at c, J is their
     Jacobian matrix on the box, and Y is the inverse of the Jacobian matrix at c. All critical points of the box are in K. If K is

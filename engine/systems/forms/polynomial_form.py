@@ -33,8 +33,8 @@ COEFFICIENT_RANGE = (1e-9, 1e9)
 
 # Smallest coefficient, as a share of the largest. Smaller coefficients have no effect in double precision.
 _SMALLEST_RATIO = 1e-18
-# Largest share of the largest coefficient at which a coefficient counts as a rounding error of 0: after a shift of the origin, or
-# among coefficients of one degree.
+# Share of the largest coefficient up to which a coefficient counts as a rounding error of 0. After a shift of the origin, the
+# largest coefficient of V is meant; in `_complex_terms`, that of the same degree.
 _ZERO_COEFFICIENT = 1e-12
 
 

@@ -56,7 +56,7 @@ def depth_levels(potential: Potential, multiples: Sequence[float]) -> list[float
 
 
 def _range_around(potential: Potential, energies: np.ndarray) -> EnergyRange:
-    """Return a range from below the lowest critical energy to above the highest, where orbits can reach the whole plane."""
+    """Return a range from below the lowest critical energy to above the highest, where no part of the plane is forbidden."""
     span = max(float(np.ptp(energies)), _LEAST_SPREAD * float(np.abs(energies).max()), _NARROWEST * potential.units.energy)
     decimals = 2 - math.floor(math.log10(span))
     exact_energies = energies.min() - 0.5 * span, energies.max() + 0.5 * span, np.median(energies)
