@@ -1,4 +1,4 @@
-"""Intervals that contain all values of an expression on boxes, to prove that it has no zero or exactly one zero in a box.
+"""Intervals that contain all values of an expression on boxes, for proofs that a box contains no zero or exactly one.
 
 In interval arithmetic (Moore, Kearfott & Cloud 2009, Introduction to Interval Analysis) each operation of a graph is replaced by
 an operation on lower and upper ends, and the rounding error widens the result. The functions of NumPy are assumed to be accurate

@@ -18,7 +18,7 @@ from engine.expressions.polynomials import Powers, Terms
 
 
 class Expression:
-    """A node of a tree with everything below it.
+    """A node of a tree with everything below the node.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Compiled kernels of a potential, bound to its coefficients.
+"""Compiled kernels, bound to the coefficients of a potential.
 
 All potentials of the same structure share generated functions (`engine.integrator.source`), and all potentials share the kernels
 that call them (`engine.integrator.kernels`). Each potential has callables that pass its coefficients and the addresses of its

@@ -271,10 +271,10 @@ class Well(ReadOnlyArrays):
 
     @cached_property
     def fastest_frequency(self) -> float:
-        """The higher frequency ω of small oscillations in the well at the origin; NaN without a well or a body there.
+        """The higher frequency ω of small oscillations in the well at the origin; NaN if there is none.
 
-        At a body, this is the frequency of a circular orbit of `typical_radius`. Its square is the mean slope of V divided by the
-        radius.
+        Without a well, this is the frequency of a circular orbit of `typical_radius`. The square of this frequency is the mean
+        slope of V divided by the radius.
         """
         return self._fastest_light_frequency / float(np.sqrt(self.mass))
 

@@ -63,7 +63,7 @@ class CompiledOperations:
             self._reserved.update(codes)
 
     def add(self, code: str, count: int) -> None:
-        """Count the operations of a code before it is compiled; raise `CompiledCodeLimitError` if this exceeds a limit."""
+        """Count the operations of a code before it is compiled; raise `CompiledCodeLimitError` beyond a limit."""
         account = _account.get()
         with self._lock:
             if self.most is not None and code not in self._reserved:

@@ -39,7 +39,7 @@ PACKAGE = Path(__file__).parents[1]
 """The package that contains all source compiled into kernels."""
 
 DEFINE = "define"
-"""Name of a function in each generated module. Another process that receives the function defines the same module by it."""
+"""Name of a function in each generated module. Another process that receives and calls the function defines the same module."""
 
 log = logging.getLogger(__name__)
 

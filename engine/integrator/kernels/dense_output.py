@@ -217,7 +217,7 @@ def compute_series(jets, coefficients, start, series):
 
 @kernel
 def sample_steps(jets, coefficients, steps, count, end, path):
-    """Set `path` (2, count · m) to x and y at m equally spaced times in each of the first `count` steps, including its end.
+    """Set `path` (2, count · m) to x and y at m equally spaced times in each of the first `count` steps, the end included.
 
     steps (n, 5): x, y, px, py, t at the start of each step; end: the time at which the last of the `count` steps ends.
     """

@@ -52,7 +52,7 @@ class Ensemble(NamedTuple):
 
 @kernel
 def advance_ensemble(step, jets, coefficients, tolerance, time, beyond, gates, curves, ensemble):
-    """Advance each orbit, in place, until its step contains `time`, or until the last time at which it is followed.
+    """Advance each orbit, in place, until its step contains `time`, or until the last time at which the orbit is followed.
 
     beyond: time for which orbits are followed beyond an exit, except into a body; gates (exits, 3) and curves (exits, columns):
     see `engine.integrator.kernels.propagate.Exits`.

@@ -187,7 +187,7 @@ def _exit_rate(x_jet, y_jet, i, tau, curve):
 
 @subroutine
 def _find_excursion(x_jet, y_jet, i, duration, curve):
-    """Return the time within `duration` at which an orbit is farthest beyond an exit that it recrosses; −1 if it does not."""
+    """Return the time within `duration` at which an orbit is farthest beyond an exit that it recrosses; −1 for none."""
     low = 0.0
     rate_low = _exit_rate(x_jet, y_jet, i, low, curve)
     for part in range(1, _PARTS + 1):
@@ -226,7 +226,7 @@ def passed_exit(x_jet, y_jet, i, duration, curves):
 
 @subroutine
 def find_exit_time(x_jet, y_jet, i, duration, curve):
-    """Return the time from the start of a step to its crossing of an exit, by the Illinois method."""
+    """Return the time from the start of a step to the crossing of an exit, by the Illinois method."""
     low, high = 0.0, duration
     if curve[SHAPE] >= LINE:
         excursion = _find_excursion(x_jet, y_jet, i, duration, curve)

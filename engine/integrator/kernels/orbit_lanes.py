@@ -1,4 +1,4 @@
-"""Adaptive steps of one orbit per lane until it escapes, for passages through y = 0 and integrals of the speed.
+"""Adaptive steps of one orbit per lane until the orbit escapes, for passages through y = 0 and integrals of the speed.
 
 These kernels are compiled once for all potentials, like `engine.integrator.kernels.propagate`.
 """

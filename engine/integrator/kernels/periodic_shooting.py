@@ -27,7 +27,7 @@ _MOST_CHANNELS = 128
 
 @subroutine
 def find_wall(potential_value, coefficients, u, saddle_x, saddle_y, outward_x, outward_y, energy):
-    """Return the q < 0 at which the line across the channel at u meets the zero-velocity curve V = energy; NaN if it does not.
+    """Return the q < 0 at which the line across the channel at u meets the zero-velocity curve V = energy; NaN for none.
 
     The coordinates (u, q) are measured from the saddle along `outward` and along the direction 90° counterclockwise from it.
     """

@@ -209,7 +209,7 @@ def _refill_lane(orbits, todo, next_orbit, active, lanes, i, lane_orbit, crossed
 
 @subroutine
 def _judge_step(jets, coefficients, flags, now, new, i, final, exits, orbit, single):
-    """Return what happens in a flagged step: (orbit ends, exit that it crosses or 0, orbit fails, events are to be located).
+    """Return whether an orbit ends in a flagged step, the exit crossed or 0, whether it fails, and whether to locate events.
 
     now, new: lanes at the start and the end of the step; i: lane of the orbit; single: buffer for one step.
     """

@@ -1,4 +1,4 @@
-"""exp, log, sin, cos and real powers of a value of a straight-line program, written in its own operations.
+"""exp, log, sin, cos and real powers of a value of a straight-line program, written in operations of the program.
 
 A call of a library function in each lane would prevent vectorisation. Vector libraries round differently from scalar functions,
 so results would depend on the lane. The functions here reduce the argument by exact multiples of log 2 or π/2 and evaluate
@@ -64,7 +64,7 @@ _ATANH = [1.0 / (2 * k + 3) for k in range(10, -1, -1)]
 
 
 def exp_of(u: Value) -> Value:
-    """Return exp u = 2^n exp r with |r| ≤ log 2 / 2; beyond ±700, its value at ±700."""
+    """Return exp u = 2^n exp r with |r| ≤ log 2 / 2; beyond ±700, the value at ±700."""
     u = where(u < _LARGEST_EXPONENT, u, _LARGEST_EXPONENT)
     u = where(u > -_LARGEST_EXPONENT, u, -_LARGEST_EXPONENT)
     n, bits = _nearest_integer(u * (1.0 / math.log(2.0)))

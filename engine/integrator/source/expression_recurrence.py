@@ -17,12 +17,15 @@ from engine.integrator.source.straight_line import StraightLine, Value
 _HESSIAN = ((0, 0), (0, 1), (1, 1))
 
 Entry = tuple[str, int]
-"""(graph, index): an entry of the table, which contains a number of one of the graphs of a structure."""
+"""(graph, index): an entry of the table with number `index` of one of the graphs of a structure."""
 
 
 @dataclass(frozen=True)
 class ExpressionStructure:
-    """The graphs of V, of its gradient, of gradient and Hessian, and of V and gradient; and which second derivatives are zero."""
+    """The graphs of V (`value`), gradient (`motion`), gradient and Hessian (`variations`), and V and gradient (`slopes`).
+
+    `zero` tells which second derivatives are zero.
+    """
 
     setting: Setting
     value: Graph

@@ -151,7 +151,7 @@ class GraphSeries:
         return reduce(add, [*self._inner_sum(left, right, k), u[0] * v[k], u[k] * v[0]])
 
     def _inner_sum(self, left: int, right: int, k: int) -> list[Value]:
-        """Return Σ u_j v_(k − j) over j = 1 … k − 1, or half of it for a square; an empty list for an empty sum."""
+        """Return Σ u_j v_(k − j) over j = 1 … k − 1, or half this sum for a square; an empty list for an empty sum."""
         if k == 1:
             return []
         key = self._plan.roots[left], self._plan.roots[right], left == right, k

@@ -55,8 +55,8 @@ TOLERANCE = 3e-15
 _EARLIER_WEIGHT = 0.3
 # Size of the steps for which this weight was found.
 _USUAL_STEP = 0.35
-# Factor of the norm in potentials with centres: a power of 10 with which energies are conserved to 1e-11. It is above 1 because
-# coefficients near singularities decrease more slowly than elsewhere.
+# Factor of the norm in potentials with bodies: a power of 10 with which energies are conserved to 1e-11. The factor is above 1
+# because coefficients near singularities decrease more slowly than elsewhere.
 _CAUTION = 10.0
 # Speed that is added to the speed that limits a step, so that no step is longer than 16.
 _LEAST_SPEED = 1.0 / 16.0

@@ -1,4 +1,4 @@
-"""Tests of a step for events, which are appended to its straight-line program."""
+"""Tests for events in a step, as operations that are appended to the straight-line program of the step."""
 
 from __future__ import annotations
 
@@ -55,8 +55,8 @@ def flag_gates(
 ) -> tuple[dict[str, tuple[int, int]], Value]:
     """Return the inputs of the gates, with their places (row, column) in `gates`, and the flag of a step: GATE, NEAR or 0.
 
-    A row of `gates` is g_x, g_y, g. For a channel, it stands for the line g_x x + g_y y = g; for a circle, it contains the centre
-    and the radius.
+    A row of `gates` is g_x, g_y, g. For a channel, the row stands for the line g_x x + g_y y = g. For a circle, the row contains
+    the centre and the radius.
     """
     count = setting.channels + len(setting.sides)
     # Suffixes of the names of inputs, with their columns.

@@ -23,7 +23,7 @@ from engine.systems.forms.form import UndecidedError
 _SHEARS = (fmpq(37, 101), fmpq(-67, 89), fmpq(113, 71))
 # Numbers of bits of the intervals, tried in turn.
 _PRECISIONS = (128, 256, 512, 1024)
-# Relative distance of an x from s − k y within which their intervals are compared.
+# Relative distance of x from s − k y up to which the intervals of both are compared.
 _NEAR = 1e-9
 
 

@@ -96,7 +96,7 @@ def find_maxima_beside(form: Form, points: np.ndarray, indices: np.ndarray, sadd
 
 
 class _Descent:
-    """Lines of steepest descent of sign V from its saddles."""
+    """Lines of steepest descent of sign · V from the saddles; with a sign of −1, they are lines of steepest ascent of V."""
 
     def __init__(self, form: Form, sign: float, points: np.ndarray, is_saddle: np.ndarray) -> None:
         self.form, self.sign, self.points, self.is_saddle = form, sign, points, is_saddle

@@ -57,7 +57,7 @@ class ExpressionForm:
     expression: Expression
 
     def __post_init__(self) -> None:
-        # Do not search an expression for zeros if it is refused because of its size.
+        # An expression that is refused because of its size is not searched for zeros.
         if self.limits_refusal() is None:
             object.__setattr__(self, "expression", replace_parts(self.expression, _expansions_about_zeros(self.expression)))
 

@@ -35,7 +35,7 @@ _ZERO = 2.0**-_OCTAVES
 _NEWTON_STEPS = 60
 # Second derivatives up to this magnitude are near the subnormal numbers.
 _SUBNORMAL = 1e-290
-# Length of a step of Newton's method below which it has converged, relative to the distance from the origin.
+# Length of a step below which Newton's method has converged, relative to the distance from the origin.
 _TOLERANCE = 1e-12
 # Distance below which points are the same, relative to their distance from the origin plus the distance of the nearest point.
 _SAME = 1e-8

@@ -74,7 +74,7 @@ def tokenize(text: str) -> list[Token]:
 
 
 def read_number(token: Token) -> Fraction:
-    """Return the exact value of a number or a fraction; FormulaError if it is too large."""
+    """Return the exact value of a number or a fraction; FormulaError if it has too many digits."""
     if token.kind == "fraction":
         # The denominators of these characters are 2 to 10.
         return Fraction(unicodedata.numeric(token.text)).limit_denominator(10)

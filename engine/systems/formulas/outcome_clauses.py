@@ -63,7 +63,7 @@ class Clauses(NamedTuple):
         return (*of_ends, *(self.well or ()), *(self.masses or ()))
 
     def find_mass(self, value_of: Callable[[Part], float]) -> float:
-        """Return the mass of both directions, 1 without a clause; FormulaError if it is out of range, or the masses differ."""
+        """Return the mass of both directions, 1 without a clause; FormulaError if a mass is illegal, or the masses differ."""
         if self.masses is None:
             return 1.0
         along_x, along_y = map(value_of, self.masses)
