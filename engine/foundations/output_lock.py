@@ -26,8 +26,8 @@ def hold_lock(path: Path) -> Iterator[None]:
     """Reserve a path for this process by a file `.NAME.lock` beside the path; the file is deleted at the end.
 
     The operating system releases the lock when the process ends, even if it is killed. The file of a killed process stays until
-    the next process with this output deletes it. The file is beside the output, so that it also protects outputs on file systems
-    that several machines share. On Windows, and on file systems without locks, nothing is reserved.
+    the next process with this output deletes it. The file is beside the output, so that the lock also protects outputs on file
+    systems that several machines share. On Windows, and on file systems without locks, nothing is reserved.
 
     Parameters
     ----------

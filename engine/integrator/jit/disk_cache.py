@@ -1,8 +1,8 @@
 """A cache of compiled kernels on disk, with one file for each kernel and signature (`engine.foundations.cache_files`).
 
 Numba's own cache loads any file without a check: a truncated file ends the program, a modified file may compute anything, and two
-processes that compile at the same time can load each other's code. `cache_files` writes a file in one step and checks it when it
-is read. The name of a file contains a hash of everything on which its code depends.
+processes that compile at the same time can load each other's code. `cache_files` writes a file in one step and checks each file
+that it reads. The name of a file contains a hash of everything on which its code depends.
 
 Numba has no public interface for caches, so this module uses internal names of numba 0.68, which may change with any version:
 

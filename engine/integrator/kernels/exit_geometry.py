@@ -91,7 +91,7 @@ def _interpolate_exit(nodes, rows, sigma, shape, exit_curve, gate):
     """Set an exit (columns,) and its gate (3,), both zeros initially, from a table.
 
     sigma: value among the nodes; 0.0 or less for a closed channel. The barycentric formula is used (Berrut & Trefethen 2004, SIAM
-    Review 46, 501), except for the reach: as it is not smooth, the smaller reach of two neighbours is used.
+    Review 46, 501), except for the reach. The reach is not smooth, so the smaller one of two neighbours is used.
     """
     count = nodes.shape[0]
     exit_curve[OUTWARD_X] = 1.0
@@ -165,8 +165,8 @@ def interpolate_exit(nodes, rows, saddle, shape, energies, number, curves, gates
     """Set exit `number` in `curves` (n, exits, columns) at energies (n,) and its gate in `gates` (exits, 3), zeros initially.
 
     nodes (m,): values of √(h − saddle), rising Chebyshev nodes of the first kind; saddle: the energy at which the channel opens;
-    rows (m, columns): the exit at each node; shape: CURVE or LINE. Of the gates at all energies, the lowest is chosen, because it
-    lies inside all these exits.
+    rows (m, columns): the exit at each node; shape: CURVE or LINE. Of the gates at all energies, the lowest is chosen, because
+    this gate lies inside all these exits.
     """
     gate = np.zeros(3)
     for i in range(energies.shape[0]):

@@ -4,7 +4,7 @@ Along an orbit every quantity is a power series in time, and the series of a pro
 and V a polynomial, coefficient k + 2 of x and y follows from coefficients 0 … k of the monomials in V_x and V_y (Jorba & Zou
 2005, Experimental Mathematics 14, 99). Written as one assignment per coefficient inside one loop over orbits, this recurrence has
 neither branches nor calls, so the compiler vectorises all of it. Formulas with other functions have the recurrences of
-`engine.integrator.source.graph_series`; the following functions are the same for both.
+`engine.integrator.source.graph_series`; the following functions are the same for all formulas.
 
 For each potential there are four functions with a loop over lanes `i`, and one or two for a single point:
 
