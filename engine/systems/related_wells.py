@@ -102,7 +102,7 @@ class Lineage:
         Name of the family from which the exits were continued (`ParameterFamily`); otherwise empty. Continued exits may differ in
         the last bit from exits found from the critical points, so caches keep their results apart.
     make_well
-        Function that makes the well from form, rotation, ends and mass. The function has no other influence on results than `family`.
+        Function that makes the well from form, rotation, ends and mass. Results depend on `family` alone.
     """
 
     family: str = ""
