@@ -82,7 +82,6 @@ def plain_attributes(attributes: Mapping[Any, Any]) -> dict[str, Any]:
 
 
 def _plain_attribute(value: Any) -> Any:
-    """Convert one attribute, see `plain_attributes`."""
     if isinstance(value, np.ndarray | np.generic):
         value = value.tolist()
     return tuple(value) if isinstance(value, list) else value

@@ -104,7 +104,6 @@ def find_section_points(fixed_step, jets, coefficients, h, steps, state, points,
 
 @subroutine
 def _count_below(values, limit):
-    """Return the number of values below a limit."""
     count = 0
     for value in values:
         if value < limit:

@@ -114,7 +114,6 @@ def fill_vectors(count):
 
 @subroutine
 def _make_buffer(lanes):
-    """Return an empty buffer."""
     h, orbit, channel = np.zeros(lanes), np.zeros(lanes, np.int64), np.zeros(lanes, np.int64)
     return _StepBuffer(np.zeros((4, lanes)), h, orbit, channel, np.zeros((ORDER + 1, lanes)), np.zeros((ORDER + 1, lanes)))
 
@@ -261,7 +260,6 @@ def _store_orbit(lanes, i, crossed, orbits, orbit):
 
 @subroutine
 def _move_lane(lanes, source, target, lane_orbit, crossed):
-    """Copy one lane to another."""
     for c in range(ROWS):
         lanes[c, target] = lanes[c, source]
     lane_orbit[target] = lane_orbit[source]

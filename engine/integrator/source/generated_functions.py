@@ -62,8 +62,8 @@ def lane_loop(
 
     reads, constants: places of the inputs, by name; writes: values of the program, or source, by place; rows: lengths of the rows
     of arrays with a fixed length. Constants are read before the loop. In the loop, the compiler would check each for overlap
-    with every array that the loop writes, and beyond about 100 checks it vectorises nothing. The compiler knows that rows of a
-    fixed length do not overlap. For separate arrays, the checks would take as long as 16 lanes.
+    with every array that the loop writes, and beyond about 100 checks it vectorises nothing. Rows of a fixed length need no
+    checks. For separate arrays, the checks would take as long as 16 lanes.
     """
     program.results = [value.index for value in writes.values() if isinstance(value, Value)]
     sources = {place: f"r{value.index}" if isinstance(value, Value) else value for place, value in writes.items()}
