@@ -52,7 +52,7 @@ def slopes(expression: Expression) -> tuple[Expression, Expression]:
 
 
 def curvatures(expression: Expression) -> tuple[Expression, Expression, Expression]:
-    """Return the second derivatives along x x, x y and y y."""
+    """Return the second derivatives: twice along x, along x and y, and twice along y."""
     along_x, along_y = slopes(expression)
     return derivative(along_x, 0), derivative(along_x, 1), derivative(along_y, 1)
 
@@ -65,7 +65,7 @@ def _differentiate_factor(factors: tuple[tuple[Expression, float], ...], k: int,
 
 
 def _outer_derivative(name: str, argument: Expression) -> Expression:
-    """Return f'(argument) of the function f with a name."""
+    """Return f'(argument) of the function f called `name`."""
     match name:
         case "exp":
             return apply_function("exp", argument)

@@ -38,7 +38,7 @@ def _terms_of(total: Expression) -> Terms:
 
 
 def _with_unit_sums(part: Expression, c: float) -> tuple[float, Expression]:
-    """Return (d, e) with d e = c m. In e, the first coefficient of sums among the factors is 1, if it is ±2^k in m."""
+    """Return (d, e) with d e = c m for the `part` m. Factors of m that are sums beginning with ±2^k begin with 1 in e."""
     factors = []
     for base, n in part.factors if isinstance(part, Product) else ():
         scale = base.terms[0][1] if isinstance(base, Sum) and n == int(n) else 1.0

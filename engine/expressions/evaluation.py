@@ -23,7 +23,7 @@ class Operations[Value]:
     linear
         A constant plus the sum of the products of coefficients and values.
     product
-        Product of two values. If both are the same object, it may be computed as a square.
+        Product of two values. If both are the same object, the product may be computed as a square.
     power
         Power of a value with a constant exponent.
     functions

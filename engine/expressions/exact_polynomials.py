@@ -1,4 +1,4 @@
-"""Polynomials in x and y with rational coefficients, those of FLINT, with results of limited size."""
+"""FLINT's polynomials in x and y with rational coefficients, and their products and powers of limited size."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def limited_product(a: fmpq_mpoly, b: fmpq_mpoly) -> fmpq_mpoly:
 
 
 def limited_power(a: fmpq_mpoly, exponent: int) -> fmpq_mpoly:
-    """Return a to an integer power from 0 to `HIGHEST_DEGREE`; raise `TooLargeError` if it is too large."""
+    """Return a to an integer power from 0 to `HIGHEST_DEGREE`; raise `TooLargeError` if the power is too large."""
     total = RING.constant(1)
     for _ in range(exponent):
         total = limited_product(total, a)
@@ -51,7 +51,7 @@ def limited_power(a: fmpq_mpoly, exponent: int) -> fmpq_mpoly:
 
 
 def limited(polynomial: fmpq_mpoly) -> fmpq_mpoly:
-    """Return a polynomial; raise `TooLargeError` if a number has too many digits."""
+    """Return the polynomial itself; raise `TooLargeError` if a number has too many digits."""
     for c in polynomial.coeffs():
         if max(int(c.p).bit_length(), int(c.q).bit_length()) > _MOST_BITS:
             raise TooLargeError("a number of more than 300 digits")

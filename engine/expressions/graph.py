@@ -56,7 +56,7 @@ class Graph(NamedTuple):
 
 @lru_cache(maxsize=_GRAPHS)
 def make_graph(expressions: tuple[Expression, ...]) -> tuple[Graph, tuple[float, ...]]:
-    """Return the graph of expressions, and its numbers."""
+    """Return the common graph of expressions, and the numbers to which the graph refers."""
     builder = _Builder()
     results = tuple(builder.add(each) for each in expressions)
     return Graph(tuple(builder.nodes), results), tuple(builder.numbers)
@@ -72,7 +72,7 @@ class _Builder:
     def __init__(self) -> None:
         self.nodes: list[Node] = []
         self.numbers: list[float] = []
-        # Indices of the nodes of expressions, and of products and inverses by `Node`.
+        # Indices of nodes by expression, and by `Node` for products and inverses that are parts of an expression.
         self._indices: dict[Any, int] = {}
         # Indices of powers by (index of the base, exponent).
         self._powers: dict[tuple[int, float], int] = {}

@@ -1,4 +1,4 @@
-"""Intervals that contain all values of an expression on boxes, to prove that it has no zero or exactly one zero in a box.
+"""Intervals that contain all values of an expression on boxes, for proofs that a box contains no zero or exactly one.
 
 In interval arithmetic (Moore, Kearfott & Cloud 2009, Introduction to Interval Analysis) each operation of a graph is replaced by
 an operation on lower and upper ends, and the rounding error widens the result. The functions of NumPy are assumed to be accurate
@@ -17,7 +17,7 @@ import numpy as np
 from engine.expressions.evaluation import Operations, node_values
 from engine.expressions.graph import Graph, Node
 
-# Relative widening of an end, which covers the rounding error of an operation.
+# Relative widening of an end, four units in the last place, which covers the rounding error of an operation.
 _RELATIVE = 4.0 * 2.0**-52
 # Absolute widening of an end, which covers underflow.
 _ABSOLUTE = 1e-300
@@ -27,7 +27,7 @@ _LARGEST_ANGLE = 1e8
 
 @dataclass(frozen=True)
 class Interval:
-    """Lower and upper ends for n boxes, each of shape (n,)."""
+    """Lower and upper ends of the values on n boxes, each of shape (n,)."""
 
     low: np.ndarray
     high: np.ndarray

@@ -1,7 +1,8 @@
 """Expressions in x and y: immutable trees in canonical form, so that equal formulas are equal objects.
 
-An expression is a coordinate, a sum Σ c m + constant, a product Π b^a with real exponents, or a function exp, log, sin or cos of
-an expression. Numbers are coefficients of sums, and a single number is a sum without terms. Parameters already have their values.
+An expression is a coordinate, a sum constant + Σ c m of expressions m, a product Π b^a of expressions b with real exponents, or a
+function exp, log, sin or cos of an expression. Numbers are coefficients of sums, and a single number is a sum without terms.
+Parameters already have their values.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from engine.expressions.polynomials import Powers, Terms
 
 
 class Expression:
-    """A node of a tree with everything below it.
+    """A node of a tree with everything below the node.
 
     Attributes
     ----------
@@ -178,7 +179,7 @@ def power(base: Expression, exponent: float) -> Expression:
 
 
 def _keeps_domain(inner: float) -> bool:
-    """Return whether (b^inner)^a can be written as b^(inner a). For even `inner` it cannot: √(b²) is |b|."""
+    """Return whether (b^inner)^a is rewritten as b^(inner a). An even `inner` forbids this, because √(b²) is |b|."""
     return inner != int(inner) or (int(inner) % 2 != 0 and abs(inner) == 1.0)
 
 

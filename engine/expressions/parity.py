@@ -23,7 +23,7 @@ _PARITIES = 1024
 def parity(expression: Expression, axis: int) -> int:
     """Return the parity under a change of sign of a coordinate: `EVEN`, `ODD` or `NEITHER`.
 
-    A sum whose terms are exchanged by the reflection, such as the terms of two equal centres, is `NEITHER`: in floating point its
+    A sum whose terms are exchanged by the reflection, such as the terms of two equal bodies, is `NEITHER`: in floating point its
     values at mirror images can differ in the last bit.
     """
     match expression:

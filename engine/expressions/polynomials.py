@@ -8,10 +8,13 @@ from typing import Any
 import numpy as np
 
 Powers = tuple[int, int]
+"""The exponents (i, j) of x^i y^j."""
+
 Terms = Mapping[Powers, float]
+"""The polynomial Σ c x^i y^j as {(i, j): c}."""
 
 HIGHEST_DEGREE = 12
-"""Highest degree of a potential. Searches for critical points are tested up to it, and higher degrees make Taylor steps slow."""
+"""Highest degree of a potential. The search for critical points is not tested beyond, and Taylor steps would be slow."""
 
 
 def degree(terms: Mapping[Powers, object]) -> int:

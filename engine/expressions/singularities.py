@@ -37,7 +37,7 @@ def _is_central(base: Expression) -> bool:
 
 
 def oblique_gradients(expression: Expression) -> tuple[tuple[float, float], ...]:
-    """Return (a, b) of each base or argument of a function of the form a x + b y + c with a, b ≠ 0, without repetitions."""
+    """Return (a, b) of each base of a power and argument of a function that is a x + b y + c with a, b ≠ 0, each once."""
     polynomials = (as_terms(part) for part in dict.fromkeys(_inner_parts(expression)))
     gradients = ((terms.get((1, 0), 0.0), terms.get((0, 1), 0.0)) for terms in polynomials if terms and degree(terms) == 1)
     return tuple(dict.fromkeys((a, b) for a, b in gradients if a and b))

@@ -9,7 +9,7 @@ from engine.expressions.nodes import Coordinate, Expression, Function, Product, 
 _TO_SUPERSCRIPT = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 # Largest denominator of a number that is written as a fraction.
 _LARGEST_DENOMINATOR = 1000
-# Largest denominator of a fraction that has a finite decimal expansion: ½, ¼, ⅛, but 0.55125 in place of 441/800.
+# Largest denominator of a fraction where decimals would also be exact: ½, ¼, ⅛, but 0.55125 in place of 441/800.
 _LARGEST_OF_DECIMALS = 8
 
 
@@ -38,7 +38,7 @@ def write_expression(expression: Expression, digits: int | None = None) -> str:
 
 
 def join_signed(parts: list[tuple[float, str]]) -> str:
-    """Join texts to a sum. The number of each pair gives the sign of the text."""
+    """Join texts to a sum. The number in each pair gives the sign of its text."""
     text = ""
     for c, part in parts:
         sign = ("−" if c < 0 else "") if not text else (" − " if c < 0 else " + ")

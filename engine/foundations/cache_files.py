@@ -1,8 +1,8 @@
 """The cache on disk: files in a private folder of limited size, verified when they are read and written atomically.
 
-The cache contains compiled kernels, as pickles with machine code, and points of potentials. The hash at the start of each file
-detects accidents, such as an incomplete copy. The hash does not detect attacks, because anyone who can write a file can also
-write its hash. A file is therefore read only if no other user can have written it.
+The cache contains compiled kernels, as pickles with machine code, and critical points of potentials. The hash at the start of
+each file detects accidents, such as an incomplete copy. The hash does not detect attacks, because anyone who can write a file can
+also write its hash. A file is therefore read only if no other user can have written it.
 """
 
 from __future__ import annotations
@@ -134,7 +134,7 @@ def _is_private_folder(folder: Path) -> bool:
 
 
 def _find_other_user(status: os.stat_result) -> str:
-    """Describe who else may have written a file or folder, and the remedy; empty if only this user or the superuser may have."""
+    """Describe who else may have written a file or folder, and the remedy; empty if only this user or the superuser could."""
     if os.name != "posix":
         return ""
     if status.st_uid not in (os.geteuid(), _SUPERUSER):

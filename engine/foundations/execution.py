@@ -20,8 +20,8 @@ import numpy as np
 
 # Smallest number of indices in a task, approximately.
 _LEAST_PART = 1000
-# Nice value of compute threads, which get about a tenth of the processor time of a normal thread under contention. At idle
-# priority, another program could stop a thread that holds the interpreter lock, and all other threads would wait for this lock.
+# Nice value of compute threads, which under contention get about a tenth of the processor time of a normal thread. At idle
+# priority, another program could stop a thread that holds the interpreter lock, and all other threads would wait for the lock.
 _NICE_VALUE = 10
 # Time after which a progress bar appears, in seconds.
 _DELAY = 1.0
@@ -144,7 +144,7 @@ class Execution:
             self.on_progress(share())
 
     def part(self, number: int, count: int) -> Execution:
-        """Return the execution of one of `count` parts of equal work, which reports its share of the progress."""
+        """Return the options for part `number`, from 0, of `count` parts of equal work. Progress is reported for all parts."""
         report = self.on_progress
         return self if report is None else replace(self, on_progress=lambda share: report((number + share) / count))
 
@@ -186,6 +186,7 @@ def run_parts(
     Parts that never ran because of a cancellation are left out. `work` must be a function of a module, so that it can be pickled
     for other processes, and it should release the GIL.
     """
+    # Two parts per worker, because parts differ in duration.
     count = min(2 * execution.workers, math.ceil(indices.size / _LEAST_PART))
     parts = np.array_split(indices, count) if count else []
     futures = [execution.submit(work, *select(part)) for part in parts]
@@ -227,7 +228,7 @@ def shows_progress[**P, T](label: str) -> Callable[[Callable[P, T]], Callable[P,
 
 
 def _bind(signature: inspect.Signature, args: Any, kwargs: Any) -> Mapping[str, Any]:
-    """Return the arguments of a call by name; if the call does not fit the signature, an execution of None alone."""
+    """Return the arguments of a call by name; if the call does not fit the signature, only an `execution` of None."""
     try:
         return signature.bind(*args, **kwargs).arguments
     except TypeError:

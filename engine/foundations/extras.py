@@ -8,7 +8,7 @@ from importlib.metadata import entry_points
 from types import ModuleType
 
 GROUP = "escape_explorer.pictures"
-"""Group of the entry point of the module that draws a `Result`, with the functions plot_result, to_html and to_holoviews."""
+"""Entry point group of the module that draws results, which has the functions plot_result, to_html and to_holoviews."""
 
 
 def require_package(package: str, extra: str) -> None:

@@ -1,4 +1,4 @@
-"""A lock for output that takes long to write. One process holds the lock; errors in other processes name this process."""
+"""A lock for output that takes long to write. One process holds the lock; errors in other processes name the holder."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from filelock import FileLock
 
-# Largest number of attempts; one fails if the previous holder deletes the file after it is opened here and before it is locked.
+# Largest number of attempts. An attempt fails if the previous holder deletes the file after it is opened but before it is locked.
 _MOST_ATTEMPTS = 100
-# Numbers of errors of file systems without locks.
+# Error numbers of file systems without locks.
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP, errno.EOPNOTSUPP)
 
 
@@ -26,8 +26,8 @@ def hold_lock(path: Path) -> Iterator[None]:
     """Reserve a path for this process by a file `.NAME.lock` beside the path; the file is deleted at the end.
 
     The operating system releases the lock when the process ends, even if it is killed. The file of a killed process stays until
-    the next process with this output deletes it. The file is beside the output, so that it also protects outputs on file systems
-    that several machines share. On Windows, and on file systems without locks, nothing is reserved.
+    the next process with this output deletes it. The file is beside the output, so that the lock also protects outputs on file
+    systems that several machines share. On Windows, and on file systems without locks, nothing is reserved.
 
     Parameters
     ----------

@@ -82,7 +82,7 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
     """Name of the dimension of the columns in files; empty if the first column has distinct values and is the coordinate."""
 
     held_as: ClassVar[dict[str, str]] = {}
-    """Names in files of fields that files store under another name, or as several parts: then the name of a part."""
+    """{field: name in files} of fields stored under another name; for a field stored in several parts, the name of one part."""
 
     @property
     def fate_labels(self) -> Sequence[str]:
@@ -115,7 +115,7 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
         return load_pictures().plot_result(self, ax, **options)
 
     def to_holoviews(self) -> Any:
-        """Return an interactive HoloViews element for the loaded extension: an image for a map, otherwise curves."""
+        """Return an interactive HoloViews element for the loaded plotting extension: an image for a map, otherwise curves."""
         return load_pictures().to_holoviews(self)
 
     def _repr_html_(self) -> str:
@@ -126,7 +126,7 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
 
     @classmethod
     def kinds(cls) -> dict[str, type[Any]]:
-        """Return all subclasses, by the name that files contain."""
+        """Return all direct and indirect subclasses, by name; files contain this name."""
         return {
             name: kind
             for subclass in cls.__subclasses__()

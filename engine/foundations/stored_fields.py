@@ -1,4 +1,4 @@
-"""Fields of results in files, and former names. Files contain numbers and texts unchanged, tuples and dataclasses as JSON."""
+"""Fields of results in files, and their former names. Files contain numbers and texts unchanged, other values as JSON."""
 
 from __future__ import annotations
 
@@ -82,7 +82,6 @@ def plain_attributes(attributes: Mapping[Any, Any]) -> dict[str, Any]:
 
 
 def _plain_attribute(value: Any) -> Any:
-    """Convert one attribute, see `plain_attributes`."""
     if isinstance(value, np.ndarray | np.generic):
         value = value.tolist()
     return tuple(value) if isinstance(value, list) else value

@@ -24,7 +24,7 @@ LARGEST_COEFFICIENT = 1e90
 """Largest magnitude of a coefficient; with a unit of length of 1e-6, terms of degree 12 have a factor of 1e72."""
 
 LONGEST_TIME = 1e8
-"""Largest t_max, in the time unit of the well if that exceeds 1; at this time, the rounding error of t itself reaches 1e-8."""
+"""Largest t_max, in the time unit of the well if this unit exceeds 1. The rounding error of t is then up to 1e-8."""
 
 _LINE_BREAK = re.compile(r"\s*\n\s*")
 # Descriptions of types in messages, by the name of the type.
@@ -161,10 +161,10 @@ def checked_t_max(
     t_max: float, longest: float = LONGEST_TIME, unit: Callable[[], float] = lambda: 1.0, *, name: str = "t_max"
 ) -> float:
     """Return `t_max`, above 0 and at most `longest`, as a float; a `unit()` above 1 multiplies the limit."""
-    # For type checkers, the type of `t_max` is known, and the check of it could not fail.
+    # Type checkers would report that the check of a float cannot fail.
     given_t_max: Any = t_max
     is_number = isinstance(given_t_max, int | float | np.number) and not isinstance(given_t_max, bool)
-    # The unit takes time to compute, so it is asked only for large values.
+    # `unit` takes time, so it is called only for large values.
     if is_number and given_t_max > longest:
         longest *= max(unit(), 1.0)
     # The comparison precedes the conversion, because an integer may be too large for a float.

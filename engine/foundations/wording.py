@@ -29,7 +29,7 @@ def format_whole(value: float) -> str:
 
 
 def format_time(t: float, digits: int = 6) -> str:
-    """Return a time to `digits` significant digits, at least all digits of its whole part, in groups of three."""
+    """Return a time to `digits` significant digits, or to all digits of its integer part, in groups of three digits."""
     if t == round(t) or abs(t) >= 10.0**digits:
         return format_whole(t)
     return f"{t:,.{digits}g}".replace(",", " ")

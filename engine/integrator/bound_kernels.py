@@ -1,4 +1,4 @@
-"""Compiled kernels of a potential, bound to its coefficients.
+"""Compiled kernels, bound to the coefficients of a potential.
 
 All potentials of the same structure share generated functions (`engine.integrator.source`), and all potentials share the kernels
 that call them (`engine.integrator.kernels`). Each potential has callables that pass its coefficients and the addresses of its
@@ -121,7 +121,7 @@ class GeneratedFunction:
 
 
 class _BoundKernel:
-    """A kernel that passes the addresses of generated functions and the coefficients of one potential."""
+    """Calls a kernel with the addresses of generated functions and the coefficients of one potential as first arguments."""
 
     def __init__(self, function: Any, callees: tuple[GeneratedFunction, ...], coefficients: np.ndarray) -> None:
         self.function = function

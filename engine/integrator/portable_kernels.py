@@ -69,7 +69,7 @@ _building = threading.Lock()
 
 
 def module_digest() -> str:
-    """Return a hash of everything on which the module depends, without building it."""
+    """Return a hash of everything on which the module depends, without building the module."""
     return program_digest()
 
 

@@ -1,4 +1,4 @@
-"""Exits of several channels. Above a maximum of V between channels, there is no wall between the channels: they form one exit.
+"""Exits of several channels. At energies above a maximum of V between channels, no wall separates them: they form one exit.
 
 The number of such an exit is the lowest number of its channels. The name of the exit contains all numbers: "1+3".
 """
@@ -12,7 +12,7 @@ import numpy as np
 
 
 class ChannelMerger(NamedTuple):
-    """A maximum (x, y) of V with the value `energy`, above which the `channels` around it form one exit."""
+    """A maximum of V at (x, y). At energies above its value `energy`, the `channels` around it form one exit."""
 
     energy: float
     x: float
@@ -44,7 +44,7 @@ def merged_exits(mergers: Sequence[ChannelMerger], energy: float) -> tuple[Merge
     for channels in connected_channels:
         joined_groups = [group for group in groups if not group.isdisjoint(channels)]
         groups = [group for group in groups if group not in joined_groups] + [set(channels).union(*joined_groups)]
-    # The channels close a ring around the well if maxima connect them at least as often as there are channels.
+    # A maximum among n channels connects them n − 1 times. A ring has at least as many connections as channels.
     connections = [sum(len(channels) - 1 for channels in connected_channels if group.issuperset(channels)) for group in groups]
     return tuple(
         sorted(MergedExit(tuple(sorted(group)), count >= len(group)) for group, count in zip(groups, connections, strict=True))
@@ -54,7 +54,7 @@ def merged_exits(mergers: Sequence[ChannelMerger], energy: float) -> tuple[Merge
 def exit_numbers(mergers: Sequence[ChannelMerger], outcomes: int) -> np.ndarray:
     """Return the exit numbers of outcomes, of shape (mergers + 1, outcomes + 1).
 
-    Row k is for energies above the first k of the sorted mergers.
+    Row k is for energies above the lowest k mergers, and column n for the outcome with fate n. `mergers` are sorted by energy.
     """
     numbers = np.tile(np.arange(outcomes + 1, dtype=np.int8), (len(mergers) + 1, 1))
     for k in range(len(mergers)):
@@ -67,7 +67,7 @@ def describe_channel(channel: int, mergers: Sequence[ChannelMerger], low: float,
     """Return the name of the exit to which a channel belongs at the energies from `low` to `high`.
 
     A separate channel is "1". In an exit of several channels, the lowest channel is "1+3", and another is "3 in 1+3". For a range
-    of energies, the name can be "1, 1+3 above h = 0.3". Without `names`, channels have numbers as names.
+    of energies, the name can be "1, 1+3 above h = 0.3". By default, the name of a channel is its number.
     """
     changes = [(low, _name_at(channel, mergers, low, names))]
     for energy in sorted(merger.energy for merger in mergers if low <= merger.energy < high):

@@ -1,4 +1,4 @@
-"""Motions: what V and the rotation of the frame determine without the ends of orbits, such as H and the Jacobi constant."""
+"""Equations of motion: what V, the mass and the rotation of the frame determine, such as H, but not the ends of orbits."""
 
 from __future__ import annotations
 
@@ -81,9 +81,9 @@ class Motion(Result):
     def jacobi_constant(self, energy: Any) -> Any:
         """Return the Jacobi constant C = 2U − ẋ² − ẏ² of energies H in a rotating frame; arrays keep their shape.
 
-        If the origin is on the axis of the frame, C = −2H. In the three-body problem, U = Σ m/r + ½ (x² + y²), and the axis is at
-        the barycentre. In the Earth–Moon system, seen from the Moon, C = (1 − m)² − 2H. Some authors add μ(1 − μ) to C. For a
-        mass other than 1, H is divided by the mass.
+        C = (Ω d)² − 2H/m, where m is the mass, and d is the distance of the origin from the axis of the frame. In the three-body
+        problem with bodies of masses μ and 1 − μ, U = (1 − μ)/r₁ + μ/r₂ + ½ (x² + y²), and the axis is at the barycentre. In
+        axes at the body of mass μ, such as the Moon, d = 1 − μ. Some authors add μ(1 − μ) to C.
 
         Raises
         ------
@@ -100,14 +100,14 @@ class Motion(Result):
         return self._squared_speed_of_origin - 2.0 * checked_finite("energy", energy) / self.mass
 
     def jacobi_energy(self, constant: Any) -> Any:
-        """Return the energy H for given Jacobi constants, see `jacobi_constant`."""
+        """Return the energies H of Jacobi constants, see `jacobi_constant`."""
         return 0.5 * self.mass * (self._squared_speed_of_origin - checked_finite("constant", constant))
 
     @property
     def _squared_speed_of_origin(self) -> float:
         """The square of the speed Ω d with which the origin moves around the axis of the frame.
 
-        The terms a x + b y in Φ = … + a x + b y − ½ m Ω² (x² + y²) are part of the centrifugal force about an axis at (a, b)/mΩ²,
+        The terms a x + b y in Φ = … + a x + b y − ½ m Ω² (x² + y²) are part of the centrifugal term for an axis at (a, b)/mΩ²,
         as in the three-body problem in the coordinates of one body. If there are other quadratic terms, the axis is at the
         origin.
         """
@@ -176,6 +176,6 @@ class Motion(Result):
         return self._copy_with(name=f"{self.name} ({changes})" if changes else self.name, form=form)
 
     def check_at_rest(self, what: str) -> None:
-        """Raise ValueError in a rotating frame, for computations that rely on time-reversal symmetry."""
+        """Raise ValueError if the frame rotates. `what` names, in the plural, computations that rely on time reversal."""
         if self.rotation:
             raise ValueError(f"potential={self.name}: its frame rotates; {what} are for frames that do not rotate")

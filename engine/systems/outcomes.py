@@ -1,7 +1,7 @@
 """The ends of orbits: exits over saddles, centres with a radius of collision, and an escape circle.
 
-Each kind of outcome is a class in `KINDS` with texts. A kind of end other than exits also has a place, a row for the kernels, a
-clause after a formula, and an attribute in files. The colours of each kind are in `plots.pictures.palette`.
+Each kind of outcome is a class in `KINDS` with texts. A kind other than `Exit` also has a place, a row for the kernels, a clause
+after a formula, and an attribute in files. The colours of each kind are in `plots.pictures.palette`.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from engine.foundations.wording import format_number
 from engine.integrator.kernels.exit_geometry import CIRCLE, CURVE_COLUMNS, DISC, HALF_WIDTH, ORIGIN_X, ORIGIN_Y, SHAPE
 
 SMALLEST_RADIUS = 1e-6
-"""Smallest radius of a centre or of escape, dimensionless. Near the singularity of a smaller disc, steps would not change t."""
+"""Smallest radius of a centre or of escape, dimensionless. In a smaller disc, steps near a singularity would not change t."""
 
 LARGEST_RADIUS = 1e6
 """Largest radius of a centre or of escape, dimensionless."""
@@ -42,9 +42,9 @@ class Kind:
     label, action
         Label and action of an outcome, with {} for its name. The verb of the action must end in e, because `Outcome.past` adds d.
     event
-        The event that ends an orbit, in a word: "escape", "collision".
+        One word for the event that ends an orbit: "escape", "collision".
     origin
-        Text about the beginning of an orbit that ends in this way backward in time, with {label} and {present} of the outcome.
+        Text on how an orbit began if it ends in this way backward in time, with {label} and {present} of the outcome.
     """
 
     key: ClassVar[str]
@@ -71,7 +71,7 @@ class Exit(Kind):
 
 @dataclass(frozen=True)
 class End(Kind):
-    """An end besides the exits over saddles: the edge of a disc, or another circle in a subclass.
+    """An end other than an exit over a saddle: the edge of a disc, or another circle in a subclass.
 
     Attributes
     ----------
@@ -81,7 +81,7 @@ class End(Kind):
         For the clause after a formula: pattern of the parameters, description of the clause in errors, and other spellings of
         `word`.
     most
-        Largest number of such ends of a formula.
+        Largest number of clauses of this kind after a formula.
     attribute
         Name of the attribute in files.
     x, y, radius, name
@@ -118,7 +118,7 @@ class End(Kind):
 
     @property
     def geometry(self) -> str:
-        """A description of the circle."""
+        """The circle in words."""
         return f"disc of radius {format_number(self.radius)} around ({format_number(self.x)}, {format_number(self.y)})"
 
     @classmethod
@@ -141,7 +141,7 @@ class End(Kind):
 
     def scaled(self, factor: float) -> Self:
         """Return the end with lengths multiplied by a factor, exactly for powers of 2."""
-        # Legal radii apply only in the units of the potential.
+        # The legal range of radii applies only in the units of the potential.
         return replace_unchecked(self, x=self.x * factor, y=self.y * factor, radius=self.radius * factor)
 
     def moved(self, x: float, y: float) -> Self:
@@ -213,7 +213,7 @@ class EscapeCircle(End):
 
     @classmethod
     def read(cls, attribute: Any) -> list[Self]:
-        """Return the circle of a radius; no end for 0."""
+        """Return the circle of a radius; nothing for 0."""
         return [cls(float(attribute))] if float(attribute) else []
 
 
@@ -280,6 +280,7 @@ class Outcome:
 
 def outcomes_of(channels: int, ends: Iterable[End]) -> tuple[Outcome, ...]:
     """Return the outcomes of a system in the order of fates. The first outcome has the fate 1."""
+    # Each kind is counted from 1. The ends are sorted by kind.
     groups = [list(group) for _, group in groupby(ends, type)]
     return (
         *(Exit.outcome(channel) for channel in range(1, channels + 1)),

@@ -10,7 +10,7 @@ from engine.foundations.validation import LARGEST_NUMBER
 
 
 class Parameter(NamedTuple):
-    """The symbol of a parameter in texts, its neutral value, and its smallest and largest legal value, dimensionless."""
+    """The symbol of a parameter in texts, its default value, and its smallest and largest legal value, dimensionless."""
 
     symbol: str
     default: float
@@ -28,7 +28,7 @@ WELL_PARAMETERS: Mapping[str, Parameter] = MappingProxyType(
         ROTATION: Parameter("Ω", 0.0, (-LARGEST_NUMBER, LARGEST_NUMBER)),
     }
 )
-"""The parameters by name: of `Potential.with_parameters`, and the rate of `Potential.in_rotating_frame`."""
+"""Parameters by name: those of `Potential.with_parameters`, and the rate of `Potential.in_rotating_frame`."""
 
 
 def symbol_of(name: str) -> str:

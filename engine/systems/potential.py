@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 # Default of `centres` and `escape_radius`, which leaves `ends` unchanged.
 _AS_IN_ENDS: Any = ...
 
-# Default t_max if bounded orbits are integrated to the end, in units of 1/|Ω|.
+# Default t_max if bounded orbits are integrated to the end, in units of 1/|Ω|, or of 1 without rotation.
 _SHORT_TIME = 1000.0
 
 
@@ -43,12 +43,12 @@ class Potential(Motion):
     """V(x, y), dimensionless: H = (px² + py²)/2m + V, with a mass m of 1 by default.
 
     In a frame that rotates at the rate Ω, V stands for the effective potential Φ, px and py for mẋ and mẏ, and H for the Jacobi
-    integral m(ẋ² + ẏ²)/2 + Φ: mẍ = 2mΩẏ − Φ_x, mÿ = −2mΩẋ − Φ_y. See `in_rotating_frame`.
+    integral m(ẋ² + ẏ²)/2 + Φ. Then mẍ = 2mΩẏ − Φ_x and mÿ = −2mΩẋ − Φ_y. See `in_rotating_frame`.
 
     Orbits with a mass m are orbits with a mass of 1 at the same energy, with momenta and times multiplied by √m, and are computed
     in this way. The multiplication by √m rounds, unless √m is a power of 2.
 
-    Without an escape radius, orbits leave the well, or the centre, at the origin through exits over saddles. With an escape
+    Without an escape radius, orbits leave the well, or the body, at the origin through exits over saddles. With an escape
     radius, saddles are not exits, and orbits end beyond this radius. See `with_outcomes`.
 
     Parameters
@@ -69,7 +69,7 @@ class Potential(Motion):
     lineage
         The way in which the well is found.
     system
-        The `System` of this potential; None if it was made in another way.
+        The `System` that made this potential; None without one.
     ends
         Ends of orbits other than exits, such as a `Centre`. `centres` and `escape_radius` replace ends of their kinds.
     exit_names
@@ -183,7 +183,7 @@ class Potential(Motion):
     def escape_energy(self) -> float:
         """The lowest energy at which orbits can escape: V at the lowest exit saddle; infinite if there is none.
 
-        It is −∞ with an escape radius, because orbits can then start outside the saddles at every energy.
+        With an escape radius, the value is −∞, because orbits can start outside the saddles at every energy.
         """
         return self.well.escape_energy
 
@@ -218,7 +218,7 @@ class Potential(Motion):
         return replace(self, lineage=SEARCHED, system=None, **values)
 
     def at_minimum(self, x: float = 0.0, y: float = 0.0) -> Potential:
-        """Return the potential with its axes moved to the minimum nearest to a place. Exits are then those of the well there.
+        """Return the potential with its axes moved to the minimum nearest to a place. Its exits are those of the well there.
 
         Energies are unchanged. A frame that rotates turns about the new origin.
 
@@ -293,7 +293,7 @@ class Potential(Motion):
         }
 
     def describe_run(self, **request: Any) -> dict[str, Any]:
-        """Return the provenance of a computation with the potential: also the request and the integrator."""
+        """Return the provenance of a computation: that of the potential, the request and the integrator."""
         energy = request.get("energy")
         constant = {"jacobi_constant": self.jacobi_constant(energy)} if self.rotation and isinstance(energy, float) else {}
         integrator = f"Taylor series of order {ORDER}, tolerance {TOLERANCE:g}"
@@ -304,6 +304,6 @@ class Potential(Motion):
         return {"name": self.name, "escape_energy": self.escape_energy, "channels": self.channels}
 
     def columns(self) -> Mapping[str, np.ndarray]:
-        """Return number, place and energy of each exit saddle."""
+        """Return the channel, place and energy of each exit saddle."""
         x, y = self.saddles.T
         return {"channel": np.arange(1, self.channels + 1), "x": x, "y": y, "energy": self.well.saddle_energies}

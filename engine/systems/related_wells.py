@@ -26,14 +26,14 @@ class ScaledWell(Well):
     Attributes
     ----------
     stated
-        The same well in the units of the original potential. Its exits are converted by powers of 2.
+        The same well in the units of the original potential. Lengths and energies are converted exactly, by powers of 2.
     """
 
     stated: Well
 
     @cached_property
     def units(self) -> WellUnits:
-        """Units of 1."""
+        """Units of 1, because the potential is already in units of its well."""
         return WellUnits()
 
     @property
@@ -102,7 +102,7 @@ class Lineage:
         Name of the family from which the exits were continued (`ParameterFamily`); otherwise empty. Continued exits may differ in
         the last bit from exits found from the critical points, so caches keep their results apart.
     make_well
-        Makes the well from form, rotation, ends and mass. It has no influence on any result.
+        Function that makes the well from form, rotation, ends and mass. Results depend on `family` alone.
     """
 
     family: str = ""
@@ -116,7 +116,7 @@ SEARCHED = Lineage()
 def scaled_to_well(potential: Potential) -> Potential:
     """Return a potential in units of its well, see `Potential.in_well_units`."""
     units = potential.units
-    # Legal ranges apply only in the original units.
+    # The legal ranges apply only in the original units.
     return replace_unchecked(
         potential,
         form=potential.form.scaled(units.length, units.energy),

@@ -19,7 +19,7 @@ TYPED = "typed"
 """The case of a potential that is given by a formula."""
 
 SHOWN_DIGITS = 12
-"""Number of significant digits of coefficients in formulas. With 12 digits, 1.46²/2 is 1.0658, without a rounding error."""
+"""Significant digits of coefficients in formulas. With 12 digits, 1.46²/2 is shown as 1.0658, without a rounding error."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class System:
         check_type("parameters", self.parameters, Mapping)
         # This raises the error for an unknown case.
         _ = self.entry
-        # Sort the parameters, so that the order in which they were chosen changes neither titles nor links.
+        # Titles and links must not depend on the order in which parameters were chosen.
         positions = {name: position for position, name in enumerate(WELL_PARAMETERS)}
         sorted_names = sorted(self.parameters, key=lambda name: (positions.get(name, len(positions)), name))
         changed = {name: self.parameters[name] for name in sorted_names if self.parameters[name] != self.default_of(name)}
@@ -118,7 +118,7 @@ class System:
 
     @property
     def as_typed(self) -> System:
-        """The same system given by a formula. The formula of a well has coefficients, and any other formula has letters."""
+        """The same system given by a formula. For a well, ω1, ω2 and ε become numbers; other formulas keep their letters."""
         if self.case == TYPED:
             return self
         if self.entry.is_well:
@@ -138,7 +138,7 @@ class System:
 
     @property
     def title(self) -> str:
-        """Name of the potential, with the parameters that do not have their default values."""
+        """Name of the potential, with the parameters that differ from their defaults."""
         changed = ", ".join(f"{symbol_of(name)} = {value:.6g}" for name, value in self.parameters.items())
         return f"{self.entry.title} with {changed}" if changed else self.entry.title
 

@@ -82,7 +82,7 @@ class Well(ReadOnlyArrays):
 
         The saddles are in counterclockwise order from the +x axis: channel k passes over ``saddles[k - 1]``. A saddle is an exit
         if exactly one of the two lines of steepest descent from the saddle ends at the origin. Zotos (2014) prints the saddle
-        test without the square of V_xy, which is a misprint. With an escape radius, there are no exit saddles.
+        test without the square of V_xy, a misprint. With an escape radius, there are no exit saddles.
         """
         if self.escape_radius is not None:
             return read_only(np.empty((0, 2)))
@@ -113,7 +113,7 @@ class Well(ReadOnlyArrays):
     def escape_energy(self) -> float:
         """The lowest energy at which orbits can escape: V at the lowest exit saddle; infinite if there is none.
 
-        It is −∞ with an escape radius, because orbits can then start outside the saddles at every energy.
+        With an escape radius, the value is −∞, because orbits can start outside the saddles at every energy.
         """
         if self.escape_radius is not None:
             return -np.inf
@@ -126,7 +126,7 @@ class Well(ReadOnlyArrays):
         )
 
     def is_closed_at(self, energy: Any) -> Any:
-        """Return whether no orbit of the well ends at an energy: the energy is below all saddles, and there are no other ends.
+        """Return whether no orbit of the well with this energy has an end: no saddle is lower, and there are no other ends.
 
         With an escape radius, the result is always False. The criterion also holds in a rotating frame, because orbits cannot
         pass the zero-velocity curve V = h.
@@ -180,7 +180,7 @@ class Well(ReadOnlyArrays):
             return ()
         form = self.form
         points, indices = self.critical_points, self.critical_indices
-        # Indices of the exit saddles among the critical points.
+        # Indices of the exit saddles among the critical points: the nearest, because `saddles` are rounded.
         saddles = np.array([np.argmin(np.hypot(*(points - saddle).T)) for saddle in self.saddles], int)
         # Whether each critical point is a maximum beside each exit, of shape (channels, points).
         is_beside = stored_points("maxima", form, lambda: find_maxima_beside(form, points, indices, saddles))
@@ -236,19 +236,19 @@ class Well(ReadOnlyArrays):
 
     @cached_property
     def mirror_channels(self) -> np.ndarray:
-        """The mirror image of each fate under x → −x, of shape (outcomes + 1,). Entry 0 is 0. Requires `mirror_in_x`."""
+        """The fate onto which x → −x maps each fate, of shape (outcomes + 1,). Entry 0 is 0. Requires `mirror_in_x`."""
         ends_by_kind = [np.array([(end.x, end.y) for end in group]) for _, group in groupby(self.ends, type)]
         images = [np.arange(1)]
         for points in (self.saddles, *ends_by_kind):
             if len(points):
                 distance = np.hypot(*(points[:, None] - points * [-1.0, 1.0]).T)
-                # Fates of a kind follow the fates of the kinds before.
+                # The fates of a kind follow those of the previous kinds.
                 first_fate = sum(map(len, images))
                 images.append(first_fate + np.argmin(distance, axis=0))
         return read_only(np.concatenate(images).astype(np.int8))
 
     def mirror_numbers(self, energy: Any) -> np.ndarray:
-        """Return the mirror image of each fate at energies (…), of shape (…, outcomes + 1). Requires `mirror_in_x`."""
+        """Return `mirror_channels` as exit numbers at energies (…), of shape (…, outcomes + 1)."""
         return self.exit_numbers(energy)[..., self.mirror_channels]
 
     @cached_property
@@ -271,10 +271,10 @@ class Well(ReadOnlyArrays):
 
     @cached_property
     def fastest_frequency(self) -> float:
-        """The higher frequency of small oscillations in the well at the origin; NaN if there is neither well nor centre.
+        """The higher frequency ω of small oscillations in the well at the origin; NaN if there is none.
 
-        Without a well, this is the frequency of a circular orbit of typical radius. Its square is the mean slope of V divided by
-        the radius.
+        Without a well, this is the frequency of a circular orbit of `typical_radius`. The square of this frequency is the mean
+        slope of V divided by the radius.
         """
         return self._fastest_light_frequency / float(np.sqrt(self.mass))
 

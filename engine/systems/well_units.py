@@ -21,6 +21,7 @@ def _quantity(length: int, time: int, mass: int = 0) -> dict[str, tuple[int, int
 
 # Key of the metadata of fields whose values have a unit.
 _UNIT = "unit"
+# Metadata of such fields.
 LENGTH, TIME, AREA = _quantity(1, 0), _quantity(0, 1), _quantity(2, 0)
 RATE, MOMENTUM, ENERGY = _quantity(0, -1), _quantity(1, -1, 1), _quantity(2, -2, 1)
 
@@ -87,6 +88,9 @@ class WellUnits:
 
 
 def nearest_power_of_two(value: float) -> float:
-    """Return the power of 2 nearest to a finite value above 0 on a logarithmic scale. A factor of 2^k carries over exactly."""
+    """Return the power of 2 nearest to a finite value above 0 on a logarithmic scale.
+
+    A factor of 2^k in the value is a factor of 2^k in the result.
+    """
     mantissa, exponent = math.frexp(value)
     return math.ldexp(1.0, exponent if mantissa * mantissa >= 0.5 else exponent - 1)

@@ -1,4 +1,7 @@
-"""A limit on the compiled code of a process, for servers, because Numba cannot unload code."""
+"""A limit on the compiled code of a process, for servers, because Numba cannot unload code.
+
+A code is the generated functions of one structure, named by its digest. An account is any key, such as a visitor's address.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 
 LARGEST_CODE = 40_000
-"""Largest number of operations of one code if there is a limit; the largest code of the catalogue has about as many."""
+"""Largest number of operations of one code if there is a limit: about that of the largest code of the catalogue."""
 
 SHARES = 4
 """Number of equal shares of the limit; an account may use one share."""
@@ -17,7 +20,7 @@ _account: ContextVar[Hashable] = ContextVar("account", default=None)
 
 
 class CompiledCodeLimitError(ValueError):
-    """No more code can be compiled."""
+    """The code is too large, or the limit of the process or of the account is reached."""
 
 
 class CompiledOperations:
@@ -60,7 +63,7 @@ class CompiledOperations:
             self._reserved.update(codes)
 
     def add(self, code: str, count: int) -> None:
-        """Count the operations of a code before it is compiled; raise `CompiledCodeLimitError` if this exceeds a limit."""
+        """Count the operations of a code before it is compiled; raise `CompiledCodeLimitError` beyond a limit."""
         account = _account.get()
         with self._lock:
             if self.most is not None and code not in self._reserved:
@@ -98,7 +101,7 @@ compiled_operations = CompiledOperations()
 
 @contextmanager
 def charged_to(account: Hashable) -> Iterator[None]:
-    """Charge code compiled within this context to an account; None charges no account."""
+    """Charge code that is compiled in this context to an account; None charges no account."""
     token = _account.set(account)
     try:
         yield

@@ -17,7 +17,7 @@ OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "fastmath": {"
 "contract" permits a fused multiply-add for a·b + c. Nothing else is reordered or assumed, so NaN is handled as usual.
 """
 
-# Whether Numba inlines subroutines; code for another machine is inlined when it is optimised for it, see `kernel_module`.
+# Whether Numba inlines subroutines. Unoptimised code for WebAssembly is inlined later, see `kernel_module`.
 _INLINES = bool(config.OPT)  # type: ignore[attr-defined]
 
 

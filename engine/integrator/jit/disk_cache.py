@@ -1,8 +1,8 @@
-"""A cache of compiled kernels on disk, with one file for each (`engine.foundations.cache_files`).
+"""A cache of compiled kernels on disk, with one file for each kernel and signature (`engine.foundations.cache_files`).
 
 Numba's own cache loads any file without a check: a truncated file ends the program, a modified file may compute anything, and two
-processes that compile at the same time can load each other's code. `cache_files` writes a file in one step and checks it when it
-is read. The name of a file contains a hash of everything on which its code depends.
+processes that compile at the same time can load each other's code. `cache_files` writes a file in one step and checks each file
+that it reads. The name of a file contains a hash of everything on which its code depends.
 
 Numba has no public interface for caches, so this module uses internal names of numba 0.68, which may change with any version:
 
@@ -39,7 +39,7 @@ PACKAGE = Path(__file__).parents[1]
 """The package that contains all source compiled into kernels."""
 
 DEFINE = "define"
-"""Name of a function in a generated module. It can be sent to another process, where it defines the same module."""
+"""Name of a function in each generated module. Another process that receives and calls the function defines the same module."""
 
 log = logging.getLogger(__name__)
 
@@ -118,7 +118,7 @@ class KernelCache(_Cache):
         delete_cached(self._name)
 
     def _path(self, signature: Any, codegen: Any) -> Path:
-        """Return the path for a signature; it depends on processor, source and versions too, so its content never changes."""
+        """Return the path for a signature. The path also depends on processor, source and versions, so the file never changes."""
         key = repr((signature, codegen.magic_tuple(), self._source_hash, _versions()))
         return cache_folder() / f"{self._name}.{hashlib.sha256(key.encode()).hexdigest()[:24]}{SUFFIX}"
 

@@ -39,8 +39,9 @@ _SIZE, _DOUBLE, _LONG = ir.IntType(32), ir.DoubleType(), ir.IntType(64)
 HEAP_CELL = 16
 """Address of the cell that contains the start of the free memory. The caller of a kernel restores the value of the cell."""
 
-# Numba's memory management, in place of its own. Arrays are allocated at the start of the free memory, without reference counts.
-# An array of Numba begins with the address of its metadata, which contain the address of its numbers; here both are equal.
+# Replaces the functions of Numba's memory management. Arrays are allocated at the start of the free memory, without reference
+# counts. An array of Numba begins with the address of its metadata, which contain the address of its numbers. Here both addresses
+# are equal.
 _RUNTIME = f"""
 define void @NRT_incref(ptr %info) alwaysinline {{ ret void }}
 define void @NRT_decref(ptr %info) alwaysinline {{ ret void }}
@@ -106,7 +107,7 @@ def _hide(module: Any, exported: set[str]) -> None:
 
 
 def _wrapper(name: str, symbol: str, signature: Signature) -> ir.Module:
-    """Return a function with numbers as arguments that calls a kernel."""
+    """Return a module with a function that takes numbers and calls a kernel."""
     context = cpu_target.target_context
     module = ir.Module(name)
     argument_types = [kind for argument in signature.args for kind in _passed_types(argument)]
@@ -131,7 +132,7 @@ def _as_size(builder: ir.IRBuilder, value: ir.Value) -> ir.Value:
 
 
 def _passed_types(kind: Any) -> list[ir.Type]:
-    """Return the types of the numbers as which an argument or a result of a type of Numba is passed."""
+    """Return the types of the numbers that stand for an argument or a result of a Numba type."""
     if isinstance(kind, types.NamedTuple):
         return [passed for element in kind.types for passed in _passed_types(element)]
     if isinstance(kind, types.Array):

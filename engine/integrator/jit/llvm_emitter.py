@@ -21,8 +21,9 @@ _FLOAT, _INT = ir.DoubleType(), ir.IntType(64)
 _NUMBA_TYPES = {_FLOAT: types.float64, _INT: types.int64}
 # As in `engine.integrator.jit.decorator`, a·b + c may become one multiply-add; nothing else is permitted.
 _FLAGS = ("contract",)
-# Attribute of functions for the full vector width. On Intel processors with AVX-512, LLVM by default uses half of it, which takes
-# 1.2 to 1.4 times as long; the results are the same. llvmlite has no attributes with values, but writes this text unchanged.
+# Attribute of functions for the full vector width. On Intel processors with AVX-512, LLVM by default uses half this width, and
+# programs take 1.2 to 1.4 times as long; the results are the same. llvmlite has no attributes with values, but writes this text
+# unchanged.
 _WIDE_VECTORS = '"prefer-vector-width"="512"'
 _FLOAT_OPERATIONS = {"+": "fadd", "-": "fsub", "*": "fmul", "/": "fdiv"}
 _INTRINSICS = {"abs": "llvm.fabs", "sqrt": "llvm.sqrt"}

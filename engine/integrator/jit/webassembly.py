@@ -53,7 +53,7 @@ def webassembly_module(code: GeneratedCode) -> bytes:
 
 
 class _Writer:
-    """Writes a generated function, whose table has some number of entries, into a module."""
+    """Writes a generated function, with a table of `entry_count` entries, into a module."""
 
     def __init__(self, module: ir.Module, generated: GeneratedFunction, entry_count: int) -> None:
         self._generated, self._entry_count = generated, entry_count

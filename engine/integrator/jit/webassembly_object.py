@@ -88,6 +88,7 @@ def _skip_type(module: bytes, kind: int, position: int) -> int:
     if kind == _FUNCTION:
         return _read_number(module, position)[1]
     if kind == _GLOBAL:
+        # One byte for the type, and one that tells whether the value can change.
         return position + 2
     if kind == _TABLE:
         # The type of the elements.

@@ -36,6 +36,7 @@ def trace_orbit(
     while orbits.pending[0]:
         execution.raise_if_cancelled()
         steps = np.empty((_CHUNK, 5))
+        # The budget counts all lanes of a vector, of which one orbit uses one.
         count = kernels.propagate(np.zeros(1, np.int64), t_max, True, TOLERANCE, VECTOR * _CHUNK, 0, exits, orbits, steps)
         goes_on = orbits.fate[0] == BOUNDED and orbits.t[0] == steps[count - 1, 4]
         yield steps[:count], t_max if goes_on else float(orbits.t[0])
@@ -216,7 +217,7 @@ def compute_series(jets, coefficients, start, series):
 
 @kernel
 def sample_steps(jets, coefficients, steps, count, end, path):
-    """Set `path` (2, count · m) to x and y at m equally spaced times in each of the first `count` steps, including its end.
+    """Set `path` (2, count · m) to x and y at m equally spaced times in each of the first `count` steps, the end included.
 
     steps (n, 5): x, y, px, py, t at the start of each step; end: the time at which the last of the `count` steps ends.
     """

@@ -52,7 +52,7 @@ class Ensemble(NamedTuple):
 
 @kernel
 def advance_ensemble(step, jets, coefficients, tolerance, time, beyond, gates, curves, ensemble):
-    """Advance each orbit, in place, until its step contains `time`, or until the last time at which it is followed.
+    """Advance each orbit, in place, until its step contains `time`, or until the last time at which the orbit is followed.
 
     beyond: time for which orbits are followed beyond an exit, except into a body; gates (exits, 3) and curves (exits, columns):
     see `engine.integrator.kernels.propagate.Exits`.
@@ -93,9 +93,9 @@ def advance_ensemble(step, jets, coefficients, tolerance, time, beyond, gates, c
 
 @kernel
 def place_ensemble(time, ensemble, places, channels):
-    """Set `places` (2, n) to x and y at a time, NaN for an orbit no longer followed, and `channels` (n,) to the exits it left by.
+    """Set `places` (2, n) to x and y at a time, NaN for an orbit no longer followed, and `channels` (n,).
 
-    The channel of an orbit inside stays 0.
+    The channel of an orbit is the exit through which it has left. That of an orbit still inside stays 0.
     """
     for orbit in range(ensemble.begin.shape[0]):
         if time >= ensemble.escape_time[orbit]:

@@ -1,7 +1,7 @@
 """Events within one step, located in its dense output: exits and crossings of the section y = 0.
 
 An orbit that has crossed the path of a Lyapunov orbit does not return. Any other exit can be crossed and recrossed within a step,
-so the whole step is examined for it.
+so the whole step is examined for such an exit.
 """
 
 from __future__ import annotations
@@ -113,7 +113,7 @@ def find_zero(jet, i, low, high):
 
 @subroutine
 def crossing_between(jet, i, direction, low, y_low, slope_low, high, y_high, slope_high):
-    """Return times before and after the crossing of the section, in some direction, in a part of a step; equal times for none.
+    """Return times before and after the crossing of y = 0, in a direction, in a part of a step; equal times for none.
 
     jet: series of y; direction: 1 for crossings from y < 0 to y ≥ 0, −1 for crossings from y > 0 to y ≤ 0; low, high: the ends of
     the part; y_…, slope_…: y and ẏ at these ends, times `direction`. A crossing may be one of a pair in opposite directions.
@@ -153,7 +153,7 @@ def append_crossings(x_jet, y_jet, i, direction, begin, duration, crossings, fou
     """Append x, px and the time of each crossing of y = 0 within `duration` of the start of a step to `crossings` (n, m, 3).
 
     direction: as in `crossing_between`; begin: time at the start of the step; found (n,): number of crossings of each orbit,
-    raised. The row of `orbit` is filled from this index, until it has m crossings.
+    increased in place. The row of `orbit` is filled from this index, until the row has m crossings.
     """
     low = 0.0
     y_low, slope_low = direction * series_value(y_jet, i, low), direction * series_slope(y_jet, i, low)
@@ -177,6 +177,7 @@ def _exit_rate(x_jet, y_jet, i, tau, curve):
     vy = series_slope(y_jet, i, tau)
     if curve[SHAPE] == LINE:
         s = min(max(position_across(series_value(x_jet, i, tau), series_value(y_jet, i, tau), curve), -1.0), 1.0)
+        # The derivatives of the Chebyshev polynomials s and 2s² − 1 are 1 and 4s.
         slope = (curve[COEFFICIENTS + 1] + 4.0 * s * curve[COEFFICIENTS + 2]) / curve[HALF_WIDTH]
         u_rate = curve[OUTWARD_X] * vx + curve[OUTWARD_Y] * vy
         return u_rate - slope * (curve[OUTWARD_X] * vy - curve[OUTWARD_Y] * vx)
@@ -186,7 +187,7 @@ def _exit_rate(x_jet, y_jet, i, tau, curve):
 
 @subroutine
 def _find_excursion(x_jet, y_jet, i, duration, curve):
-    """Return the time within `duration` at which an orbit is farthest beyond an exit that it recrosses; −1 if it does not."""
+    """Return the time within `duration` at which an orbit is farthest beyond an exit that it recrosses; −1 for none."""
     low = 0.0
     rate_low = _exit_rate(x_jet, y_jet, i, low, curve)
     for part in range(1, _PARTS + 1):
@@ -225,7 +226,7 @@ def passed_exit(x_jet, y_jet, i, duration, curves):
 
 @subroutine
 def find_exit_time(x_jet, y_jet, i, duration, curve):
-    """Return the time from the start of a step to its crossing of an exit, by the Illinois method."""
+    """Return the time from the start of a step to the crossing of an exit, by the Illinois method."""
     low, high = 0.0, duration
     if curve[SHAPE] >= LINE:
         excursion = _find_excursion(x_jet, y_jet, i, duration, curve)

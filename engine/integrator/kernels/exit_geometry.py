@@ -5,10 +5,10 @@ is a row of numbers, which has an origin and a half width for all shapes. The or
 of a disc or of the escape circle is the radius.
 
 In a well that does not rotate, an exit is the path of a Lyapunov orbit. The coordinates are u outward and q across, 90°
-counterclockwise from u; u is measured from the saddle along its unstable direction, or from the chord of the orbit along its
-normal. The exit is the graph u = f(s) of a polynomial f, with s = (q − middle)/half_width ∈ [−1, 1]. Beyond its ends, which lie
-on the zero-velocity curve, straight lines continue the exit through the forbidden region, up to |s| = reach. A closed channel is
-a short straight line across its saddle, in the forbidden region but for the saddle itself. In a rotating frame, an exit is a
+counterclockwise from u; u is measured from the saddle along its unstable direction, or from the chord of the orbit, normal
+to the chord. The exit is the graph u = f(s) of a polynomial f, with s = (q − middle)/half_width ∈ [−1, 1]. Beyond its ends, which
+lie on the zero-velocity curve, straight lines continue the exit through the forbidden region, up to |s| = reach. A closed channel
+is a short straight line across its saddle, in the forbidden region but for the saddle itself. In a rotating frame, an exit is a
 "line": a parabola u = c + a q² along the ridge of V at the saddle.
 """
 
@@ -18,7 +18,7 @@ import numpy as np
 
 from engine.integrator.jit.decorator import kernel, subroutine
 
-# Columns of an exit.
+# Columns of an exit. BEARING is the direction from the origin to the saddle.
 ORIGIN_X, ORIGIN_Y, OUTWARD_X, OUTWARD_Y, BEARING_X, BEARING_Y, REACH, SHAPE = range(8)
 MIDDLE, HALF_WIDTH, SLOPE_LOW, SLOPE_HIGH, COEFFICIENTS = range(8, 13)
 
@@ -29,7 +29,7 @@ CLOSED, CURVE, LINE, DISC, CIRCLE = range(5)
 CURVE_DEGREE = 40
 CURVE_COLUMNS = COEFFICIENTS + CURVE_DEGREE + 1
 
-# Columns of a table: the gate, the reach, the first of the columns ORIGIN_X to OUTWARD_Y, and the first of those from MIDDLE on.
+# Columns of a table: the gate, the reach, then copies of the columns ORIGIN_X to OUTWARD_Y, then of MIDDLE and all that follow.
 GATE_COLUMN, REACH_COLUMN, AXES_COLUMN, MIDDLE_COLUMN = 0, 1, 2, 6
 
 
@@ -91,7 +91,7 @@ def _interpolate_exit(nodes, rows, sigma, shape, exit_curve, gate):
     """Set an exit (columns,) and its gate (3,), both zeros initially, from a table.
 
     sigma: value among the nodes; 0.0 or less for a closed channel. The barycentric formula is used (Berrut & Trefethen 2004, SIAM
-    Review 46, 501), except for the reach: as it is not smooth, the smaller reach of two neighbours is used.
+    Review 46, 501), except for the reach. The reach is not smooth, so the smaller one of two neighbours is used.
     """
     count = nodes.shape[0]
     exit_curve[OUTWARD_X] = 1.0
@@ -165,8 +165,8 @@ def interpolate_exit(nodes, rows, saddle, shape, energies, number, curves, gates
     """Set exit `number` in `curves` (n, exits, columns) at energies (n,) and its gate in `gates` (exits, 3), zeros initially.
 
     nodes (m,): values of √(h − saddle), rising Chebyshev nodes of the first kind; saddle: the energy at which the channel opens;
-    rows (m, columns): the exit at each node; shape: CURVE or LINE. Of the gates at all energies, the lowest is chosen, because it
-    lies inside all these exits.
+    rows (m, columns): the exit at each node; shape: CURVE or LINE. Of the gates at all energies, the lowest is chosen, because
+    this gate lies inside all these exits.
     """
     gate = np.zeros(3)
     for i in range(energies.shape[0]):

@@ -70,7 +70,7 @@ def find_section_points(fixed_step, jets, coefficients, h, steps, state, points,
     """Find the next points (x, px) at which orbits cross y = 0 upward, until each orbit has m points or `steps` are taken.
 
     state (4, lanes): changed in place; points (lanes, m, 3): x, px and the time since the start of the step are appended; found
-    (lanes,): number of points of each orbit, raised.
+    (lanes,): number of points of each orbit, increased in place.
     """
     lanes = state.shape[1]
     current = _load_lanes(state)
@@ -104,7 +104,6 @@ def find_section_points(fixed_step, jets, coefficients, h, steps, state, points,
 
 @subroutine
 def _count_below(values, limit):
-    """Return the number of values below a limit."""
     count = 0
     for value in values:
         if value < limit:
@@ -124,7 +123,9 @@ def _locate_crossings(jets, coefficients, h, n, start, step_lane, points, found)
 
 @kernel
 def fixed_step_sali(tangent, fixed_step, coefficients, h, steps, state, first, second, sali):
-    """Lower SALI to its smallest value over `steps`: min(‖w1 − w2‖, ‖w1 + w2‖) of two unit vectors, eq. 9 of Zotos (2014).
+    """Lower SALI to its smallest value after every 8th of `steps` and the last.
+
+    SALI is min(‖w1 − w2‖, ‖w1 + w2‖) of two unit vectors, eq. 9 of Zotos (2014).
 
     state, first, second (4, lanes): orbits and their two deviation vectors, changed in place; sali (lanes,): changed in place.
     """

@@ -1,4 +1,4 @@
-"""Tests which points of the Hill region lie inside the exits: connected to the origin below the energy without crossing an exit.
+"""Tests which points of the Hill region are inside: a path below the energy leads to the origin without crossing an exit.
 
 A path leads downhill from the point until V on the straight line to the origin is below the energy. The path ends with this line,
 and the point is inside if the whole path crosses the exits an even number of times. If the path leads to another minimum, or to a
@@ -37,7 +37,7 @@ _SHORTEST_STEP = 1e-6
 _MOST_STEPS = 10_000
 # Growth of the longest step with |x| + |y|, in units of the longest step near the origin.
 _FAR_SHARE = 0.25
-# Cosine and sine of the angle between a path and the gradient; the path thus leaves symmetry lines, which can end at saddles.
+# Cosine and sine of the angle between a path and the gradient; the path thus leaves lines of symmetry, which can end at saddles.
 _COS, _SIN = np.cos(0.1), np.sin(0.1)
 # Smallest decrease of V in a step, relative to the decrease along the gradient.
 _DECREASE = 0.25

@@ -1,4 +1,4 @@
-"""Adaptive steps of one orbit per lane until it escapes, for passages through y = 0 and integrals of the speed.
+"""Adaptive steps of one orbit per lane until the orbit escapes, for passages through y = 0 and integrals of the speed.
 
 These kernels are compiled once for all potentials, like `engine.integrator.kernels.propagate`.
 """
@@ -26,10 +26,10 @@ _WEIGHTS = (
     0.10122853629037625915, 0.22238103445337447054, 0.31370664587788728734, 0.36268378337836198297,
     0.36268378337836198297, 0.31370664587788728734, 0.22238103445337447054, 0.10122853629037625915,
 )  # fmt: skip
-# Largest difference between the results of the rule on a part of a step and on its halves, relative to the integral over the
-# step; otherwise the part is halved.
+# Largest difference between the results of the rule on a part of a step and on both halves of the part, relative to the integral
+# over the step. Beyond this difference, the part is halved.
 _ACCURACY = 1e-13
-# Largest number of halvings; near a point of rest, a power of the speed below 1 is almost singular.
+# Largest number of halvings. Near a point of rest, |v|^power with a power below 1 is almost singular.
 _MOST_HALVINGS = 40
 
 
@@ -166,7 +166,7 @@ def integrate_speed(step, jets, coefficients, tolerance, duration, power, budget
 
 @subroutine
 def _time_inside(now, new, i, flags, duration, x_jet, y_jet, curves, gates):
-    """Return how long, within its step and `duration`, the orbit of lane i is inside, and whether the orbit ends."""
+    """Return how long, within its step and until the time `duration`, the orbit of lane i is inside, and whether it ends."""
     is_late = flags & OVERSHOOT != 0
     time_inside = min(new[SIZE_ROW, i], duration - now[TIME_ROW, i])
     channel = 0

@@ -21,18 +21,19 @@ _FURTHEST_WALL = 20.0
 _BISECTIONS = 80
 # Largest number of steps of half a period.
 _MOST_STEPS = 400
-# Number of gates: at least the number of saddles of any potential of the highest supported degree.
+# Number of gates: no fewer than the saddles of any potential of the highest supported degree.
 _MOST_CHANNELS = 128
 
 
 @subroutine
 def find_wall(potential_value, coefficients, u, saddle_x, saddle_y, outward_x, outward_y, energy):
-    """Return the q < 0 at which the line across the channel at u meets the zero-velocity curve V = energy; NaN if it does not.
+    """Return the q < 0 at which the line across the channel at u meets the zero-velocity curve V = energy; NaN for none.
 
     The coordinates (u, q) are measured from the saddle along `outward` and along the direction 90° counterclockwise from it.
     """
     x = saddle_x + u * outward_x
     y = saddle_y + u * outward_y
+    # `low` and `high` are values of −q.
     high = 0.0
     if call_potential_value(potential_value, coefficients, x, y) >= energy:
         return np.nan
@@ -58,9 +59,10 @@ def shoot(
 ):
     """Start at rest on the zero-velocity curve at u, q < 0, and follow the orbit until its motion across the channel turns back.
 
-    Returns u̇ and the time at the turning point, and the number of steps: u̇ < 0 for a start too close to the well, u̇ > 0 for a
-    start too far out, u̇ = 0 for the Lyapunov orbit. If an orbit moves farther than `reach` along the channel before it turns,
-    returns −1 or 1 and NaN. Without a start, returns NaN.
+    Returns u̇ and the time at the turning point, and the number of steps. u̇ < 0 means a start too close to the well, u̇ > 0 a
+    start too far out, and u̇ = 0 the Lyapunov orbit. If an orbit moves farther than `reach` along the channel before it turns,
+    returns −1 or 1 in place of u̇, and NaN. Without a start, returns NaN.
+
     steps (m, 5): set to x, y, px, py, t at the start of each step.
     """
     now = np.zeros((ROWS, LANES))

@@ -32,7 +32,7 @@ from engine.integrator.source.series import ORDER
 from engine.integrator.source.step_flags import GATE, HIDDEN, NEAR, OVERSHOOT
 
 VECTOR = 8
-"""Number of lanes to a multiple of which active lanes are rounded up, so that no lane is in the scalar remainder of a loop."""
+"""The number of active lanes is rounded up to a multiple of this, so that no lane is in the scalar remainder of a loop."""
 
 NO_TRACE = np.empty((0, 5))
 """The argument `trace` of `propagate` for orbits whose steps are not recorded."""
@@ -114,7 +114,6 @@ def fill_vectors(count):
 
 @subroutine
 def _make_buffer(lanes):
-    """Return an empty buffer."""
     h, orbit, channel = np.zeros(lanes), np.zeros(lanes, np.int64), np.zeros(lanes, np.int64)
     return _StepBuffer(np.zeros((4, lanes)), h, orbit, channel, np.zeros((ORDER + 1, lanes)), np.zeros((ORDER + 1, lanes)))
 
@@ -123,10 +122,12 @@ def _make_buffer(lanes):
 def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget, least, exits, orbits, trace):
     """Propagate the orbits numbered `todo` until they escape, pass `horizon`, or `budget` steps of lanes are taken.
 
-    The kernel also ends when fewer than `least` orbits are active, because they would not fill the lanes. exits: `Exits`; orbits:
-    `Orbits`, changed in place. With `final`, the horizon is t_max: events of the last, partial step are located, and an orbit
-    still inside becomes BOUNDED; otherwise it stays NOT_COMPUTED. trace (m, 5): set to x, y, px, py, t at the start of each step
-    of the first lane, until it is full; `NO_TRACE` for more than one orbit. Returns the total number of steps of all orbits.
+    The kernel also ends when fewer than `least` orbits are active, because they would not fill the lanes. With `final`, the
+    horizon is t_max: events of the last, partial step are located, and an orbit still inside becomes BOUNDED. Without `final`, an
+    orbit still inside stays NOT_COMPUTED. Returns the total number of steps of all orbits.
+
+    exits: `Exits`; orbits: `Orbits`, changed in place; trace (m, 5): set to x, y, px, py, t at the start of each step of the
+    first lane, until `trace` is full; `NO_TRACE` for more than one orbit.
     """
     # Only `np.zeros` is used: Numba takes about 0.1 s to compile each function that makes arrays, for each type of array.
     now, new = np.zeros((ROWS, LANES)), np.zeros((ROWS, LANES))
@@ -207,7 +208,7 @@ def _refill_lane(orbits, todo, next_orbit, active, lanes, i, lane_orbit, crossed
 
 @subroutine
 def _judge_step(jets, coefficients, flags, now, new, i, final, exits, orbit, single):
-    """Return what happens in a flagged step: (orbit ends, exit that it crosses or 0, orbit fails, events are to be located).
+    """Return whether an orbit ends in a flagged step, the exit crossed or 0, whether it fails, and whether to locate events.
 
     now, new: lanes at the start and the end of the step; i: lane of the orbit; single: buffer for one step.
     """
@@ -259,7 +260,6 @@ def _store_orbit(lanes, i, crossed, orbits, orbit):
 
 @subroutine
 def _move_lane(lanes, source, target, lane_orbit, crossed):
-    """Copy one lane to another."""
     for c in range(ROWS):
         lanes[c, target] = lanes[c, source]
     lane_orbit[target] = lane_orbit[source]

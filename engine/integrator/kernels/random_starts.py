@@ -13,7 +13,7 @@ from engine.integrator.jit.function_pointers import call_potential_value
 from engine.integrator.kernels.exit_geometry import CURVE, HALF_WIDTH, OUTWARD_X, OUTWARD_Y, SHAPE, exit_point, is_open_channel
 
 BEFORE_EXIT = 9.0
-"""Time from the start of an orbit near the edge of a tube to its exit, in units of the well."""
+"""Time from the start of an orbit near the edge of a tube to the exit, in units of the well."""
 
 # Mask of 32 bits.
 _WORD = 0xFFFFFFFF
@@ -21,13 +21,14 @@ _WORD = 0xFFFFFFFF
 _PARTS = 200
 # Distance of entering orbits from the exit, as a share of its half width; on the exit, rounding would decide which are inside.
 _SHIFT = 1e-7
-# Distance of orbits near a tube from its edge, measured at the exit, as a share of the half width of the exit.
+# Distance of orbits from the edge of the tube nearby, measured at the exit, as a share of the half width of the exit.
 _FROM_EDGE = 3e-3
 
 
 @subroutine
 def _draw_number(seed):
     """Return a random number from 0 to 1; seed (1,) is changed."""
+    # The numbers are those of mulberry32; 4294967296 is 2^32.
     seed[0] = (seed[0] + 0x6D2B79F5) & _WORD
     state = seed[0]
     mixed = ((state ^ (state >> 15)) * (state | 1)) & _WORD
@@ -62,7 +63,7 @@ def draw_at_exits(potential_value, coefficients, curves, energy, of_tubes, seed,
     tube, where orbits pass the exit, and half outside, where orbits turn back. In a rotating frame the exits are lines, not
     Lyapunov orbits, and have no tubes. seed (1,) is changed.
     """
-    # The flux through all parts up to each part of an exit.
+    # The flux through all parts of all exits up to and including each part.
     flux = np.zeros(curves.shape[0] * _PARTS)
     total = 0.0
     for exit in range(curves.shape[0]):
@@ -109,7 +110,7 @@ def _middle(part):
 
 @subroutine
 def _launch(potential_value, coefficients, energy, curve, s, share, shift, state):
-    """Set `state` (4,) at s of an exit, shifted inward; `share` is the component of its direction along the exit."""
+    """Set `state` (4,) at s of an exit, shifted inward; `share` is the component of the unit velocity along the exit."""
     x, y, along_x, along_y = _point_and_slope(curve, s)
     length = np.sqrt(along_x * along_x + along_y * along_y)
     along_x, along_y = along_x / length, along_y / length
@@ -135,5 +136,5 @@ def _point_and_slope(curve, s):
 
 @subroutine
 def _speed(potential_value, coefficients, energy, x, y):
-    """Return the speed at a point; 0 where it is forbidden."""
+    """Return the speed at a point; 0 in the forbidden region."""
     return np.sqrt(max(2.0 * (energy - call_potential_value(potential_value, coefficients, x, y)), 0.0))

@@ -54,6 +54,7 @@ def launch_from_radius(x, y, speed, angle):
     At the origin the radial direction is undefined; the +y direction is used, which is its own mirror image under x → −x.
     """
     radius = np.hypot(x, y)
+    # Arithmetic in place of a branch, because x and y may be arrays.
     at_origin = 1.0 * (radius == 0.0)
     away_x, away_y = x / (radius + at_origin), (y + at_origin) / (radius + at_origin)
     cosine, sine = np.cos(angle), np.sin(angle)

@@ -10,11 +10,14 @@ from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 
 Monomial = tuple[int, int]
+"""The exponents (i, j) of x^i y^j."""
+
 Polynomial = Mapping[Monomial, float]
+"""{monomial: coefficient}."""
 
 X, Y = (1, 0), (0, 1)
 
-# Largest relative difference of coefficients that count as equal; some, such as that of −x³ ε/3, have a few rounding errors.
+# Largest relative difference of coefficients that count as equal. A coefficient such as ε/3 has a few rounding errors.
 _ROUNDING = 1e-15
 # Number of cached results of `_cheapest`, of 1 kB each; a potential of degree 8 needs about 4 000.
 _CHEAPEST_PRODUCTS = 4096

@@ -1,9 +1,9 @@
-"""exp, log, sin, cos and real powers of a value of a straight-line program, written in its own operations.
+"""exp, log, sin, cos and real powers of a value of a straight-line program, written in operations of the program.
 
 A call of a library function in each lane would prevent vectorisation. Vector libraries round differently from scalar functions,
 so results would depend on the lane. The functions here reduce the argument by exact multiples of log 2 or π/2 and evaluate
 polynomials, without branches: the operations are the same in each lane and in WebAssembly. Relative errors are below 1e-15; those
-of `power_of` with an exponent a that is no half of an integer are |a log u| times as large. NaN or an infinite result marks an
+of `power_of` with an exponent a that is not a multiple of ½ are |a log u| times as large. NaN or an infinite result marks an
 argument outside the domain, and a step from there fails.
 """
 
@@ -23,15 +23,16 @@ _LN_2 = Fraction("0.69314718055994530941723212145817656807550013436025525412068"
 _ROUND = 1.5 * 2.0**52
 # Bits of this number, as an integer.
 _ROUND_BITS = 0x4338000000000000
-# Bits of doubles, as integers: a unit of the exponent, the number 1, and √½.
+# Bits of doubles, as integers: one unit of the exponent, the number 1.0, and the number √½.
 _EXPONENT = 1 << 52
 _ONE_BITS = 1023 << 52
 _ROOT_HALF_BITS = 0x3FE6A09E667F3BCD
 
-# Largest argument of exp; larger arguments are replaced by it, because no orbit meets such a force.
+# Largest argument of exp. This argument replaces larger ones, because no orbit meets such a force.
 _LARGEST_EXPONENT = 700.0
+# Smallest normal double, for log.
 _SMALLEST_NORMAL = 2.0**-1022
-# Largest argument of sin and cos; larger multiples of π/2 have too many bits to be exact.
+# Largest argument of sin and cos, in radians. Larger multiples of π/2 have too many bits to be exact.
 _LARGEST_ANGLE = 1e6
 # Number of bits of each part of a number, except the last part.
 _HIGH_BITS = 30
@@ -63,7 +64,7 @@ _ATANH = [1.0 / (2 * k + 3) for k in range(10, -1, -1)]
 
 
 def exp_of(u: Value) -> Value:
-    """Return exp u = 2^n exp r with |r| ≤ log 2 / 2; beyond ±700, its value at ±700."""
+    """Return exp u = 2^n exp r with |r| ≤ log 2 / 2; beyond ±700, the value at ±700."""
     u = where(u < _LARGEST_EXPONENT, u, _LARGEST_EXPONENT)
     u = where(u > -_LARGEST_EXPONENT, u, -_LARGEST_EXPONENT)
     n, bits = _nearest_integer(u * (1.0 / math.log(2.0)))
@@ -72,7 +73,10 @@ def exp_of(u: Value) -> Value:
 
 
 def log_of(u: Value) -> Value:
-    """Return log u = n log 2 + 2 atanh s, s = (m − 1)/(m + 1), u = 2^n m, √½ ≤ m < √2; NaN below the smallest normal number."""
+    """Return log u; NaN below the smallest normal number.
+
+    With u = 2^n m and √½ ≤ m < √2, log u = n log 2 + 2 atanh s, where s = (m − 1)/(m + 1).
+    """
     program = u.program
     bits = program.apply("bits_of", u)
     exponent = ((bits + (_ONE_BITS - _ROOT_HALF_BITS)) >> 52) - 1023

@@ -17,12 +17,15 @@ from engine.integrator.source.straight_line import StraightLine, Value
 _HESSIAN = ((0, 0), (0, 1), (1, 1))
 
 Entry = tuple[str, int]
-"""(graph, index): an entry of the table, which contains a number of one of the graphs of a structure."""
+"""(graph, index): an entry of the table with number `index` of one of the graphs of a structure."""
 
 
 @dataclass(frozen=True)
 class ExpressionStructure:
-    """The graphs of V, of its gradient, of gradient and Hessian, and of V and gradient; and which second derivatives are zero."""
+    """The graphs of V (`value`), gradient (`motion`), gradient and Hessian (`variations`), and V and gradient (`slopes`).
+
+    `zero` tells which second derivatives are zero.
+    """
 
     setting: Setting
     value: Graph
@@ -36,22 +39,22 @@ class ExpressionStructure:
     has_many_scales: ClassVar[bool] = True
     """Whether frequencies can differ strongly from place to place: yes, near singularities."""
     largest_norm: ClassVar[float] = 1e180
-    """Norm of the last coefficients, that of a step of 1e-12, which is needed near centres, above which an orbit fails."""
+    """Norm of the last coefficients above which an orbit fails. It belongs to a step of 1e-12, which is needed near bodies."""
 
     @property
     def carries_remainders(self) -> bool:
-        """Whether steps carry the rounding errors of x and y along: if there are centres, around which every digit matters."""
+        """Whether steps carry the rounding errors of x and y along: yes if there are bodies, near which every digit matters."""
         return min(self.setting.sides, default=0) < 0
 
     def orbit(self, program: StraightLine, remainders: Mapping[str, Value] = NO_REMAINDERS) -> tuple[Series, Series]:
-        """Return the recurrence of the gradient."""
+        """Return the series of x and y, by the recurrence of the gradient."""
         recurrence = GraphSeries(program, "motion", self.motion, self.setting.rotates, remainders)
         for k in range(ORDER - 1):
             recurrence.advance(k)
         return recurrence.x, recurrence.y
 
     def hessian(self, program: StraightLine) -> Hessian:
-        """Return the recurrence of the gradient and of the Hessian, which enters the variational equations."""
+        """Return each second derivative of −V, by the recurrence of the gradient and the Hessian."""
         recurrence = GraphSeries(program, "variations", self.variations, self.setting.rotates)
 
         def entry(index: int) -> Callable[[int], Value]:
@@ -73,7 +76,7 @@ class ExpressionStructure:
         }
 
     def tabulate(self, expression: Any, entries: Sequence[Entry]) -> list[float]:
-        """Return the numbers of the graphs."""
+        """Return the values of entries for an expression, see `Entry`."""
         numbers = {name: values for name, (_, values) in _graphs(expression).items()}
         return [numbers[graph][index] for graph, index in entries]
 

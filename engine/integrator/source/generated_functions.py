@@ -1,4 +1,4 @@
-"""Kernels as Python source: functions that call a straight-line program for each lane, or for one point."""
+"""Kernels as Python source: functions that call a straight-line program for each lane (an orbit), or for one point."""
 
 from __future__ import annotations
 
@@ -61,9 +61,9 @@ def lane_loop(
     """Return a kernel that, for each lane, reads inputs from arrays, runs a straight-line program and writes its results.
 
     reads, constants: places of the inputs, by name; writes: values of the program, or source, by place; rows: lengths of the rows
-    of arrays with a fixed length. Constants are read before the loop. If they were read in the loop, each would be checked for
-    overlap with every array that the loop writes, and with more than about 100 checks nothing is vectorised. The compiler knows
-    that rows of a fixed length do not overlap; the checks of separate arrays would take as long as 16 lanes.
+    of arrays with a fixed length. Constants are read before the loop. In the loop, the compiler would check each for overlap
+    with every array that the loop writes, and beyond about 100 checks it vectorises nothing. Rows of a fixed length need no
+    checks. For separate arrays, the checks would take as long as 16 lanes.
     """
     program.results = [value.index for value in writes.values() if isinstance(value, Value)]
     sources = {place: f"r{value.index}" if isinstance(value, Value) else value for place, value in writes.items()}

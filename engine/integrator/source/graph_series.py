@@ -47,9 +47,9 @@ class GraphSeries:
         self.x, self.y = ([program.input(f"{axis}{k}") for k in (0, 1)] for axis in "xy")
         self.series: list[list[Value]] = [{"x": self.x, "y": self.y}.get(node.kind, []) for node in graph.nodes]
         self._plan = plan_series(graph)
-        # k u_k of arguments of functions.
+        # The series k u_k of nodes u, for functions.
         self._slopes: dict[int, list[Value]] = {}
-        # 1 / u_0 of arguments of powers and logarithms.
+        # 1 / u_0 of divisors, roots and arguments of powers and logarithms.
         self._reciprocals: dict[int, Value] = {}
         # Sums of products, see `_inner_sum`.
         self._inner_sums: dict[tuple[int, int, bool, int], Value] = {}
@@ -108,7 +108,7 @@ class GraphSeries:
         return self._reciprocals[index]
 
     def add(self, index: int, node: Node, k: int) -> Value:
-        """Return (Σ c u)_k = Σ c u_k."""
+        """Return (Σ c u)_k = Σ c u_k, for k > 0, without the constant."""
         factors = {
             operand: self.program.entry((self.name, number)) for operand, number in zip(node.operands, node.numbers, strict=False)
         }
@@ -151,7 +151,7 @@ class GraphSeries:
         return reduce(add, [*self._inner_sum(left, right, k), u[0] * v[k], u[k] * v[0]])
 
     def _inner_sum(self, left: int, right: int, k: int) -> list[Value]:
-        """Return Σ u_j v_(k − j) over j = 1 … k − 1, or half of it for a square; an empty list for an empty sum."""
+        """Return Σ u_j v_(k − j) over j = 1 … k − 1, or half this sum for a square; an empty list for an empty sum."""
         if k == 1:
             return []
         key = self._plan.roots[left], self._plan.roots[right], left == right, k

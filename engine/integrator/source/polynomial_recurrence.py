@@ -69,8 +69,7 @@ class PolynomialStructure:
     """The facts about a polynomial V on which generated code depends.
 
     `can_hide` tells whether the signs of y at the ends of a step can miss two crossings of y = 0 in the step. `difference` is the
-    result of `_find_difference` for the gradient alone, and `tangent_difference` its result for the gradient
-    and the Hessian.
+    result of `_find_difference` for the gradient alone, and `tangent_difference` that for the gradient and the Hessian.
     """
 
     monomials: tuple[Monomial, ...]
@@ -82,7 +81,7 @@ class PolynomialStructure:
     has_many_scales: ClassVar[bool] = False
     """Whether frequencies can differ strongly from place to place: no, the well sets the only scale."""
     largest_norm: ClassVar[float] = 1e90
-    """Norm of the last coefficients, that of a step of 3e-7, above which an orbit fails."""
+    """Norm of the last coefficients above which an orbit fails. It belongs to a step of 3e-7."""
     carries_remainders: ClassVar[bool] = False
     """Whether steps carry the rounding errors of x and y along: no, a polynomial is smooth everywhere."""
 

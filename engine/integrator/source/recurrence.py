@@ -4,7 +4,7 @@ Along an orbit every quantity is a power series in time, and the series of a pro
 and V a polynomial, coefficient k + 2 of x and y follows from coefficients 0 … k of the monomials in V_x and V_y (Jorba & Zou
 2005, Experimental Mathematics 14, 99). Written as one assignment per coefficient inside one loop over orbits, this recurrence has
 neither branches nor calls, so the compiler vectorises all of it. Formulas with other functions have the recurrences of
-`engine.integrator.source.graph_series`; the following functions are the same for both.
+`engine.integrator.source.graph_series`; the following functions are the same for all formulas.
 
 For each potential there are four functions with a loop over lanes `i`, and one or two for a single point:
 
@@ -55,8 +55,8 @@ TOLERANCE = 3e-15
 _EARLIER_WEIGHT = 0.3
 # Size of the steps for which this weight was found.
 _USUAL_STEP = 0.35
-# Factor of the norm in potentials with centres: a power of 10 with which energies are conserved to 1e-11. It is above 1 because
-# coefficients near singularities decrease more slowly than elsewhere.
+# Factor of the norm in potentials with bodies: a power of 10 with which energies are conserved to 1e-11. The factor is above 1
+# because coefficients near singularities decrease more slowly than elsewhere.
 _CAUTION = 10.0
 # Speed that is added to the speed that limits a step, so that no step is longer than 16.
 _LEAST_SPEED = 1.0 / 16.0
@@ -116,7 +116,7 @@ class GeneratedCode:
 
     @property
     def operations(self) -> int:
-        """Number of operations of all programs."""
+        """Total number of operations of the programs."""
         return sum(len(function.program.operations) for function in self.functions)
 
     def __eq__(self, other: object) -> bool:
@@ -136,9 +136,9 @@ def _step_size(program: StraightLine, x: Series, y: Series, structure: Structure
     """Return the h whose 16th power times a norm of the last coefficients is the tolerance, without calls and branches.
 
     The norm contains three orders of both coordinates, so that a step is not too long if one coefficient happens to vanish. In a
-    well of one frequency, this h is the size of the step. Where frequencies differ from place to place, it defines units of time
-    and length in which the size is found: in these units h is 0.35, and the orbit moves by about 1 in a unit of time. Thus steps
-    and their errors become smaller near bodies. NaN marks an orbit that has failed.
+    well of one frequency, this h is the size of the step. Where frequencies differ from place to place, this h defines units of
+    time and length: in these units h is 0.35, and the orbit moves by about 1 in a unit of time. The size is found in these units,
+    so steps and their errors become smaller near bodies. NaN marks an orbit that has failed.
     """
     last, second_last, third_last = (abs(x[-k]) + abs(y[-k]) for k in range(1, _ORDERS_OF_NORM + 1))
     norm = last + second_last + _EARLIER_WEIGHT * third_last
@@ -178,9 +178,10 @@ def _horner(series: Series, h: Value) -> tuple[Value, Value]:
 
 
 def _end_of_step(series: Series, h: Value, remainder: Value | None) -> tuple[Value, Value, list[Value]]:
-    """Return value and slope as `_horner` does, with a remainder added to the first coefficient, and the remainder of the value.
+    """Return value and slope as `_horner` does, with a remainder added to the first coefficient, and [new remainder].
 
-    The latter is the rounding error of the last sum, computed exactly (Knuth's TwoSum). Without a remainder, the list is empty.
+    The new remainder is the rounding error of the last sum, computed exactly (Knuth's TwoSum). Without a remainder, the list is
+    empty.
     """
     if remainder is None:
         return *_horner(series, h), []
@@ -195,7 +196,7 @@ _START = {"x0": Place("x"), "y0": Place("y"), "x1": Place("px"), "y1": Place("py
 
 
 def _start_in(lanes: str) -> dict[str, Place]:
-    """Return the same inputs, read from the first rows of an array of lanes."""
+    """Return the inputs of `_START`, read from the first rows of an array of lanes."""
     return {name: Place(lanes, row) for row, name in enumerate(_START)}
 
 
@@ -230,7 +231,7 @@ def _fixed_step(structure: Structure, table: dict[Any, int]) -> GeneratedFunctio
     h = program.input("h")
     x_end, px_end = _horner(x, h)
     y_end, py_end = _horner(y, h)
-    # The sums are written as source, because within the program they would make it up to a sixth slower.
+    # The sums are written as source, because as operations of the program they would make it up to a sixth slower.
     writes: dict[Place, Value | str] = {
         Place("sums", 0): "weight*(x0*x0)",
         Place("sums", 1): "weight*(y0*y0)",

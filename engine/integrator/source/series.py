@@ -14,12 +14,13 @@ ORDER = 19
 """Order of the series; with `TOLERANCE` it is the fastest choice with an energy error well below 1e-11 over 1e5 time units."""
 
 LONGEST_STEP = 1.0
-"""Upper limit of a step in units of the well, which matters near rest or for motion linear in time; all series converge there."""
+"""Longest step, in units of the well, at which all series converge. Near rest, the tolerance would allow longer steps."""
 
 ROTATION = "rotation"
-"""The entry of the table with 2Ω."""
+"""Key of the entry 2Ω of the table."""
 
 Series = Sequence[Value]
+"""The coefficients of a series in time, from order 0."""
 
 Hessian = Mapping[tuple[int, int], tuple[Callable[[int], Value], bool]]
 """{axes: (coefficient, is_nonzero)} for the axes (0, 0), (0, 1) and (1, 1) of the second derivatives of −V. `coefficient` is a

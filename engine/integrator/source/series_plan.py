@@ -1,4 +1,4 @@
-"""Plans for the series of the nodes of a graph that need few sums over all lower orders."""
+"""Plans for the series of all nodes of a graph, with few sums over all lower orders."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tests of a step for events, which are appended to its straight-line program."""
+"""Tests for events in a step, as operations that are appended to the straight-line program of the step."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ GATE = 2
 """Flag of a step that ends beyond the gate of an exit."""
 
 OVERSHOOT = 4
-"""Flag of a step that ends after the horizon."""
+"""Flag of a step that ends after the time `horizon`."""
 
 NEAR = 8
-"""Flag of a step that may cross and recross an exit although its end is not beyond the gate."""
+"""Flag of a step that may cross and recross an exit, so that the step can end before the gate."""
 
 # Maxima of σ − σ^k for 0 ≤ σ ≤ 1, by k, rounded up; for larger k, 1 is used.
 _LARGEST_SAGS = {2: 0.25, 3: 0.385, 4: 0.473}
@@ -53,10 +53,10 @@ def flag_hidden_crossings(y: Series, end: Value, h: Value) -> Value:
 def flag_gates(
     setting: Setting, program: StraightLine, series: tuple[Series, Series], end: tuple[Value, Value], h: Value
 ) -> tuple[dict[str, tuple[int, int]], Value]:
-    """Return the inputs of the gates with their rows and columns of `gates`, and the flag of a step: GATE, NEAR or 0.
+    """Return the inputs of the gates, with their places (row, column) in `gates`, and the flag of a step: GATE, NEAR or 0.
 
-    A row of `gates` is g_x, g_y, g. For a channel, it stands for the line g_x x + g_y y = g; for a circle, it contains the centre
-    and the radius.
+    A row of `gates` is g_x, g_y, g. For a channel, the row stands for the line g_x x + g_y y = g. For a circle, the row contains
+    the centre and the radius.
     """
     count = setting.channels + len(setting.sides)
     # Suffixes of the names of inputs, with their columns.

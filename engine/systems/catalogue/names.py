@@ -25,7 +25,7 @@ class ByName[Value](Mapping[str, Value]):
     Parameters
     ----------
     kind
-        The kind of the named values, for errors.
+        The word for a value in errors, such as "potential".
     names
         The names.
     make

@@ -5,7 +5,7 @@ from __future__ import annotations
 from engine.systems.catalogue.entry import CatalogueEntry, EnergyRange
 from engine.systems.parameters import ROTATION
 
-# Mass of the Moon, as a share of the mass of Earth and Moon. The clause of the Moon has its radius over its distance, in km.
+# Mass of the Moon, as a share of the mass of Earth and Moon. The clause of the Moon divides its radius by its distance, in km.
 _MOON_MASS = 0.0121505856
 # Parameter of systems whose unit of time is 1/Ω.
 _UNIT_ROTATION = {ROTATION: 1.0}

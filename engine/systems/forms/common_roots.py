@@ -23,7 +23,7 @@ from engine.systems.forms.form import UndecidedError
 _SHEARS = (fmpq(37, 101), fmpq(-67, 89), fmpq(113, 71))
 # Numbers of bits of the intervals, tried in turn.
 _PRECISIONS = (128, 256, 512, 1024)
-# Relative distance of an x from s − k y within which their intervals are compared.
+# Relative distance of x from s − k y up to which the intervals of both are compared.
 _NEAR = 1e-9
 
 
@@ -39,7 +39,7 @@ class CommonRoot:
 def find_common_roots(p: fmpq_mpoly, q: fmpq_mpoly) -> list[CommonRoot]:
     """Find all real common roots of two polynomials without a common factor, each once.
 
-    The search changes the precision of `flint.ctx`, which all threads share, until it ends.
+    During the search, the precision of `flint.ctx` is changed for all threads.
 
     Raises
     ------
@@ -52,7 +52,7 @@ def find_common_roots(p: fmpq_mpoly, q: fmpq_mpoly) -> list[CommonRoot]:
     for shear in _SHEARS:
         sheared = [_shear(each, shear) for each in (p, q)]
         if any(each.degrees()[1] < each.total_degree() for each in sheared):
-            # A leading coefficient vanishes, so roots at infinity would count.
+            # The leading coefficient in y vanishes, so the resultant would also have roots at infinity.
             continue
         along_s = _univariate(sheared[0].resultant(sheared[1], "y"), 0)
         for precision in _PRECISIONS:

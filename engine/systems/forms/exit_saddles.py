@@ -57,6 +57,7 @@ def leads_out_of_well(form: Form, points: np.ndarray, indices: np.ndarray, poles
         Points where V is not defined and lines of steepest descent can end, of shape (m, 2).
     """
     flags = np.zeros(len(points), bool)
+    # Where the index is 1, the sign of V_xx tells minima from maxima.
     sinks = np.concatenate([points[(indices > 0) & (form.hessian(*points.T)[0] > 0.0)], poles])
     all_points = np.concatenate([points, poles])
     is_saddle = np.concatenate([indices < 0, np.zeros(len(poles), bool)])
@@ -95,7 +96,7 @@ def find_maxima_beside(form: Form, points: np.ndarray, indices: np.ndarray, sadd
 
 
 class _Descent:
-    """Lines of steepest descent of sign V from its saddles."""
+    """Lines of steepest descent of sign · V from the saddles; with a sign of −1, they are lines of steepest ascent of V."""
 
     def __init__(self, form: Form, sign: float, points: np.ndarray, is_saddle: np.ndarray) -> None:
         self.form, self.sign, self.points, self.is_saddle = form, sign, points, is_saddle
@@ -113,7 +114,7 @@ class _Descent:
     def find_ends(self, saddle: int, side: float) -> set[int]:
         """Return the indices of the critical points where the descent on one side of a saddle ends, −1 for infinity.
 
-        There are several if the line ends at another saddle, as happens in symmetric potentials.
+        There are several ends if the line leads to another saddle, as happens in symmetric potentials.
         """
         pending, visited, ends = [(saddle, side)], {saddle}, set[int]()
         while pending:

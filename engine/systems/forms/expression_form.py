@@ -27,7 +27,7 @@ from engine.systems.well_units import nearest_power_of_two
 MOST_CONVOLUTIONS = 120
 """Largest number of products and functions in the graph of gradient and Hessian. It limits their cost and compile time."""
 
-# Number of cached searches for zeros, of some 0.1 kB each.
+# Number of cached searches for zeros, of about 0.1 kB each.
 _ZEROS = 1024
 # Largest number of operations of a search for zeros, as a share of the limit for critical points.
 _EFFORT_FOR_ZEROS = 0.1
@@ -36,9 +36,9 @@ _EFFORT_FOR_ZEROS = 0.1
 _MOST_ROTATIONS = 12
 # Largest relative difference of V at points before and after a rotation that leaves V unchanged.
 _ROTATION_ERROR = 1e-11
-# Radii of the circles of these points, dimensionless.
+# Radii of the circles on which V is compared, dimensionless.
 _RADII = 2.0 ** np.arange(-6.0, 3.0)[:, None]
-# Angles of points on a circle, in radians, without any symmetry.
+# Angles of the points on each circle, in radians, without any symmetry.
 _ANGLES = np.array([0.2, 0.9, 2.1, 3.3, 4.6, 5.9])
 # Values of an expression below this, relative to its curvature, count as 0.
 _ZERO = 1e-14
@@ -57,7 +57,7 @@ class ExpressionForm:
     expression: Expression
 
     def __post_init__(self) -> None:
-        # Do not search an expression for zeros if it is refused because of its size.
+        # An expression that is refused because of its size is not searched for zeros.
         if self.limits_refusal() is None:
             object.__setattr__(self, "expression", replace_parts(self.expression, _expansions_about_zeros(self.expression)))
 
@@ -113,6 +113,7 @@ class ExpressionForm:
     @staticmethod
     def _evaluate(x: Any, y: Any, *expressions: Expression) -> list[Any]:
         graph, numbers = make_graph(expressions)
+        # The index () makes numbers of arrays without axes.
         return [value[()] for value in evaluate(graph, numbers, x, y)]
 
     def force(self, axis: int) -> ExpressionForm:
@@ -120,7 +121,7 @@ class ExpressionForm:
         return ExpressionForm(linear_combination([(-1.0, derivative(self.expression, axis))]))
 
     def find_critical_points(self) -> np.ndarray:
-        """Find critical points of a region and their indices, of shape (n, 3); see `engine.systems.forms.stationary_points`."""
+        """Find critical points in a region and their indices, of shape (n, 3); see `engine.systems.forms.stationary_points`."""
         return self._critical_points
 
     @cached_property
@@ -128,12 +129,12 @@ class ExpressionForm:
         return find_stationary_points(Derivatives.of(self.expression))
 
     def downhill(self, length: float, sign: float) -> Velocity:
-        """Return −sign ∇V with its speed limited: by the slope of the quadratic part at `length`, or by the mean slope there."""
+        """Return −sign ∇V with limited speed: at most the slope of the quadratic part at `length`; at a body, the mean slope."""
         curvature = np.abs(self.hessian(0.0, 0.0)).max()
         if np.isfinite(curvature):
             largest_speed = length * curvature
         else:
-            # There is a centre at the origin.
+            # There is a body at the origin.
             slopes_around = self.gradient(length * np.cos(_ANGLES), length * np.sin(_ANGLES))
             largest_speed = float(np.hypot(*slopes_around).mean())
 

@@ -103,12 +103,13 @@ def box(centres: np.ndarray, half: float) -> tuple[Interval, Interval]:
 
 
 def excludes_zero(slopes: Enclosure) -> np.ndarray:
-    """Return whether at least one derivative vanishes nowhere in each box, of shape (n,)."""
+    """Return, for each box, whether at least one derivative vanishes nowhere in the box, of shape (n,)."""
+    # The first value is V itself.
     return np.any([each.excludes_zero() for each in slopes.values[1:]], axis=0)
 
 
 def solve(derivatives: Derivatives, centres: np.ndarray, half: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return the points (m, 2) of boxes with exactly one point, and whether each box is proved to have one point or none (n,).
+    """Return the points (m, 2) of boxes with exactly one point, and flags (n,) of boxes proved to have one point or none.
 
     The operator of Krawczyk maps a box c ± h to K = c − Y f + (I − Y J)(± h). Here, f are the two derivatives at c, J is their
     Jacobian matrix on the box, and Y is the inverse of the Jacobian matrix at c. All critical points of the box are in K. If K is

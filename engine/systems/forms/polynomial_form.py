@@ -33,8 +33,8 @@ COEFFICIENT_RANGE = (1e-9, 1e9)
 
 # Smallest coefficient, as a share of the largest. Smaller coefficients have no effect in double precision.
 _SMALLEST_RATIO = 1e-18
-# Largest share of the largest coefficient at which a coefficient counts as a rounding error of 0: after a shift of the origin, or
-# among coefficients of one degree.
+# Share of the largest coefficient up to which a coefficient counts as a rounding error of 0. After a shift of the origin, the
+# largest coefficient of V is meant; in `_complex_terms`, that of the same degree.
 _ZERO_COEFFICIENT = 1e-12
 
 
@@ -120,12 +120,13 @@ class PolynomialForm:
         return find_critical_points(self.coefficients)
 
     def downhill(self, length: float, sign: float) -> Velocity:
-        """Return −sign ∇V, slowed far away, where a descent would reach infinity in a finite time."""
+        """Return −sign ∇V, slowed beyond `length`, because a line would reach infinity in a finite time."""
         highest = max(map(degree, self.slopes))
         table = np.zeros((2, highest + 1, highest + 1))
         for axis, terms in enumerate(self.slopes):
             for (i, j), c in terms.items():
                 table[axis, i, j] = -sign * c
+        # Rows 1, x, x, … and 1, y, y, …, whose cumulative products are the powers.
         factors = np.ones((2, highest + 1))
 
         def velocity(_time: float, place: np.ndarray) -> np.ndarray:
@@ -160,7 +161,7 @@ class PolynomialForm:
         return checked_form(tuple((i, j, c * _parameter_factor(i, j, omega_1, omega_2, epsilon)) for i, j, c in self.terms))
 
     def moved(self, x: float, y: float) -> PolynomialForm:
-        """Expand V about (x, y), without linear terms. Each coefficient is rounded once."""
+        """Expand V about a critical point (x, y), without linear terms. Each coefficient is rounded once."""
         terms: dict[Powers, Fraction] = {}
         for i, j, c in self.terms:
             for k in range(i + 1):

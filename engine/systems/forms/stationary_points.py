@@ -1,10 +1,11 @@
 """Critical points of an expression in a stated region, with proof that there are no others.
 
 The region is a disc about the origin with a radius of 16.2 times the distance of the nearest point. Newton's method finds this
-distance from starts on rings, two per octave. If no point is found, the distance is 1. Then the region is divided into boxes. A
-box is left out if intervals prove that a derivative does not vanish in the box. A box is solved if the operator of Krawczyk
-(1969, Computing 4, 187) proves that the box contains exactly one point. Other boxes are divided. Boxes that contain a wall, where
-V is not defined, are divided down to a small size, then left out. Boxes around poles are divided down to the smallest size.
+distance from starts on rings, two per factor of 2 in radius. If no point is found, the distance is 1. Then the region is divided
+into boxes. A box is left out if intervals prove that a derivative does not vanish in the box. A box is solved if the operator of
+Krawczyk (1969, Computing 4, 187) proves that the box contains exactly one point. Other boxes are divided. Boxes that contain a
+wall, where V is not defined, are divided down to a small size, then left out. Boxes around poles are divided down to the smallest
+size.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ _ZERO = 2.0**-_OCTAVES
 _NEWTON_STEPS = 60
 # Second derivatives up to this magnitude are near the subnormal numbers.
 _SUBNORMAL = 1e-290
-# Length of a step of Newton's method below which it has converged, relative to the distance from the origin.
+# Length of a step below which Newton's method has converged, relative to the distance from the origin.
 _TOLERANCE = 1e-12
 # Distance below which points are the same, relative to their distance from the origin plus the distance of the nearest point.
 _SAME = 1e-8
@@ -58,7 +59,7 @@ _SMALLEST = 2.0**-34
 _AROUND_POLE = 64.0
 # Largest number of boxes of one small size. If there are more, the points are tested for a curve.
 _MANY_BOXES = 4_000
-# Largest distance of a point of a curve from the centre of its box, in half sides. Newton's method converges within it.
+# Largest distance of a point of a curve from the centre of its box, in half sides: the reach of Newton's method.
 _NEAR_BOX = 8.0
 # Largest ratio of the eigenvalues of the Hessian at a point of a curve.
 _SINGULAR_ON_A_CURVE = 1e-6
@@ -104,7 +105,7 @@ def find_stationary_points(derivatives: Derivatives, effort: float = 1.0) -> np.
 def _find_within(
     derivatives: Derivatives, newton_points: np.ndarray, nearest: float, factor: float, operations: int
 ) -> np.ndarray:
-    """Find the points within a multiple of the distance of the nearest point. The result must contain `newton_points`."""
+    """Find the points up to `factor` times the distance `nearest`. The result must contain `newton_points`."""
     radius = factor * nearest
     region = f"within r = {radius:.6g}, {factor:g} times the distance of the nearest critical point from the origin"
     undecided = UndecidedError(f"Whether all critical points {region} are known is not decided within the limit on the work.")

@@ -69,7 +69,7 @@ class Parser:
         return self.tokens[self.index]
 
     def parse(self) -> FormulaValue:
-        """Return the value of the whole text; FormulaError if it is not a formula."""
+        """Return the value of the whole text; FormulaError if the text is not a formula."""
         value = self._parse_sum()
         if self.token.kind != "end":
             raise self._unexpected_token()
@@ -166,7 +166,7 @@ class Parser:
         return {"x": x, "y": y, "r": x * x + y * y}[token.text]
 
     def _parse_function(self, token: Token) -> FormulaValue:
-        """Parse the argument of a function, in brackets, or of √, which can be any base."""
+        """Parse the argument, in brackets for a function and any base for √, and apply the function."""
         if token.kind == "root":
             first_token = self.token
             argument = self._parse_nested(token, self._parse_base) if first_token.kind == "root" else self._parse_base()
@@ -198,7 +198,7 @@ class Parser:
 
     @staticmethod
     def _apply[*Operands](token: Token, operation: Callable[[*Operands], FormulaValue], *operands: *Operands) -> FormulaValue:
-        """Return the result of an operation; raise an error at the position of `token` if it is too large or not real."""
+        """Return the result of an operation; raise an error at the position of `token` if the result is too large or not real."""
         try:
             return operation(*operands)
         except TooLargeError as error:

@@ -150,7 +150,7 @@ def _number_of(part: Part, values: Mapping[str, Fraction]) -> float:
 
 
 def checked_letter_value(name: str, value: float) -> float:
-    """Return the value of a letter as a float; ValueError if it is not finite or too large."""
+    """Return the value of a letter as a float; ValueError if the value is not finite or too large."""
     return checked_between(name, value, -LARGEST_VALUE, LARGEST_VALUE)
 
 
@@ -176,7 +176,7 @@ def _check_expanded(expanded: Mapping[Powers, Fraction]) -> None:
 
 
 def read_potential(attributes: Mapping[Any, Any]) -> Potential:
-    """Return the potential of the attributes of a file, which `Potential.provenance` writes.
+    """Return the potential described by attributes of a file, those of `Potential.provenance`.
 
     Missing attributes stand for no rotation, no ends, no shift, and a mass of 1.
     """

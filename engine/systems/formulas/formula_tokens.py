@@ -9,7 +9,7 @@ from fractions import Fraction
 
 # Largest magnitude of a decimal exponent, which keeps exact arithmetic fast.
 _LARGEST_DECIMAL_EXPONENT = 99
-# Largest number of bits of a numerator or denominator, which keeps exact arithmetic fast.
+# Largest number of bits of a numerator or denominator, about 210 digits, which keeps exact arithmetic fast.
 _MOST_NUMBER_BITS = 700
 
 FROM_SUPERSCRIPT = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
@@ -22,7 +22,7 @@ _TOKEN = re.compile(
     r"(?P<function>sin|cos|exp|log|ln|sqrt)|(?P<number>(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)|(?P<name>[xyr])|(?P<letter>[A-DF-UW-Za-df-qs-wzΑ-Ωα-ω][0-9₀-₉]?)|(?P<superscript>⁻?[⁰¹²³⁴⁵⁶⁷⁸⁹]+)|(?P<power>\^|\*\*)"
     r"|(?P<fraction>[½⅓⅔¼¾⅕⅙⅛⅒])|(?P<sign>[+\-−–])|(?P<operator>[*·×⋅∗/÷∕⁄])|(?P<root>√)|(?P<open>\()|(?P<close>\))"
 )
-# Names that would otherwise be read as letters or products. A potential cannot contain momenta, velocities and time.
+# Names that would otherwise be read as letters or products, such as momenta, velocities and time.
 _UNKNOWN = re.compile("tan|abs|pi|[pv][xy]|t")
 _PREFIX = re.compile(r"\s*V\s*(?:\(\s*x\s*,\s*y\s*\)\s*)?=")
 ALLOWED = "allowed are numbers, x, y, r, letters for coefficients, + − * / ^ √, exp, log, sin, cos and round brackets"
@@ -74,7 +74,7 @@ def tokenize(text: str) -> list[Token]:
 
 
 def read_number(token: Token) -> Fraction:
-    """Return the exact value of a number or a fraction; FormulaError if it is too large."""
+    """Return the exact value of a number or a fraction; FormulaError if it has too many digits."""
     if token.kind == "fraction":
         # The denominators of these characters are 2 to 10.
         return Fraction(unicodedata.numeric(token.text)).limit_denominator(10)

@@ -1,6 +1,6 @@
 """Arithmetic of the parser: polynomials with exact coefficients as far as possible, otherwise expressions.
 
-A part of a formula without functions, roots or divisions by x and y is expanded exactly. Its coefficients are rounded once, when
+A part of a formula without functions, roots, or x and y in divisors is expanded exactly. Its coefficients are rounded once, when
 the part enters an expression.
 """
 
@@ -33,6 +33,7 @@ from engine.expressions.nodes import (
 )
 
 FormulaValue = fmpq_mpoly | Expression
+"""A polynomial with exact coefficients, or an expression."""
 
 LARGEST_EXPONENT = 12
 """Largest magnitude of an exponent."""
@@ -66,7 +67,7 @@ def divide(one: FormulaValue, other: FormulaValue) -> FormulaValue:
 
 
 def raise_to(base: FormulaValue, exponent: Fraction) -> FormulaValue:
-    """Return a power; ArithmeticError or ValueError for a number that is not finite and real."""
+    """Return a power; ArithmeticError or ValueError if the power is a number that is not finite and real."""
     if exponent.denominator == 1 and exponent >= 0 and not isinstance(base, Expression):
         return limited_power(base, int(exponent))
     if exponent.denominator == 1 and base and not isinstance(base, Expression):
@@ -93,7 +94,7 @@ def apply_named(name: str, argument: FormulaValue) -> FormulaValue:
 
 
 def constant_of(value: FormulaValue) -> Fraction | None:
-    """Return the number that a value is; None for a value with x or y."""
+    """Return a value without x and y as a number; None for other values."""
     if isinstance(value, Expression) or not value.is_constant():
         return None
     return exact_terms(value).get((0, 0), Fraction(0))

@@ -22,7 +22,7 @@ def write_formula(potential: Potential, digits: int | None = None) -> str:
         The potential.
     digits
         Number of significant digits of the coefficients, 1 to 17: `parse_formula` reads each coefficient with a relative error
-        of at most 5·10^−digits. None for all digits that are needed to read exactly the same terms.
+        of at most 5·10^−digits. None for all digits needed to read exactly the same terms. Short fractions are preferred.
 
     Examples
     --------

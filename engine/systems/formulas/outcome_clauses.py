@@ -1,6 +1,6 @@
 """Clauses after a formula: "−1/r − x² + ½y²; centre the planet (0, 0) 0.001; escape 10", "x + x² + y² + x³; well (−0.2, 0)".
 
-A clause describes an end, see `engine.systems.outcomes`, by its word, an optional name, its place in brackets and its radius. The
+The clause of an end, see `engine.systems.outcomes`, is its word, an optional name, its place in brackets and its radius. The
 clause ``well`` with a place moves the axes to the nearest minimum. The clause ``exits`` lists the names of the exits in channel
 order: "exits L2, L1". The clause ``masses`` has the masses of px²/2m₁ + py²/2m₂, which must be equal: "masses (8, 8)". Places,
 radii and masses are formulas without x and y. They can contain the letters of the potential.
@@ -24,14 +24,14 @@ _MASSES = re.compile(r"\s*masses\s*\((?P<x>[^,;]*),(?P<y>[^,;]*)\)\s*$")
 
 
 class Part(NamedTuple):
-    """A part of a text, with its position in the text."""
+    """A part of the whole text, with the index of its first character."""
 
     text: str
     position: int
 
 
 class EndClause(NamedTuple):
-    """The clause of an end: its kind, the texts of its place and radius by key, and its name, which may be empty."""
+    """The clause of an end: its kind, the texts of x, y and radius by key, and its name, which may be empty."""
 
     kind: type[End]
     numbers: Mapping[str, Part]
@@ -63,7 +63,7 @@ class Clauses(NamedTuple):
         return (*of_ends, *(self.well or ()), *(self.masses or ()))
 
     def find_mass(self, value_of: Callable[[Part], float]) -> float:
-        """Return the mass of both directions, 1 without a clause; FormulaError if it is out of range, or the masses differ."""
+        """Return the mass of both directions, 1 without a clause; FormulaError if a mass is illegal, or the masses differ."""
         if self.masses is None:
             return 1.0
         along_x, along_y = map(value_of, self.masses)

@@ -11,13 +11,13 @@ from engine.systems.catalogue.entry import EnergyRange
 from engine.systems.potential import Potential
 
 HIGHEST_SHOWN = 4.0
-"""Upper end of the range, in units of the depth of the well, unless exits merge at a lower energy."""
+"""Upper end of a range, in depths of the well above its bottom, unless exits merge at a lower energy."""
 
-# Lower end of the range, in units of the depth of the well.
+# Lower end of a range, in depths of the well above its bottom.
 _LOW = 0.8
-# Initial energy, in units of the depth of the well.
+# Energy shown first, in depths of the well above its bottom.
 _FIRST = 1.5
-# Upper limit, as a share of the way from the escape energy to the highest energy with separate exits.
+# Upper limit of a range, as a share of the way from the escape energy to the highest energy with separate exits.
 _BELOW_HIGHEST = 0.99
 # Smallest span of a range, in units of the depth of the well. Rounding dominates narrower spans.
 _NARROWEST = 1e-9
@@ -26,7 +26,7 @@ _LEAST_SPREAD = 0.25
 
 
 def energy_range(potential: Potential, highest_energy: float, critical_energies: Sequence[float]) -> EnergyRange:
-    """Return a range of multiples of the depth of the well; with an escape radius, a range around the critical energies.
+    """Return a range of energies around the escape energy; with an escape radius, around the critical energies.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def depth_levels(potential: Potential, multiples: Sequence[float]) -> list[float
 
 
 def _range_around(potential: Potential, energies: np.ndarray) -> EnergyRange:
-    """Return energies from below the lowest critical point to above the highest one, where the whole plane is allowed."""
+    """Return a range from below the lowest critical energy to above the highest, where no part of the plane is forbidden."""
     span = max(float(np.ptp(energies)), _LEAST_SPREAD * float(np.abs(energies).max()), _NARROWEST * potential.units.energy)
     decimals = 2 - math.floor(math.log10(span))
     exact_energies = energies.min() - 0.5 * span, energies.max() + 0.5 * span, np.median(energies)

@@ -8,7 +8,8 @@ import numpy as np
 
 from engine.systems.potential import Potential
 
-# Share of the saddle energy at which the region is tested. At the saddle energy itself, the ridge is too narrow for the grid.
+# Energy of the test, as a share of the way from the bottom to the saddle energy. At the saddle energy itself, the ridge is too
+# narrow for the grid.
 _ENERGY_SHARE = 0.9
 # Number of angles of the grid per turn.
 _ANGLES = 720
@@ -53,6 +54,7 @@ def is_open_below(potential: Potential, energy: float, points: np.ndarray) -> bo
     )
     distance = np.hypot(*(np.sqrt(squared_frequencies) * (points @ axes)).T)
     distance = distance[distance > 0.0]
+    # Without critical points elsewhere, one unit of the well takes their place.
     default = np.sqrt(potential.units.energy) if potential.well.is_minimum else potential.units.length
     nearest, outermost = (distance.min(), distance.max()) if distance.size else (default, default)
     low, high = _SMALLEST_RADIUS * nearest, _LARGEST_RADIUS * outermost
@@ -67,7 +69,7 @@ def is_open_below(potential: Potential, energy: float, points: np.ndarray) -> bo
 
 
 def _connected_to_origin(allowed: np.ndarray) -> np.ndarray:
-    """Return the part of a region on a polar grid that is connected to the innermost circle."""
+    """Return the part of a region on a polar grid (radii, angles) that is connected to the innermost circle."""
     # `scipy.ndimage.label` gives the same result, but its import takes ten times as long.
     allowed = allowed.copy()
     allowed[0] = True

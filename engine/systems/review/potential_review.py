@@ -44,7 +44,7 @@ class PotentialReview(Result):
     channels
         Number of exits.
     highest_energy
-        The energy of the lowest maximum between two exits; infinite if there is none. Above it, the two form one exit. Lyapunov
+        The energy of the lowest maximum between two exits; infinite if there is none. Above it, both form one exit. Lyapunov
         orbits need not exist up to this energy, see `find_lyapunov_orbits`.
     mirror_in_x, mirror_in_y
         Whether V is even in x, and in y.
@@ -75,7 +75,7 @@ class PotentialReview(Result):
 
     @cached_property
     def energies(self) -> EnergyRange:
-        """Energies to explore, derived from the potential. They are not available for a potential that is refused."""
+        """Energies to explore, derived from the potential. They are not defined for a refused potential."""
         return energy_range(self.potential, self.highest_energy, [point.energy for point in self.critical_points])
 
     def provenance(self) -> dict[str, Any]:
@@ -190,7 +190,7 @@ def review_system(system: System) -> SystemReview:
 
 
 def critical_energies(potential: Potential) -> tuple[float, ...]:
-    """Return the energies at whose equipotentials regions become connected.
+    """Return the energies above which separate regions of motion become connected.
 
     With exits, this is the energy of the lowest exit; with an escape radius, the energies of all saddles.
     """

@@ -20,7 +20,7 @@ MOST_CHANNELS = 16
 
 
 def find_points_or_refusal(potential: Potential) -> tuple[tuple[CriticalPoint, ...], str | None]:
-    """Return the critical points (none if unknown), and the reason why the potential cannot be used; None if it can."""
+    """Return the critical points, empty if unknown, and the reason why the potential cannot be used, None if it can."""
     refusal = potential.form.limits_refusal() or singularity_refusal(potential)
     if refusal is not None:
         return (), refusal

@@ -1,4 +1,4 @@
-"""Check that V is defined wherever orbits can go. Singular points must be beyond the ends of orbits."""
+"""Check that V is defined wherever orbits can go. Singular points must lie where orbits have already ended."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ import numpy as np
 
 from engine.systems.potential import Potential
 
-# Radii at which V must be defined, in units of the escape radius.
+# Radii of the sample points, in units of the escape radius.
 _SCANNED_RADII = np.geomspace(1e-3, 1.0, 60)
-# Angles at which V must be defined, in radians, away from the axes.
+# Angles of the sample points, in radians, away from the axes.
 _SCANNED_ANGLES = 0.1 + np.linspace(0.0, 2.0 * np.pi, 180, endpoint=False)
 # Number of potentials whose check is cached.
 _CACHE_SIZE = 256
@@ -60,5 +60,5 @@ def _origin_refusal(potential: Potential) -> str | None:
 
 def _is_beyond(potential: Potential, x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Return whether points are beyond an end that is not an exit over a saddle."""
-    # Without ends, no point is beyond an end.
+    # The row of zeros gives False without ends.
     return np.any([np.zeros(x.shape, bool), *(end.contains(x, y) for end in potential.ends)], axis=0)
