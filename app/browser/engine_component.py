@@ -59,7 +59,7 @@ class BrowserEngine(JSComponent):
         self.view = describe_view(self._state)
 
     def play(self) -> None:
-        """Animate the energy up to its highest value, from the lowest if it is there already; stop a running animation."""
+        """Animate the energy up to its highest value; from there, begin at the lowest. Stop a running animation."""
         state, energies = self._state, self._state.energies
         if self.playing:
             self.stop()

@@ -46,6 +46,7 @@ def accepts_gzip(accepted: str) -> bool:
     """Return whether gzip is among the accepted encodings, the value of a header ``Accept-Encoding``, with a weight above 0."""
     encodings = (encoding.replace(" ", "").lower().split(";q=") for encoding in accepted.split(","))
     weights = {name: weight[0] if weight else "1" for name, *weight in encodings}
+    # A weight of 0, 0.0, 0.00 or 0.000 excludes an encoding.
     return weights.get("gzip", weights.get("*", "0")).strip("0.") != ""
 
 

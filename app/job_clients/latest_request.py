@@ -28,7 +28,7 @@ class LatestRequest:
     jobs
         Computes the results.
     show, fail
-        Show each result, partial or final, and show a sentence that says why there is none, under the session's lock.
+        Show each result, partial or final, or a sentence that says why there is none. Both run under the session's lock.
     locked
         Wraps a function to run under the session's lock; it may run only the latest of several waiting calls.
     convert
@@ -87,7 +87,7 @@ class LatestRequest:
                 result = self._convert(result)
             except ValueError as error:
                 result = error
-        # The lock keeps `number` valid until the call waits: an outdated call could replace the only waiting call of the session.
+        # The lock keeps `number` valid until the call is queued: an outdated call could replace the only waiting call.
         with self._number_lock:
             if number == self._number and result is not SKIPPED:
                 self._handle_later(number, is_last, result)

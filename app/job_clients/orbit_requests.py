@@ -1,4 +1,4 @@
-"""Requests for the orbits of the chosen starts and for their Birkhoff digits."""
+"""Requests for the orbits of the starts in the view state and for their Birkhoff digits."""
 
 from __future__ import annotations
 

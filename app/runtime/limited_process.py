@@ -139,12 +139,13 @@ class LimitedProcess:
 
     def _start(self) -> None:
         if not self._is_closed:
-            # If no process can start now, the next call starts one.
+            # Any call starts the process. If no process can start now, the next call starts one.
             with suppress(OSError, MemoryError):
                 self._submit(os.getpid)
 
     def _call[Result](self, function: Callable[[], Result], cancel: threading.Event) -> Result:
         try:
+            # This call takes no time, so its result shows that the process has begun.
             self._wait(self._submit(os.getpid), cancel, self._patience)
             self.has_begun = True
         except (BrokenExecutor, FutureTimeoutError, MemoryError):

@@ -157,7 +157,7 @@ class LoopWatch:
 
 
 def find_cause(innermost: FrameType) -> str:
-    """Return the outermost function on a stack that belongs to the app and does more than pass calls on, or else to a library."""
+    """Return the outermost function of the app that does more than pass calls on; without one, other functions or `WAITING`."""
     frames = [frame for frame, _ in traceback.walk_stack(innermost)][::-1]
     app_places = [place for place in (_place_in_app(frame.f_code) for frame in frames) if place is not None]
     library_places = [place for place in map(_place_in_library, frames) if place is not None]

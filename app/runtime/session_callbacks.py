@@ -2,7 +2,7 @@
 
 Bokeh's ``Document.locked_callback`` is not used, because it schedules calls through events of the document. While a
 callback holds events back (``pn.io.hold``), Panel and Bokeh copy the list of held events, then replace the list: an
-event that a thread appends in between is lost. With ``policy="latest"``, a lost event blocks all later frames.
+event that a thread appends in between is lost. With Bokeh's ``policy="latest"``, one lost event blocks all later calls.
 """
 
 from __future__ import annotations

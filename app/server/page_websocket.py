@@ -1,4 +1,4 @@
-"""The WebSocket of a page. It checks the token and the messages of the page, and closes when they break the rules."""
+"""The WebSocket of a page. It checks token and messages of the page, and closes the connection when they break the rules."""
 
 from __future__ import annotations
 
@@ -64,6 +64,7 @@ class PageWebSocket(SecurityHeaders, WSHandler):
     def open(self, *args: Any, **kwargs: Any) -> Any:
         """Disable Nagle's algorithm and open the connection."""
         self.set_nodelay(True)
+        # `_closed`: no further message is handled. `_is_ended`: Tornado has reported the end of the connection.
         self._guard, self._closed, self._is_ended = MessageGuard(), False, False
         self._writes: list[Awaitable[None]] = []
         self._last_notice = -PASSING_SECONDS

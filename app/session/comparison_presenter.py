@@ -61,7 +61,7 @@ class ComparisonPresenter:
         self._open_view(other.system, {"plane": other.plane, **energy, "window": state.window, "compared": state.view})
 
     def _follow_map(self, frame: EscapeMap | None) -> None:
-        """Compare a complete map, which stays compared until the next complete map."""
+        """Compare a complete map. It stays in the comparison until the next map is complete."""
         if frame is not None:
             self._map = frame
             self._continue()

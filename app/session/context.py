@@ -47,7 +47,7 @@ class SessionContext:
 
 
 class History:
-    """Numbers the entries of the browser's history, one for each action of the user, which "Back" undoes."""
+    """Numbers the entries of the browser's history. Each action of the user has one entry, so "Back" undoes one action."""
 
     def __init__(self) -> None:
         self.entry = 0

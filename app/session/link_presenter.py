@@ -1,4 +1,4 @@
-"""The links of the page: links of the address and of the browser's history are shown, and a link of each new state is written."""
+"""The links of the page: views of links in the address and the history are shown, and the link of each new state is written."""
 
 from __future__ import annotations
 

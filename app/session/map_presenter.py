@@ -80,7 +80,7 @@ class MapPresenter:
     def move(self, change: Callable[[Window], Window] | None) -> None:
         """Show the window to which `change` leads from the window in view, or the whole interior for None.
 
-        Raises ValueError if `change` needs the window in view, and this is not known or too small for double precision.
+        Raises ValueError if the window in view is needed but not known, or if the new window is too small for double precision.
         """
         self.show_window(None if change is None else change(self._state.find_window()))
 

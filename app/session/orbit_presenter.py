@@ -1,4 +1,4 @@
-"""The orbits of the starts in the view state: they are drawn, marked on the maps, judged, and played."""
+"""The orbits of the starts in the view state: they are requested, drawn, marked on the maps, described, and played."""
 
 from __future__ import annotations
 
@@ -120,7 +120,7 @@ class OrbitPresenter:
         )
 
     def _show(self, orbits: Sequence[ChosenOrbit]) -> None:
-        """Show the orbits; if only Birkhoff digits are new, update only the texts."""
+        """Show the orbits. Update only the texts if only Birkhoff digits are new."""
         state = self._state
         if [one.curves for one in orbits] != [one.curves for one in self._orbits]:
             self._interval, self._restricted_curves = None, []

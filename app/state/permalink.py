@@ -139,6 +139,7 @@ def read_link(parameters: Mapping[str, str], prefix: str = "") -> tuple[dict[str
         picture = values["focus"] = parts[EMBED]
         if picture in LAYER_OF:
             values["layers"] = values.get("layers", frozenset()) | {LAYER_OF[picture].name}
+    # A link without starts has at most the first place.
     if values.get("chosen", 0) >= len(values.get("starts", (0,))):
         values["chosen"] = 0
     for more_values, more_problems in (_read_view(parameters, parts, prefix), _read_compared(parameters)):

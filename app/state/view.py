@@ -134,7 +134,7 @@ class View:
         Parameters
         ----------
         reviewed
-            The review of its system.
+            The review of the view's system.
         """
         side = self.resolution
         return MapSpec(reviewed.potential, self.plane, self._map_energy(reviewed), (side, side), self.window, self.t_max)

@@ -16,7 +16,7 @@ SHOWN = "energyshown"
 """Browser event with the energy that the pictures show before the server has received it."""
 
 LONGEST_TYPED = 4000
-"""Largest length of a typed formula, in characters: above the limit for formulas, because the box cuts without a message."""
+"""Largest length of a typed text, in characters: above the limit for formulas, because the box cuts texts without a message."""
 
 
 def _code(name: str) -> str:

@@ -14,7 +14,7 @@ from tornado.websocket import WebSocketClosedError
 from app.runtime.settings import LogFormat
 
 LONGEST_MESSAGE = 400
-"""Largest length of a message, in characters. A visitor may determine most of a message, as by the address of a request."""
+"""Largest length of a message, in characters. A visitor can make a message long, for example by the address of a request."""
 
 # Number of first characters of a session's id in the log.
 _SESSION_CHARACTERS = 8

@@ -103,6 +103,7 @@ def _first_range(is_logarithmic: bool) -> Range1d:
 
 
 def _line_columns(series: Sequence[Series]) -> dict[str, list[Any]]:
+    # Dashed lines come last, so they are drawn over the other lines.
     lines = sorted((one for one in series if one.shape is not Shape.POINTS), key=lambda one: one.shape is Shape.DASHED)
     x, y = ([one.curve[axis] for one in lines] for axis in (0, 1))
     dashes = [_DASHES.get(one.shape, "solid") for one in lines]

@@ -13,14 +13,14 @@ from app.views.components.texts import TextPane
 from app.views.components.widgets import FULL_HEIGHT, button
 
 Build = Callable[[], Sequence[pn.viewable.Viewable]]
-"""Makes a content, or a part of it."""
+"""Makes the parts of a content, or some of the parts."""
 
 Later = Callable[[Callable[[], None]], Callable[[], None]]
 """Wraps a function so that it runs in a later iteration of the event loop."""
 
 
 def at_once(function: Callable[[], None]) -> Callable[[], None]:
-    """Return the function itself, which is then not called later."""
+    """Return the function itself, so that it runs at once."""
     return function
 
 
@@ -169,7 +169,7 @@ class Drawers(Stack):
 
 
 class InTurns:
-    """Makes parts when they are needed. Between two parts, the server can serve other pages.
+    """Makes parts one after another. Between two parts, the server can serve other pages.
 
     Parameters
     ----------

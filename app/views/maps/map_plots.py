@@ -96,6 +96,7 @@ class MapsView:
         self._results: dict[str, Any] = {}
         # Layers that are being computed.
         self._computing: frozenset[str] = frozenset()
+        # Codes of the fates in the frame.
         self._fates: frozenset[int] = frozenset()
         self.ranges = MapRanges(actions.zoom, actions.rest)
         ranges = self.ranges.x, self.ranges.ordinate

@@ -23,7 +23,7 @@ GESTURE_PAUSE_MS = 500
 """Longest pause between drags or steps of the wheel that share an entry of the browser's history, in milliseconds."""
 
 REST_MS = 90
-"""Time without change after which the ranges report their window, in milliseconds: longer than between two steps of the wheel."""
+"""Time without change after which the ranges report their window, in milliseconds. Steps of the wheel come faster."""
 
 _FOLLOW = callback_code(Path(__file__).with_name("two_fingers.js"), "followFingers(cb_obj, ranges, held)")
 
@@ -34,8 +34,8 @@ Edges = tuple[float, float, float, float]
 class MapRanges:
     """The ranges of x and of the ordinate, which all maps share.
 
-    The browser and the server both move the ranges. If they do so at the same time, the move of the server counts: the browser
-    answers each of its moves, and until the answer, moves of the browser start from an outdated window.
+    The browser and the server both move the ranges. Of simultaneous moves, the server's counts: the browser answers each move
+    of the server, and until the answer, moves of the browser start from an outdated window.
 
     Parameters
     ----------

@@ -38,6 +38,7 @@ class WellView:
         self._ranges = Range1d(-1.0, 1.0), Range1d(-1.0, 1.0)
         self._line_style = line_style(orbit_colours(state))
         self._paths, self._trails = lines("paths"), lines("trails")
+        # Density images of long paths.
         self._shades = ColumnDataSource({name: [] for name in ("image", "x", "y", "dw", "dh", "alpha")}, name="shades")
         self._points = ColumnDataSource({"x": [], "y": [], "slot": []}, name="points")
         self._outlines = CurveLayers(state)

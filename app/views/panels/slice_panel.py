@@ -22,7 +22,7 @@ from engine.systems.parameters import symbol_of
 _HINT = "Starts move along the two axes. The energy decides one momentum, or the speed in a given direction."
 # Labels of the modes in which the energy determines the speed, by the angle of its direction.
 _ANGLES = {Coordinate.THETA: "speed, at angle θ from the x axis", Coordinate.BETA: "speed, at angle β from the radius"}
-# Initial values of the angles.
+# Initial values of the angles, in radians.
 _FIRST_ANGLE = {Coordinate.THETA: 0.0, Coordinate.BETA: 0.5 * math.pi}
 # Step of the boxes.
 _STEP = 0.05
