@@ -67,7 +67,7 @@ class SeparationRequests:
 
 
 class DivergentStartRequests:
-    """Searches for divergent starts (nearest that escape elsewhere), and adds them to the state. `notify` reports progress."""
+    """Finds divergent starts (the nearest that escape elsewhere), and adds them to the state. `notify` reports progress."""
 
     def __init__(self, state: ViewState, jobs: JobSubmitter, notify: Callable[[str], None], locked: Locked) -> None:
         self._state, self._notify = state, notify

@@ -55,7 +55,7 @@ class LimitedProcess:
     Parameters
     ----------
     seconds
-        Limit of the processor time of a call, in seconds; a whole number from 1.
+        Limit of the processor time of a call, in whole seconds; at least 1.
     memory
         Memory that the process may use in addition to its memory at the start, in bytes.
     task

@@ -55,7 +55,7 @@ def refusal_page(sentence: str) -> str:
 
 
 def check_session(token: str, application_context: Any, address: str, application: Any) -> None:
-    """Refuse a WebSocket unless its session is open, or its page is recent and there is room for a session.
+    """Refuse a WebSocket unless its session is open. A recent page may begin a session if there is room.
 
     Parameters
     ----------

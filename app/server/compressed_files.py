@@ -26,7 +26,7 @@ class CompressedFiles(StaticFileHandler):
         """Answer with a compressed file if the browser accepts gzip and the type is in `_SUFFIXES`, else like other handlers."""
         if Path(path).suffix in _SUFFIXES:
             self.set_header("Vary", "Accept-Encoding")
-            # The bytes of a range are counted in the file that is not compressed.
+            # A range counts bytes of the uncompressed file.
             headers = self.request.headers
             self._is_compressed = accepts_gzip(headers.get("Accept-Encoding", "")) and "Range" not in headers
         if not self._is_compressed:

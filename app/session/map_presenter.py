@@ -85,6 +85,7 @@ class MapPresenter:
         self.show_window(None if change is None else change(self._state.find_window()))
 
     def _zoom_to(self, window: Window | None) -> None:
+        """Show the window to which a gesture has moved the pictures; None is the whole interior."""
         self._history.begin_gesture()
         try:
             self.show_window(window)

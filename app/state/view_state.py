@@ -41,7 +41,7 @@ _LONGEST_FIRST = 1000.0
 
 
 def plane_of_system(plane: Slice, system: System) -> Slice:
-    """Return the slice for another system, or the default slice if the system lacks the parameter on its axis."""
+    """Return the slice for another system, or the default slice if the system lacks the parameter on an axis of the slice."""
     try:
         return plane.of_system(system)
     except ValueError:

@@ -126,7 +126,7 @@ class EnergySlider(CountedInput):
 
 
 class ParameterSlider(CountedInput):
-    """A slider with a box for its number. The number is final when the slider is released or left, or Enter is pressed.
+    """A slider with a box for its number. The number is final when the slider is released, a part is left, or Enter is pressed.
 
     For a number beyond an end of the slider, the thumb is at that end.
     """

@@ -40,6 +40,7 @@ def prepare_for_orbits(potential: Potential) -> None:
 def prepare_for_layers(potential: Potential) -> None:
     """Compile the kernels of the layers, or load them from the cache."""
     execution = DEFAULT_EXECUTION.in_this_thread()
+    # A count of 1 is enough to compile the kernels.
     settings = {name: 1 for name, layer in LAYERS.items() if layer.count is not None}
     # Some layers concern orbits that escape, and others bounded orbits: below the escape energy, all orbits are bounded.
     for spec in (small_map(potential, potential.well.energy_at(multiple)) for multiple in (0.5, 1.01)):

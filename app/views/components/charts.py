@@ -33,7 +33,7 @@ class ChartView:
     text
         Text of the points or lines under the mouse, see `chart_hover`; its columns are x, y, low, high and label.
     described
-        The described shapes: Shape.LINE for all lines, or Shape.POINTS for all points.
+        The shapes that the text describes: Shape.LINE for all lines, or Shape.POINTS for all points.
     x_range
         The range of x; None for a range of the chart's own.
     **options

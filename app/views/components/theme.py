@@ -35,7 +35,7 @@ def theme_colour(name: str) -> str:
 
 
 def theme_line(name: str) -> Value:
-    """Return a colour of `LineColours` for the lines of a glyph. The browser chooses light or dark, page.html again."""
+    """Return a colour of `LineColours` for the lines of a glyph. The browser applies the theme, and page.html each new theme."""
     colours = CustomJSTransform(args={"dark": getattr(DARK, name)}, func=_THEME_COLOUR)
     return Value(getattr(LIGHT, name), transform=colours)
 

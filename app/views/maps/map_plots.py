@@ -190,7 +190,7 @@ class MapsView:
         self.describe()
 
     def snapped(self, x: float, ordinate: float) -> tuple[float, float]:
-        """Return the centre of the pixel at a point, which is the start of the pixel; the point itself outside the map."""
+        """Return the start of the pixel at a point: the centre of the pixel. Outside the map, return the point itself."""
         pixel = self._spec.pixel_at(x, ordinate) if self._spec is not None else None
         if self._spec is None or pixel is None:
             return x, ordinate

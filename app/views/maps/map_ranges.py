@@ -23,7 +23,7 @@ GESTURE_PAUSE_MS = 500
 """Longest pause between drags or steps of the wheel that share an entry of the browser's history, in milliseconds."""
 
 REST_MS = 90
-"""Time without change after which the ranges report their window, in milliseconds. Steps of the wheel come faster."""
+"""Time without change after which the ranges report their window, in milliseconds. Steps of the wheel are closer together."""
 
 _FOLLOW = callback_code(Path(__file__).with_name("two_fingers.js"), "followFingers(cb_obj, ranges, held)")
 

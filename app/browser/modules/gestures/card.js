@@ -1,7 +1,7 @@
 // @ts-check
 /**
  * The orbit under the cursor, drawn on a card. The card covers the picture of the well, or on a narrow screen a part of the only
- * map. A finger shows orbits when it rests on a map and then moves.
+ * map. A finger that has rested on a map shows orbits, also while it moves.
  */
 
 import {exitLines, LimitingCurves} from "../engine/curves.js"

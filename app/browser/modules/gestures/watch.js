@@ -24,7 +24,7 @@ const SIDE = 2.5
 const TRAIL = 0.88
 /** Number of frames from one update of the counters to the next. */
 const FRAMES_PER_NUMBER = 6
-/** Opacity of the layer that covers the map under the passages of the section. */
+/** Opacity of the layer between the map and the passages of the section. */
 const COVER_OPACITY = 0.85
 /** Time in each frame for finding the outcomes of orbits, in ms. */
 const OUTCOMES_MS = 6
@@ -181,6 +181,7 @@ class Watch {
     const scene = shown?.scene() ?? null
     /** @type {Record<string, unknown>} */
     const dependences = {view: scene, disc: [scene, radius, point], box: [scene, box]}
+    // Starts at other places depend on the energy, but not on the window.
     const place = dependences[where] ?? scene?.energy
     const ensembleKey = JSON.stringify([where, count, seed, place, scene?.slice, shown?.system.key])
     if (ensembleKey === this.#ensembleKey) return this.#draw()
@@ -354,6 +355,7 @@ class Watch {
     const context = cover(canvas, box)
     if (!context) return
     if (this.#trails.checked) {
+      // Fade the particles of earlier frames.
       context.globalCompositeOperation = "destination-in"
       context.fillStyle = `rgba(0,0,0,${TRAIL})`
       context.fillRect(0, 0, box.width, box.height)

@@ -4,7 +4,7 @@
  *
  * @typedef {object} Coding
  * @property {[number, number][]} outcomes  fate and code of the outcomes that are not escapes
- * @property {number} first  code of the first class
+ * @property {number} first  code of the first end, and of the first class of crossings
  * @property {number[]} ends  place of each outcome, from fate 1, among all ends
  * @property {string[]} words  descriptions of all ends
  * @property {number[]} leastCrossings  fewest crossings of each class

@@ -147,6 +147,7 @@ function tableOf(palette) {
   const cachedTable = tables.get(palette)
   if (cachedTable) return cachedTable
   const table = Uint32Array.from(palette, colour => {
+    // The bytes of a canvas are red, green, blue, alpha. A 32-bit number has its lowest byte first.
     const value = typeof colour === "number" ? colour : parseInt(colour.slice(1).padEnd(8, "f"), 16)
     return ((value & 0xff) << 24) | ((value & 0xff00) << 8) | ((value >>> 8) & 0xff00) | (value >>> 24)
   })
