@@ -86,7 +86,7 @@ class BrowserEngine(JSComponent):
         self._state.energy = round(energy, self._state.energies.decimals)
 
     def _request_system(self, frame: EscapeMap | None) -> None:
-        """Request the system for the browser once a frame has arrived, because it needs the compiled kernels."""
+        """Request the system for the browser once a frame has arrived, because the system needs the compiled kernels."""
         state = self._state
         if frame is not None and frame.spec.potential == state.potential:
             arguments = state.potential, state.energies.low, state.energies.high

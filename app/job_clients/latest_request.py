@@ -30,7 +30,7 @@ class LatestRequest:
     show, fail
         Show each result, partial or final, or a sentence that says why there is none. Both run under the session's lock.
     locked
-        Wraps a function to run under the session's lock; it may run only the latest of several waiting calls.
+        Wraps a function to run under the session's lock. Of several waiting calls, the latest alone may run.
     convert
         Converts a result to what is shown, or to `SKIPPED`, on the thread of the job. A ValueError counts as an error of the job.
     begin

@@ -34,7 +34,7 @@ LEAST_CORES = 0.2
 """Fewest processors of a process: what the operating system gives to it when other programs keep all processors busy."""
 
 LEAST_IDLE_CORES = 0.1
-"""Number of idle processors below which the measured use of other programs may be too low: they wait while this one computes."""
+"""Number of idle processors below which the use of other programs may be measured too low, because other programs wait."""
 
 WINDOW_SECONDS = 20
 """Time over which the use of the processors is averaged, in seconds."""

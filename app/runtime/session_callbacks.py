@@ -109,8 +109,8 @@ class _LockedCallback:
         if self._calls:
             call = self._calls.popleft()
             try:
-                # Panel may hold back changes of widgets until the socket is free. Changes by the call must not overtake held
-                # changes, because they may concern models that held changes add.
+                # Panel may hold back changes of widgets until the socket is free. Changes by the call may concern models that
+                # held changes add, so they must not overtake held changes.
                 with set_curdoc(document), pn.io.hold(document):
                     call()
             except Exception:

@@ -103,7 +103,7 @@ def check_patch(content: Any, document: Document) -> None:
 
 
 def _decode(document: Document, decoder: Deserializer, value: Any) -> Any:
-    """Return a value as a Python object. Refuse unknown classes and wrong fields. Bokeh raises various errors for them."""
+    """Return a value as a Python object. Refuse unknown classes and wrong fields. Bokeh raises various errors for both."""
     try:
         return decoder.decode(value)
     except UnknownReferenceError as error:

@@ -172,7 +172,7 @@ class PageWebSocket(SecurityHeaders, WSHandler):
 
 
 async def _send_again(document: Document, choices: Sequence[tuple[Model, str]]) -> None:
-    """Send the browser's choices back to it: an older choice from the server may have replaced them in the meantime."""
+    """Send the choices of a browser back to the browser: an older choice from the server may have replaced them there."""
     with set_curdoc(document), pn.io.hold(document):
         for model, name in choices:
             if model.document is document:

@@ -54,8 +54,8 @@ def issue_token(
     application
         The server's web application.
     request
-        The request for the page. The token contains only its link parameters, and with a login its cookies: the session
-        needs nothing else.
+        The request for the page. The token contains only the request's link parameters, and with a login the cookies: the
+        session needs nothing else.
     extra
         Additional entries of the token's payload.
     clock

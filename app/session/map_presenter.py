@@ -36,7 +36,7 @@ class MapPresenter:
     history
         Numbers the entries of the browser's history; the moves of one gesture make one entry.
     alone
-        Whether the page shows only one picture, in a frame of another page.
+        Whether the page shows only one picture, in an iframe of another page.
     """
 
     def __init__(self, context: SessionContext, document: Document, history: History, *, alone: bool) -> None:

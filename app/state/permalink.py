@@ -35,7 +35,7 @@ LONGEST_VALUE = LONGEST_TEXT
 """Largest length of a value in a link, in characters."""
 
 EMBED = "embed"
-"""Link parameter of a page in a frame of another page. Its value is the name of the only picture that is shown."""
+"""Link parameter of a page in an iframe of another page. Its value is the name of the only picture that is shown."""
 
 _DEFAULT_EMBEDDED = "basins"
 # Longest part of a value that a message repeats, in characters.

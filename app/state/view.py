@@ -80,8 +80,10 @@ class View:
         Longest time of the orbits, in the units of the potential.
     resolution
         Columns and rows of the map.
-    window, box
-        The part of the plane in view (None for the whole interior), and the part that the statistics count (None for the window).
+    window
+        The part of the plane in view; None for the whole interior, the starts inside all exits.
+    box
+        The part of the plane that the statistics count; None for the window.
     layers
         Names of the layers that are on, as in `plots.layers.table.LAYERS`.
     settings

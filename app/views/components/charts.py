@@ -29,7 +29,7 @@ class ChartView:
     Parameters
     ----------
     frame
-        Frame of the charts.
+        Name, title and axes of the charts.
     text
         Text of the points or lines under the mouse, see `chart_hover`; its columns are x, y, low, high and label.
     described

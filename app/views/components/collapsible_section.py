@@ -30,7 +30,7 @@ class Stack:
     Parameters
     ----------
     makes
-        Functions that make the parts of the contents, by name. They are called when their content is first shown.
+        Functions that make the parts of each content, by name. They are called when the content is first shown.
     css_class
         CSS class of the column.
     head

@@ -30,7 +30,7 @@ class HistogramView:
     Parameters
     ----------
     frame
-        Frame of the charts.
+        Name, title and axes of the charts.
     text
         Text of the bar under the mouse, see `chart_hover`; its columns are left, right and top.
     """

@@ -1,4 +1,4 @@
-"""Bokeh figures of one style. They fill their place on the page, and the stylesheet colours texts and axes."""
+"""Bokeh figures of one style. They fill their place on the page. A figure's frame is the area inside its axes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The look of the page: one stylesheet for the page frame and all widgets."""
+"""The look of the page: one stylesheet for its HTML and all widgets, and colours that follow the theme."""
 
 from __future__ import annotations
 

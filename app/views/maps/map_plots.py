@@ -225,7 +225,7 @@ class MapsView:
         self.well.show_map(spec)
 
     def _show_legends(self) -> None:
-        """Write title, legend, notes and names of the axes around each frame."""
+        """Write title, legend, notes and names of the axes around each picture."""
         spec = self._spec
         if spec is None:
             return

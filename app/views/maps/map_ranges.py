@@ -41,7 +41,7 @@ class MapRanges:
     ----------
     on_zoom
         Shows the window to which the ranges were moved; None is the whole interior. It must lead to a call of `finish_report`.
-        Until that call, the ranges follow no other window, because the user may have moved them again.
+        Until that call, the ranges follow no other window, because the user may have moved the ranges again.
     on_rest
         Handles the end of a gesture, `GESTURE_PAUSE_MS` after the last drag or step of the wheel.
     """
@@ -119,7 +119,7 @@ class MapRanges:
 
     @property
     def _awaits_answer(self) -> bool:
-        """Whether the browser has not answered the last move of the server. Before the page is open, it answers nothing."""
+        """Whether the browser has not answered the last move of the server. A page that is not open yet answers nothing."""
         answered = self.ordinate.tags
         return bool(answered) and answered != self.x.tags
 

@@ -156,7 +156,8 @@ function tableOf(palette) {
 }
 
 /**
- * Write the colours of an image, upside down, as the linear and logarithmic mappers of Bokeh choose them.
+ * Write the colours of an image as the linear and logarithmic mappers of Bokeh choose them. An image begins with its lowest row,
+ * the result with the highest row.
  *
  * @param {any} image  numbers, with NaN for no colour
  * @param {{type: string, palette: any[], low: number, high: number}} mapper
