@@ -93,6 +93,7 @@ class LatestRequest:
                 self._handle_later(number, is_last, result)
 
     def _handle(self, number: int, is_last: bool, result: Any) -> None:
+        """Show a result or an error of the current request, or request the next job."""
         if number != self._number:
             return
         if isinstance(result, Exception):

@@ -144,6 +144,7 @@ class LimitedProcess:
                 self._submit(os.getpid)
 
     def _call[Result](self, function: Callable[[], Result], cancel: threading.Event) -> Result:
+        """Return the result of a function. Replace a process that exceeds a limit or whose call is cancelled."""
         try:
             # This call takes no time, so its result shows that the process has begun.
             self._wait(self._submit(os.getpid), cancel, self._patience)

@@ -126,6 +126,7 @@ class PageWebSocket(SecurityHeaders, WSHandler):
         return bool(sum(session.connection_count for session in self.application_context.sessions) > 1)
 
     async def _take_part(self, message: str | bytes, document: Document) -> None:
+        """Pass a message on after its last part, log a refused message, or close the connection."""
         if self._closed or self._open_session() is None:
             return
         try:

@@ -88,6 +88,7 @@ class PotentialPresenter:
             self.panel.show(reviewed, NEW_INTEGRATOR)
 
     def _use(self, reviewed: SystemReview) -> None:
+        """Show a valid system, and write it to the view state. An equal potential keeps energy, window and starts."""
         self.panel.used = reviewed
         self.panel.show(reviewed)
         if reviewed.system == self._state.system:

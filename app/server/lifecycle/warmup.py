@@ -73,7 +73,7 @@ STEPS: Mapping[str, Callable[[], object]] = {
     "the histograms": histograms.prepare,
     "the integrators of the catalogue, to be compiled when they are needed": reserve_catalogue,
 }
-"""Functions that compile kernels or load them from the disk cache, in the order of need. The keys say what the functions prepare."""
+"""Functions that compile kernels or load them from the disk cache, in the order of need, by what they prepare."""
 
 
 def start_warmup(state: ProcessState, steps: Mapping[str, Callable[[], object]] = STEPS) -> threading.Thread:
