@@ -51,7 +51,7 @@ def accepts_gzip(accepted: str) -> bool:
 
 
 class ModuleHandler(StaticFileHandler):
-    """Serves a module."""
+    """Serves a module, which browsers may keep."""
 
     def get_cache_time(self, path: str, modified: Any, mime_type: str) -> int:
         """Return ten years in seconds: the address changes with the content."""

@@ -24,7 +24,7 @@ TICK_SECONDS = 0.02
 HIGH_SECONDS = 0.05
 """Delay of a tick above which the load is high, in seconds."""
 
-# Factor by which the delay decays per tick: 0.7 in 0.1 s. The load is normal again half a second after a peak.
+# Factor by which the delay decays per tick: 0.7 in 0.1 s. The load is normal again half a second after a peak of 0.3 s.
 _DECAY = 0.7 ** (TICK_SECONDS / 0.1)
 
 LONGEST_SECONDS = 2.0
@@ -44,6 +44,7 @@ class LoadMonitor:
         self._clock = clock
         self._due: float | None = None
         self._high_since: float | None = None
+        # Largest recent delay, which decays, in seconds.
         self.delay = 0.0
 
     def tick(self) -> float:

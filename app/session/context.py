@@ -51,6 +51,8 @@ class History:
 
     def __init__(self) -> None:
         self.entry = 0
+        """The present entry."""
+        # The last entry. After "Back", it follows the present entry.
         self._last = 0
         self._in_gesture = False
         self._gesture_recorded = False

@@ -137,6 +137,7 @@ def read_link(parameters: Mapping[str, str], prefix: str = "") -> tuple[dict[str
         values["jacobi"] = parts[_JACOBI]
     if EMBED in parts:
         picture = values["focus"] = parts[EMBED]
+        # The picture of a layer needs the layer.
         if picture in LAYER_OF:
             values["layers"] = values.get("layers", frozenset()) | {LAYER_OF[picture].name}
     # A link without starts has at most the first place.

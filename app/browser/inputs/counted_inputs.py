@@ -54,7 +54,7 @@ class CountedInput(JSComponent):
         return self.shown["value"]
 
     def show(self, value: Any) -> None:
-        """Show a value."""
+        """Show a value, unless the browser has a newer one."""
         self.shown = self.shown | {"value": value}
 
     def _checked(self, value: Any) -> Any:

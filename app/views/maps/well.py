@@ -65,7 +65,7 @@ class WellView:
         plot.add_glyph(self._points, point)
 
     def show_map(self, spec: MapSpec) -> None:
-        """Show the well of a map."""
+        """Show the well at the energy of a map."""
         self._spec = spec
         self._outline()
 

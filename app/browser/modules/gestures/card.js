@@ -101,7 +101,7 @@ export class Card {
     this.#integrator = new Integrator(system, modules)
   }
 
-  /** @param {PointerEvent} event */
+  /** Hide the card at a click, or wait until a finger has rested. @param {PointerEvent} event */
   #press(event) {
     this.#lift()
     const picture = this.#viewAt(event)
@@ -119,6 +119,7 @@ export class Card {
     this.#finger = {timer, x: event.clientX, y: event.clientY}
   }
 
+  /** End the gesture of a finger. */
   #lift() {
     if (this.#finger) clearTimeout(this.#finger.timer)
     if (this.#isPressed) this.#hide()
@@ -126,7 +127,7 @@ export class Card {
     this.#isPressed = false
   }
 
-  /** @param {PointerEvent} event */
+  /** Show the orbit under the mouse, or under a finger that has rested. @param {PointerEvent} event */
   #move(event) {
     if (event.pointerType === "touch") {
       const finger = this.#finger

@@ -206,6 +206,8 @@ class Watch {
   }
 
   /**
+   * Draw the starts, and prepare their ensemble and outcomes.
+   *
    * @param {import("./present.js").Shown} shown
    * @param {import("../workers/frames.js").Scene} scene
    */
@@ -220,7 +222,7 @@ class Watch {
     this.#outcomes = new Outcomes(system, modules, energy, states, LONGEST)
   }
 
-  /** @param {boolean} isPlaying */
+  /** Play, from the beginning if the end is reached, or pause. @param {boolean} isPlaying */
   #setPlaying(isPlaying) {
     cancelAnimationFrame(this.#playFrame)
     this.#playFrame = 0
@@ -256,7 +258,7 @@ class Watch {
     this.#play.setAttribute("aria-pressed", String(isPlaying))
   }
 
-  /** @param {number} time */
+  /** Go to a time, in units of the well. @param {number} time */
   #show(time) {
     this.#ensemble?.advance(Math.min(time, LONGEST))
     this.#draw()
@@ -285,6 +287,7 @@ class Watch {
     drawSurvival(this.#chart, ensemble, {longest: LONGEST, unit: shown.system.units.time, rate: this.#model.rate, ink})
   }
 
+  /** Return the text below the controls: what is shown, or what is missing. */
   #explain() {
     if (!present()) return "The engine in the browser is being loaded …"
     if (!this.#ensemble) return "Choose a slice of one energy and one potential, within the range of the slider."

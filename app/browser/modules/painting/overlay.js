@@ -37,7 +37,7 @@ export class Overlay {
   #pixels = document.createElement("canvas")
   #isShown = false
 
-  /** @param {Painting} painting */
+  /** Paint all pictures on their canvases, and the well if it changes. @param {Painting} painting */
   show(painting) {
     this.#isShown = true
     const {energy, window, columns, lines, well} = painting
