@@ -130,7 +130,7 @@ def _difference(one: EscapeMap, other: EscapeMap) -> str:
         return "it has different axes, so pixels cannot be compared."
     if one.fate.shape != other.fate.shape or one.spec.find_window() != other.spec.find_window():
         return "…"
-    # Lower fates have no orbit, or no outcome yet.
+    # Pixels of lower fates have no orbit or no outcome.
     counted = (one.fate >= Fate.BOUNDED) & (other.fate >= Fate.BOUNDED)
     if not counted.any():
         return "no start in the window has an orbit in both."

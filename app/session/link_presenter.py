@@ -89,7 +89,7 @@ class LinkPresenter:
         self._show_problems()
 
     def navigate(self, link: str, entry: int, steps: int) -> None:
-        """Show the view of a link in the browser's history, at an entry reached after a number of steps."""
+        """Show the view of a link in the browser's history, given the entry and the number of steps so far."""
         self._browser.follow_steps(steps)
         values, self._problems = read_link(dict(parse_qsl(link.removeprefix("?"))))
         self.history.move_to(entry)
