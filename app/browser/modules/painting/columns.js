@@ -99,7 +99,7 @@ const SAME_ENERGY = 1e-12
 export const sameEnergy = (one, other) => Math.abs(one - other) <= SAME_ENERGY * Math.abs(other)
 
 /**
- * Whether columns from the server show a scene and are complete or have at least as many rows as a preview.
+ * Whether columns from the server show a scene, with a map that is complete or has at least as many rows as a preview.
  *
  * @param {Columns} columns
  * @param {import("../workers/frames.js").Scene} scene
