@@ -1,4 +1,4 @@
-"""Program ``python -m app``: `panel serve` for this folder, with its options, and with the timeouts of a public server."""
+"""Program ``python -m app``: `panel serve` for this folder, with the given options and the timeouts of a public server."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from app.runtime.settings import read_settings
 from app.server.lifecycle.start_checks import INVALID_SETTING
 
 SESSION_SECONDS = 60
-"""Lifetime of a session without a connection, in which a broken connection can be resumed."""
+"""Lifetime of a session without a connection, in seconds. A broken connection can be resumed until then."""
 
 KEEP_ALIVE_SECONDS = 20
-"""Interval between pings on an idle connection; shorter than the timeout of any proxy."""
+"""Interval between pings on an idle connection, in seconds; shorter than the usual timeouts of proxies."""
 
 
 def serve(options: Sequence[str]) -> None:

@@ -1,7 +1,7 @@
 """Hooks that Bokeh calls when the server starts and stops, and for every session and request.
 
-Bokeh runs this file, more than once, before it builds its web application. The file itself checks the command line, extends the
-URL patterns, and chooses the class of the HTTP server.
+Bokeh runs this file, more than once, before it builds its web application. Each run checks the command line, extends the URL
+patterns, and chooses the class of the HTTP server.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ from app.state.system_review import review_catalogue_entry
 from engine import CASES
 from engine.integrator.jit.disk_cache import compile_in
 
-# No process is forked yet. While Bokeh runs this file, `sys.argv` contains only the arguments of the application.
+# No process is forked yet. While Bokeh runs this file, only `sys.orig_argv` contains the whole command line.
 if asks_for_several_processes(sys.orig_argv):
     refuse_to_start(SEVERAL_PROCESSES)
 install_handlers(urls.per_app_patterns, urls.toplevel_patterns)
@@ -66,7 +66,7 @@ def on_server_loaded(server_context: Any) -> None:
     threading.Thread(target=watch.watch, args=[state.stopping], name="loop watch", daemon=True).start()
     compile_in(state.compiler)
     start_warmup(state)
-    # The first request would have to wait for this import and for the reviews of the cases.
+    # Otherwise, the first request would wait for this import and for the reviews of the cases.
     import_module("app.session.page")
     for case in CASES:
         review_catalogue_entry(case)
@@ -80,7 +80,7 @@ def on_server_unloaded(server_context: Any) -> None:
 def on_session_created(session_context: Any) -> None:
     """Count a new session, and build its page.
 
-    Bokeh calls this on a thread, so the event loop can serve other pages; `main.py` would run on the loop.
+    Bokeh calls this hook on another thread, so the event loop serves other pages meanwhile. `main.py` would run on the loop.
     """
     process_state().metrics.sessions_created.inc()
     loop = session_context.server_context.application_context.io_loop.asyncio_loop
@@ -107,7 +107,7 @@ def _start_state() -> ProcessState:
 
 
 def _measure_load(state: ProcessState, watch: LoopWatch) -> None:
-    # The log of a stopping server ends with the line that it stops.
+    # A stopping server logs no more delays, so the line that it stops is the last.
     if not state.stopping.is_set():
         watch.tick()
     state.adapt_to_load()

@@ -1,4 +1,4 @@
-"""The file that `panel serve app` runs for each session, whose page `app_hooks` has built before."""
+"""The file that `panel serve app` runs for each session. `app_hooks` has already built the page of the session."""
 
 import panel as pn
 

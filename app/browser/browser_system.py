@@ -87,5 +87,6 @@ def _energies(potential: Potential, low: float, high: float) -> np.ndarray:
         return np.linspace(low, high, _ENERGIES_BELOW + _ENERGIES_ABOVE)
     escape = min(max(potential.escape_energy, low), high)
     below = np.linspace(low, escape, _ENERGIES_BELOW)
+    # The square places energies closer together just above the escape energy.
     above = escape + (high - escape) * np.linspace(0.0, 1.0, _ENERGIES_ABOVE) ** 2
     return np.unique([*below, *above])

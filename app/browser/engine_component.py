@@ -59,7 +59,7 @@ class BrowserEngine(JSComponent):
         self.view = describe_view(self._state)
 
     def play(self) -> None:
-        """Animate the energy up to its highest value, from the lowest if it is there already; stop a running animation."""
+        """Animate the energy up to its highest value; from there, begin at the lowest. Stop a running animation."""
         state, energies = self._state, self._state.energies
         if self.playing:
             self.stop()
@@ -86,7 +86,7 @@ class BrowserEngine(JSComponent):
         self._state.energy = round(energy, self._state.energies.decimals)
 
     def _request_system(self, frame: EscapeMap | None) -> None:
-        """Request the system for the browser once a frame has arrived, because it needs the compiled kernels."""
+        """Request the system for the browser once a frame has arrived, because the system needs the compiled kernels."""
         state = self._state
         if frame is not None and frame.spec.potential == state.potential:
             arguments = state.potential, state.energies.low, state.energies.high

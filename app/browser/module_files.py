@@ -46,11 +46,12 @@ def accepts_gzip(accepted: str) -> bool:
     """Return whether gzip is among the accepted encodings, the value of a header ``Accept-Encoding``, with a weight above 0."""
     encodings = (encoding.replace(" ", "").lower().split(";q=") for encoding in accepted.split(","))
     weights = {name: weight[0] if weight else "1" for name, *weight in encodings}
+    # A weight of 0, 0.0, 0.00 or 0.000 excludes an encoding.
     return weights.get("gzip", weights.get("*", "0")).strip("0.") != ""
 
 
 class ModuleHandler(StaticFileHandler):
-    """Serves a module."""
+    """Serves a module, which browsers may keep."""
 
     def get_cache_time(self, path: str, modified: Any, mime_type: str) -> int:
         """Return ten years in seconds: the address changes with the content."""

@@ -1,4 +1,4 @@
-"""Requests about the chosen orbit: its separation from the previously chosen orbit, and its divergent start."""
+"""Requests about the chosen orbit: its separation from the previously chosen orbit, and the nearest start that ends elsewhere."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Pair = tuple[int, int]
 
 
 class SeparationRequests:
-    """Requests the separation for one session. `show(pair, separation)` takes it; without a pair of orbits, both are None."""
+    """Requests separations for one session. `show(pair, separation)` takes each; without a pair of orbits, both are None."""
 
     def __init__(
         self,
@@ -67,7 +67,7 @@ class SeparationRequests:
 
 
 class DivergentStartRequests:
-    """Searches for divergent starts, and adds them to the view state. `notify(sentence)` reports progress."""
+    """Finds divergent starts (the nearest that escape elsewhere), and adds them to the state. `notify` reports progress."""
 
     def __init__(self, state: ViewState, jobs: JobSubmitter, notify: Callable[[str], None], locked: Locked) -> None:
         self._state, self._notify = state, notify

@@ -28,9 +28,9 @@ class LatestRequest:
     jobs
         Computes the results.
     show, fail
-        Show each result, partial or final, and show a sentence that says why there is none, under the session's lock.
+        Show each result, partial or final, or a sentence that says why there is none. Both run under the session's lock.
     locked
-        Wraps a function to run under the session's lock; it may run only the latest of several waiting calls.
+        Wraps a function to run under the session's lock. Of several waiting calls, the latest alone may run.
     convert
         Converts a result to what is shown, or to `SKIPPED`, on the thread of the job. A ValueError counts as an error of the job.
     begin
@@ -87,12 +87,13 @@ class LatestRequest:
                 result = self._convert(result)
             except ValueError as error:
                 result = error
-        # The lock keeps `number` valid until the call waits: an outdated call could replace the only waiting call of the session.
+        # The lock keeps `number` valid until the call is queued: an outdated call could replace the only waiting call.
         with self._number_lock:
             if number == self._number and result is not SKIPPED:
                 self._handle_later(number, is_last, result)
 
     def _handle(self, number: int, is_last: bool, result: Any) -> None:
+        """Show a result or an error of the current request, or request the next job."""
         if number != self._number:
             return
         if isinstance(result, Exception):

@@ -1,4 +1,4 @@
-"""Requests for the map of the view state. A listener takes the frames of the map."""
+"""Requests for the map of the view state. A listener takes the frames of the map, which are partial results except the last."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class MapRequests:
     listener
         Takes frames and errors, under the session's lock.
     locked
-        Wraps callbacks to run under the session's lock; it may run only the latest of several waiting calls.
+        Wraps callbacks to run under the session's lock. Of several waiting calls, the latest alone may run.
     is_crowded
         Whether the server is crowded. Then only the first and the last frame of a map are shown.
     prepare

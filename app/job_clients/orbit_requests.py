@@ -1,4 +1,4 @@
-"""Requests for the orbits of the chosen starts and for their Birkhoff digits."""
+"""Requests for the orbits of the starts in the view state and for their Birkhoff digits."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class ChosenOrbit:
 
     @property
     def orbit(self) -> Orbit | None:
-        """The orbit; None until it is computed, or without an orbit."""
+        """The orbit; None until it is computed, and for a start without an orbit."""
         return self.curves.orbit if self.curves is not None else None
 
     @property

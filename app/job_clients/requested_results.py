@@ -64,6 +64,7 @@ class RequestedResults:
             self._subscriptions[job] = subscription
 
     def _handle(self) -> None:
+        """Keep and report the new values of jobs that are still wanted."""
         arrived: dict[Job[Any], Any] = {}
         while self._new_values:
             job, result = self._new_values.popleft()

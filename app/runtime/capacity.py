@@ -22,10 +22,10 @@ FULL = 0.85
 """Largest share of the processors, and of the event loop's time, for all pages together. Above it, new pages are refused."""
 
 CROWDED = 0.5
-"""Share, as in `FULL`, above which work that can wait is postponed, so that open pages stay fast."""
+"""Share (see `FULL`) above which work that can wait is postponed, so that open pages stay fast."""
 
 VISITOR_SHARE = 0.5
-"""Largest share of the capacity that the pages of one visitor count for when another visitor opens a page."""
+"""When a visitor opens a page, the pages of each other visitor count for at most this share of the capacity."""
 
 MOST_CORES = 1.0
 """Most processors that a process uses: its threads share the interpreter lock."""
@@ -34,19 +34,19 @@ LEAST_CORES = 0.2
 """Fewest processors of a process: what the operating system gives to it when other programs keep all processors busy."""
 
 LEAST_IDLE_CORES = 0.1
-"""With fewer idle processors, the measured use of other programs may be too low, because they wait for this program."""
+"""Number of idle processors below which the use of other programs may be measured too low, because other programs wait."""
 
 WINDOW_SECONDS = 20
-"""Time over which the use of the processors is averaged."""
+"""Time over which the use of the processors is averaged, in seconds."""
 
 ACTING_SECONDS = 300.0
-"""Time after the visitor's last action during which a page counts in full."""
+"""Time after the visitor's last action during which a page counts in full, in seconds."""
 
 IDLE_WEIGHT = 0.1
 """Weight of an idle page, compared with 1 for a page in use."""
 
 CONNECTION_SECONDS = 15.0
-"""Time after its last action during which a page without a connection counts, because it may be opening or reconnecting."""
+"""Time after the last action during which a page without a connection counts, in seconds: it may be opening or reconnecting."""
 
 
 class ProcessorTimes(NamedTuple):
@@ -107,7 +107,7 @@ class Capacity:
         self._cores_per_page, self._processes, self._measure, self._clock = cores_per_page, processes, measure, clock
         self._usable_cores = count_cores() if usable_cores is None else usable_cores
         self._times = measure()
-        # Measurements are a second or more apart.
+        # Measurements are a second or more apart, so this many of them cover the window.
         self._uses = deque[_Use](maxlen=WINDOW_SECONDS)
         self.cores = self._available_cores(0.0)
         self.loop = 0.0

@@ -1,4 +1,4 @@
-"""Callbacks for pages that lose their last connection. They cancel jobs long before the session expires."""
+"""Callbacks for pages that lose their last connection. The callbacks cancel jobs long before the session expires."""
 
 from __future__ import annotations
 

@@ -61,7 +61,7 @@ class FairShare:
 
     @types.coroutine
     def count[Result](self, coroutine: Coroutine[Any, Any, Result]) -> Generator[Any, Any, Result]:
-        """Await a coroutine, and charge the processor time of its steps. Code that runs while it waits is not charged."""
+        """Await a coroutine, and charge the processor time of its steps. Code that runs while the coroutine waits is free."""
         step: Callable[[], Any] = partial(coroutine.send, None)
         while True:
             begin = self._busy_clock()

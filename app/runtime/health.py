@@ -66,7 +66,7 @@ def _full_reason(state: ProcessState, network: str = "") -> str | None:
 
 
 def _is_alone(state: ProcessState, network: str) -> bool:
-    """Whether a visitor is on this machine, or no page is open except one of the visitor, which may be reloading."""
+    """Whether a visitor is on this machine, or no page is open except perhaps one of this visitor, who may be reloading it."""
     return (network != "" and is_near(network)) or state.sockets.total() <= min(state.sockets[network], 1)
 
 

@@ -55,7 +55,7 @@ class LimitedProcess:
     Parameters
     ----------
     seconds
-        Limit of the processor time of a call, in seconds; a whole number from 1.
+        Limit of the processor time of a call, in whole seconds; at least 1.
     memory
         Memory that the process may use in addition to its memory at the start, in bytes.
     task
@@ -139,12 +139,14 @@ class LimitedProcess:
 
     def _start(self) -> None:
         if not self._is_closed:
-            # If no process can start now, the next call starts one.
+            # Any call starts the process. If no process can start now, the next call starts one.
             with suppress(OSError, MemoryError):
                 self._submit(os.getpid)
 
     def _call[Result](self, function: Callable[[], Result], cancel: threading.Event) -> Result:
+        """Return the result of a function. Replace a process that exceeds a limit or whose call is cancelled."""
         try:
+            # This call takes no time, so its result shows that the process has begun.
             self._wait(self._submit(os.getpid), cancel, self._patience)
             self.has_begun = True
         except (BrokenExecutor, FutureTimeoutError, MemoryError):

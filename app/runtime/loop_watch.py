@@ -24,7 +24,7 @@ TICK_SECONDS = 0.02
 HIGH_SECONDS = 0.05
 """Delay of a tick above which the load is high, in seconds."""
 
-# Factor by which the delay decays per tick: 0.7 in 0.1 s. The load is normal again half a second after a peak.
+# Factor by which the delay decays per tick: 0.7 in 0.1 s. The load is normal again half a second after a peak of 0.3 s.
 _DECAY = 0.7 ** (TICK_SECONDS / 0.1)
 
 LONGEST_SECONDS = 2.0
@@ -44,6 +44,7 @@ class LoadMonitor:
         self._clock = clock
         self._due: float | None = None
         self._high_since: float | None = None
+        # Largest recent delay, which decays, in seconds.
         self.delay = 0.0
 
     def tick(self) -> float:
@@ -157,7 +158,7 @@ class LoopWatch:
 
 
 def find_cause(innermost: FrameType) -> str:
-    """Return the outermost function on a stack that belongs to the app and does more than pass calls on, or else to a library."""
+    """Return the outermost function of the app that does more than pass calls on; without one, other functions or `WAITING`."""
     frames = [frame for frame, _ in traceback.walk_stack(innermost)][::-1]
     app_places = [place for place in (_place_in_app(frame.f_code) for frame in frames) if place is not None]
     library_places = [place for place in map(_place_in_library, frames) if place is not None]

@@ -75,7 +75,7 @@ class ProcessState:
     stopping: threading.Event = field(default_factory=threading.Event, init=False)
     _is_crowded: bool = field(default=False, init=False)
     _shares: WeakKeyDictionary[Document, FairShare] = field(default_factory=WeakKeyDictionary, init=False)
-    # Held by the page that has the turn, for each event loop: a process of tests has several loops, one after another.
+    # One lock for each event loop, held by the page that has the turn. A test process has several loops, one after another.
     _turns: WeakKeyDictionary[asyncio.AbstractEventLoop, asyncio.Lock] = field(default_factory=WeakKeyDictionary, init=False)
 
     def __post_init__(self) -> None:

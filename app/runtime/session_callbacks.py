@@ -2,7 +2,7 @@
 
 Bokeh's ``Document.locked_callback`` is not used, because it schedules calls through events of the document. While a
 callback holds events back (``pn.io.hold``), Panel and Bokeh copy the list of held events, then replace the list: an
-event that a thread appends in between is lost. With ``policy="latest"``, a lost event blocks all later frames.
+event that a thread appends in between is lost. With Bokeh's ``policy="latest"``, one lost event blocks all later calls.
 """
 
 from __future__ import annotations
@@ -109,8 +109,8 @@ class _LockedCallback:
         if self._calls:
             call = self._calls.popleft()
             try:
-                # Panel may hold back changes of widgets until the socket is free. Changes by the call must not overtake held
-                # changes, because they may concern models that held changes add.
+                # Panel may hold back changes of widgets until the socket is free. Changes by the call may concern models that
+                # held changes add, so they must not overtake held changes.
                 with set_curdoc(document), pn.io.hold(document):
                     call()
             except Exception:

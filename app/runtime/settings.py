@@ -48,7 +48,7 @@ def _in_range[Number: (int, float)](value: Number, low: Number, high: Number) ->
 
 def _parse_origins(text: str) -> tuple[str, ...]:
     origins = tuple(text.split())
-    # A separator of directives or headers could begin another directive or header.
+    # Origins are written into a header, where a separator could begin another directive or header.
     if not all(origin.isascii() and origin.isprintable() and not set(origin) & set(";,'\"") for origin in origins):
         raise ValueError
     return origins
@@ -72,7 +72,7 @@ class Settings:
     largest_resolution
         Largest number of pixels along a side of a map.
     longest_t_max
-        Largest t_max, dimensionless.
+        Largest t_max, the time until which orbits are integrated (dimensionless).
     most_orbits
         Largest number of orbits in all large running jobs: pixels of maps, and pixels times values of sweeps.
     most_sessions

@@ -1,4 +1,4 @@
-"""Admission of pages and WebSockets. They are refused when the server is full or stopping, or when an address has its share."""
+"""Admission of pages and WebSockets. They are refused if the server is full or stopping, or if their address has too many."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def admit(request: Any) -> None:
 
 
 def refusal_page(sentence: str) -> str:
-    """Return an error page with a sentence. The error page requests the refused page again after `RETRY_SECONDS`."""
+    """Return an error page with a sentence. The browser requests the refused page again after `RETRY_SECONDS`."""
     head = (
         f"<meta charset=utf-8><meta name=viewport content='width=device-width'><meta http-equiv=refresh content={RETRY_SECONDS}>"
     )
@@ -55,7 +55,7 @@ def refusal_page(sentence: str) -> str:
 
 
 def check_session(token: str, application_context: Any, address: str, application: Any) -> None:
-    """Refuse a WebSocket unless its session is open, or its page is recent and there is room for a session.
+    """Refuse a WebSocket unless its session is open. A recent page may begin a session if there is room.
 
     Parameters
     ----------

@@ -103,7 +103,7 @@ def check_patch(content: Any, document: Document) -> None:
 
 
 def _decode(document: Document, decoder: Deserializer, value: Any) -> Any:
-    """Return a value as a Python object. Refuse unknown classes and wrong fields. Bokeh raises various errors for them."""
+    """Return a value as a Python object. Refuse unknown classes and wrong fields. Bokeh raises various errors for both."""
     try:
         return decoder.decode(value)
     except UnknownReferenceError as error:
@@ -173,6 +173,7 @@ def _walk(value: Any, depth: int, known: Container[str]) -> Iterator[tuple[int, 
 
 
 def _is_plain(value: Any) -> bool:
+    """Whether a value, without the values in it, is of a kind and size that a page sends."""
     if isinstance(value, str):
         # A lone surrogate cannot be encoded.
         return len(value) <= LONGEST_TEXT and not any("\ud800" <= c <= "\udfff" for c in value)
@@ -243,6 +244,7 @@ def _is_size(_: Any, value: Any) -> bool:
 
 
 def _is_list_of_positions(_: Any, value: Any) -> bool:
+    """Whether no number of a list is negative."""
     return all(_is_between(each, 0, None) for each in value)
 
 
@@ -267,9 +269,10 @@ _CHOICES = (CheckboxGroup, RadioGroup, Select)
 
 
 class _DataProperties(dict[str, Check]):
-    """Checks for the properties of components, whose parameters are numbers, texts or maps."""
+    """Checks for the properties of components, whose parameters are numbers, texts or dictionaries."""
 
     def __contains__(self, name: object) -> bool:
+        # Every Bokeh model has these two properties, which are not parameters.
         return name not in ("name", "tags")
 
     def __missing__(self, name: str) -> Check:

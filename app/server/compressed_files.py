@@ -23,9 +23,10 @@ class CompressedFiles(StaticFileHandler):
     _is_compressed = False
 
     async def get(self, path: str, include_body: bool = True) -> None:
-        """Answer with a compressed file if the browser accepts it and the type is worth it, else like the other base class."""
+        """Answer with a compressed file if the browser accepts gzip and the type is in `_SUFFIXES`, else like other handlers."""
         if Path(path).suffix in _SUFFIXES:
             self.set_header("Vary", "Accept-Encoding")
+            # A range counts bytes of the uncompressed file.
             headers = self.request.headers
             self._is_compressed = accepts_gzip(headers.get("Accept-Encoding", "")) and "Range" not in headers
         if not self._is_compressed:

@@ -32,8 +32,8 @@ LIMITS: Mapping[str, int] = {
 """Options of the HTTP server, in seconds and bytes."""
 
 UNTRUSTED = ("X-Real-Ip", "X-Scheme")
-"""Headers that are removed from requests. With ``--use-xheaders``, Tornado prefers them to ``X-Forwarded-For`` and
-``X-Forwarded-Proto``, which a proxy sets. The proxy may pass on the preferred headers of a client."""
+"""Headers that are removed from requests, because a client can forge them. With ``--use-xheaders``, Tornado prefers them to
+``X-Forwarded-For`` and ``X-Forwarded-Proto``, which the proxy sets."""
 
 CONNECTIONS_PER_PAGE = 6
 """Largest number of connections, WebSockets apart, that a browser opens to a host."""

@@ -14,7 +14,7 @@ from bokeh.model import Model
 from app.server.browser_rules import OutdatedMessageError, RefusedMessageError, check_patch, find_choices
 
 LARGEST_FRAGMENT = 4 * 2**20
-"""Largest size of a part of a message, in bytes. Most have less than 2 kB. A model that the server has added is sent whole."""
+"""Largest size of a part of a message, in bytes. Most parts have less than 2 kB, but a browser sends some models whole."""
 
 MOST_BUFFERS = 64
 """Largest number of binary buffers of a message, such as the arrays of a model that is sent whole."""
@@ -26,7 +26,7 @@ MOST_AT_ONCE = 4000
 """Largest number of messages at once, after a pause."""
 
 REFUSED_COUNTS = 40
-"""A refused message counts as this many messages, because it causes a line in the log. The page itself sends none."""
+"""A refused message counts as this many messages, because it causes a line in the log. The page sends no such messages."""
 
 BYTES_PER_MESSAGE = 16 * 1024
 """Number of bytes of a part of a message that count as one more message."""

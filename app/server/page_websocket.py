@@ -1,4 +1,4 @@
-"""The WebSocket of a page. It checks the token and the messages of the page, and closes when they break the rules."""
+"""The WebSocket of a page. It checks token and messages of the page, and closes the connection when they break the rules."""
 
 from __future__ import annotations
 
@@ -64,6 +64,7 @@ class PageWebSocket(SecurityHeaders, WSHandler):
     def open(self, *args: Any, **kwargs: Any) -> Any:
         """Disable Nagle's algorithm and open the connection."""
         self.set_nodelay(True)
+        # `_closed`: no further message is handled. `_is_ended`: Tornado has reported the end of the connection.
         self._guard, self._closed, self._is_ended = MessageGuard(), False, False
         self._writes: list[Awaitable[None]] = []
         self._last_notice = -PASSING_SECONDS
@@ -125,6 +126,7 @@ class PageWebSocket(SecurityHeaders, WSHandler):
         return bool(sum(session.connection_count for session in self.application_context.sessions) > 1)
 
     async def _take_part(self, message: str | bytes, document: Document) -> None:
+        """Pass a message on after its last part, log a refused message, or close the connection."""
         if self._closed or self._open_session() is None:
             return
         try:
@@ -171,7 +173,7 @@ class PageWebSocket(SecurityHeaders, WSHandler):
 
 
 async def _send_again(document: Document, choices: Sequence[tuple[Model, str]]) -> None:
-    """Send the browser's choices back to it: an older choice from the server may have replaced them in the meantime."""
+    """Send the choices of a browser back to the browser: an older choice from the server may have replaced them there."""
     with set_curdoc(document), pn.io.hold(document):
         for model, name in choices:
             if model.document is document:

@@ -88,9 +88,9 @@ def accepted_hosts(application: BokehTornado) -> str:
 
 
 def refuse_other_hosts(application: BokehTornado) -> None:
-    """Answer requests to other hosts with status 421: a foreign page could let its host name point to this server.
+    """Answer requests to other hosts with status 421: a foreign page could let its host name point here (DNS rebinding).
 
-    Probes and the collector of metrics may use any host, because their answers contain no data of visitors.
+    Probes and the collector of metrics may use any host, because the answers to them contain no data of visitors.
     """
     operator_paths = "|".join(application.prefix + path for path, _ in ROUTES)
     application.add_handlers(f"(?!(?:{accepted_hosts(application)})$).*", [(f"(?!(?:{operator_paths})$).*", OtherHost)])
@@ -99,14 +99,14 @@ def refuse_other_hosts(application: BokehTornado) -> None:
 class PageHandler(SecurityHeaders, DocHandler):
     """Serves the page with a nonce on its scripts, and with a signed token of its session.
 
-    Pages are made one at a time. Bokeh would make all waiting pages in one turn of the event loop, which would then serve nobody
-    else, and it might discard the first page as unused before sending it.
+    Pages are made one at a time. Bokeh would make all waiting pages in one turn of the event loop. Meanwhile, it would serve
+    nobody else, and it might discard the first page as unused before sending it.
     """
 
     _has_left = False
 
     async def get_session(self) -> Any:
-        """Create a session with a new token, unless the server is full when it is this page's turn."""
+        """Create a session with a new token, unless the server is full when this page's turn comes."""
         async with process_state().making_page:
             if self._has_left:
                 raise Finish

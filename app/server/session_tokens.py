@@ -37,7 +37,7 @@ _ISSUED = "issued"
 # Ten years, in seconds: a token never expires for Bokeh.
 _NO_EXPIRATION = 10 * 365 * 24 * 3600
 
-# The key is made when the server starts, before it forks, so that all processes of `--num-procs` share it.
+# Signs the tokens if the operator has set no key for Bokeh. A new start of the server makes a new key.
 _own_key = generate_secret_key().encode()
 
 
@@ -54,8 +54,8 @@ def issue_token(
     application
         The server's web application.
     request
-        The request for the page. The token contains only its link parameters, and with a login its cookies: the session
-        needs nothing else.
+        The request for the page. The token contains only the request's link parameters, and with a login the cookies: the
+        session needs nothing else.
     extra
         Additional entries of the token's payload.
     clock
@@ -76,7 +76,7 @@ def issue_token(
 
 
 def may_begin_session(application: BokehTornado, token: str, clock: Callable[[], float] = time.monotonic) -> bool:
-    """Whether a token with a valid signature is young enough, and was issued since this machine started."""
+    """Whether a token with a valid signature is young enough. After a restart of the machine, its age may be negative."""
     age: float = clock() - get_token_payload(token).get(_ISSUED, math.inf)
     return bool(0.0 <= age < application.session_token_expiration)
 

@@ -35,7 +35,7 @@ _SWEEP_RESOLUTION = (112, 112)
 
 
 class _LayerResult(NamedTuple):
-    """The whole result of a layer, from which the settings select a part, with its map and its job."""
+    """The whole result of a layer, with its map and its job. The settings select the part that is shown."""
 
     frame: EscapeMap
     result: Any
@@ -268,7 +268,7 @@ def _is_complete(result: Any) -> bool:
 
 
 def _sweep_values(low: float, high: float) -> list[float]:
-    """Return `SWEPT_VALUES` evenly spaced values from `low` to `high`, rounded to few digits."""
+    """Return `SWEPT_VALUES` evenly spaced values from `low` to `high`, rounded to 4 decimals, or more for a small spacing."""
     spacing = (high - low) / (SWEPT_VALUES - 1)
     decimals = max(4, 2 - math.floor(math.log10(spacing)))
     values: list[float] = np.round(np.linspace(low, high, SWEPT_VALUES), decimals).tolist()

@@ -61,7 +61,7 @@ class ComparisonPresenter:
         self._open_view(other.system, {"plane": other.plane, **energy, "window": state.window, "compared": state.view})
 
     def _follow_map(self, frame: EscapeMap | None) -> None:
-        """Compare a complete map, which stays compared until the next complete map."""
+        """Compare a complete map. It stays in the comparison until the next map is complete."""
         if frame is not None:
             self._map = frame
             self._continue()
@@ -130,6 +130,7 @@ def _difference(one: EscapeMap, other: EscapeMap) -> str:
         return "it has different axes, so pixels cannot be compared."
     if one.fate.shape != other.fate.shape or one.spec.find_window() != other.spec.find_window():
         return "…"
+    # Pixels of lower fates have no orbit or no outcome.
     counted = (one.fate >= Fate.BOUNDED) & (other.fate >= Fate.BOUNDED)
     if not counted.any():
         return "no start in the window has an orbit in both."

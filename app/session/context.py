@@ -47,10 +47,12 @@ class SessionContext:
 
 
 class History:
-    """Numbers the entries of the browser's history, one for each action of the user, which "Back" undoes."""
+    """Numbers the entries of the browser's history. Each action of the user has one entry, so "Back" undoes one action."""
 
     def __init__(self) -> None:
         self.entry = 0
+        """The present entry."""
+        # The last entry. After "Back", it follows the present entry.
         self._last = 0
         self._in_gesture = False
         self._gesture_recorded = False

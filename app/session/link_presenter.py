@@ -1,4 +1,4 @@
-"""The links of the page: links of the address and of the browser's history are shown, and a link of each new state is written."""
+"""The links of the page: views of links in the address and the history are shown, and the link of each new state is written."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ class LinkPresenter:
         self._show_problems()
 
     def navigate(self, link: str, entry: int, steps: int) -> None:
-        """Show the view of a link in the browser's history."""
+        """Show the view of a link in the browser's history, given the entry and the number of steps so far."""
         self._browser.follow_steps(steps)
         values, self._problems = read_link(dict(parse_qsl(link.removeprefix("?"))))
         self.history.move_to(entry)

@@ -36,7 +36,7 @@ class MapPresenter:
     history
         Numbers the entries of the browser's history; the moves of one gesture make one entry.
     alone
-        Whether the page shows only one picture, in a frame of another page.
+        Whether the page shows only one picture, in an iframe of another page.
     """
 
     def __init__(self, context: SessionContext, document: Document, history: History, *, alone: bool) -> None:
@@ -80,11 +80,12 @@ class MapPresenter:
     def move(self, change: Callable[[Window], Window] | None) -> None:
         """Show the window to which `change` leads from the window in view, or the whole interior for None.
 
-        Raises ValueError if `change` needs the window in view, and this is not known or too small for double precision.
+        Raises ValueError if the window in view is needed but not known, or if the new window is too small for double precision.
         """
         self.show_window(None if change is None else change(self._state.find_window()))
 
     def _zoom_to(self, window: Window | None) -> None:
+        """Show the window to which a gesture has moved the pictures; None is the whole interior."""
         self._history.begin_gesture()
         try:
             self.show_window(window)

@@ -34,8 +34,8 @@ class Explorer:
     Parameters
     ----------
     spec
-        The map to open: its potential, plane, energy, window and t_max, rounded to the choices of the page; None for the first
-        view of the page.
+        The map to open: its potential, plane, energy and window, and the nearest choices of t_max and resolution; None for the
+        first view of the page.
     height
         Height of the frame in the cell, in pixels.
     """

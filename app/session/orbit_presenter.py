@@ -1,4 +1,4 @@
-"""The orbits of the starts in the view state: they are drawn, marked on the maps, judged, and played."""
+"""The orbits of the starts in the view state: they are requested, drawn, marked on the maps, described, and played."""
 
 from __future__ import annotations
 
@@ -101,6 +101,7 @@ class OrbitPresenter:
                 self._notice.show(one.headline(), path_picture(one.curves, colour))
 
     def _end_message(self, *events: Event) -> None:
+        """Remove a message about earlier orbits, or explain that a change of the plane has removed the orbits."""
         self.controls.end_message(has_orbits=bool(self._state.starts))
         changed = {event.name: event for event in events}
         if "plane" in changed and "starts" in changed and changed["starts"].old and not changed["starts"].new:
@@ -112,6 +113,7 @@ class OrbitPresenter:
         if start is None:
             return
         x, y, px, py = state.start_state(start)
+        # Only a start of the section itself can be kept.
         starts = ((x, px),) if y == 0.0 and SECTION.sign * py > 0.0 else ()
         energy = float(state.plane.energies(state.energy, *start))
         self._open_view(
@@ -120,11 +122,12 @@ class OrbitPresenter:
         )
 
     def _show(self, orbits: Sequence[ChosenOrbit]) -> None:
-        """Show the orbits; if only Birkhoff digits are new, update only the texts."""
+        """Show the orbits. Update only the texts if only Birkhoff digits are new."""
         state = self._state
         if [one.curves for one in orbits] != [one.curves for one in self._orbits]:
             self._interval, self._restricted_curves = None, []
         self._orbits = tuple(orbits)
+        # These orbits are of an earlier, shorter list of starts.
         if state.chosen >= len(orbits) and orbits:
             return
         content = [(one.start, one.curves) for one in orbits], state.chosen, state.palette

@@ -1,4 +1,4 @@
-"""The page: its HTML frame, the texts with which other programs show a link, and the layout of an explorer's views."""
+"""The page: its HTML, the texts with which other programs show a link, and the layout of an explorer's views."""
 
 from __future__ import annotations
 

@@ -88,6 +88,7 @@ class PotentialPresenter:
             self.panel.show(reviewed, NEW_INTEGRATOR)
 
     def _use(self, reviewed: SystemReview) -> None:
+        """Show a valid system, and write it to the view state. An equal potential keeps energy, window and starts."""
         self.panel.used = reviewed
         self.panel.show(reviewed)
         if reviewed.system == self._state.system:
@@ -147,12 +148,12 @@ class PotentialPresenter:
             self._propose(self._waiting_proposal)
 
     def _energy_for(self, reviewed: SystemReview) -> float | None:
-        """Return the energy at the same multiple of the well's depth; None if it is too high, or for another case."""
+        """Return the energy at the same multiple of the well's depth; None if that energy is too high, or the case is another."""
         before, energies = self._state.reviewed, reviewed.energies
         if reviewed.system.case not in (TYPED, before.system.case):
             return None
         if before.potential.escape_radius is not None or reviewed.potential.escape_radius is not None:
-            # Without exits the depth is undefined.
+            # Without exits the depth is undefined, so the energy itself is kept.
             return self._state.energy if energies.low <= self._state.energy <= energies.high else None
         depth = before.escape_energy - before.potential.well.bottom
         multiple = (self._state.energy - before.potential.well.bottom) / depth

@@ -1,4 +1,4 @@
-"""The system in a link: a case or a formula, with parameters of the well, and with letters as in ``letters=a:1.5,b:-2``."""
+"""The system in a link: a case or a formula, parameters of the well, and values of letters, as in ``letters=a:1.5,b:-2``."""
 
 from __future__ import annotations
 

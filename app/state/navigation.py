@@ -10,7 +10,7 @@ from typing import NamedTuple
 from engine import Window
 
 PAN_SHARE = 0.25
-"""Distance by which an arrow key moves the window, as a share of its side."""
+"""Distance by which an arrow key moves the window, as a share of the window's side."""
 
 ZOOM_FACTOR = 2.0
 """Factor by which a zoom key enlarges or shrinks the sides of the window."""

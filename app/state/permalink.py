@@ -35,7 +35,7 @@ LONGEST_VALUE = LONGEST_TEXT
 """Largest length of a value in a link, in characters."""
 
 EMBED = "embed"
-"""Link parameter of a page in a frame of another page. Its value is the name of the only picture that is shown."""
+"""Link parameter of a page in an iframe of another page. Its value is the name of the only picture that is shown."""
 
 _DEFAULT_EMBEDDED = "basins"
 # Longest part of a value that a message repeats, in characters.
@@ -137,8 +137,10 @@ def read_link(parameters: Mapping[str, str], prefix: str = "") -> tuple[dict[str
         values["jacobi"] = parts[_JACOBI]
     if EMBED in parts:
         picture = values["focus"] = parts[EMBED]
+        # The picture of a layer needs the layer.
         if picture in LAYER_OF:
             values["layers"] = values.get("layers", frozenset()) | {LAYER_OF[picture].name}
+    # A link without starts has at most the first place.
     if values.get("chosen", 0) >= len(values.get("starts", (0,))):
         values["chosen"] = 0
     for more_values, more_problems in (_read_view(parameters, parts, prefix), _read_compared(parameters)):

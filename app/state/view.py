@@ -80,8 +80,10 @@ class View:
         Longest time of the orbits, in the units of the potential.
     resolution
         Columns and rows of the map.
-    window, box
-        The part of the plane in view (None for the whole interior), and the part that the statistics count (None for the window).
+    window
+        The part of the plane in view; None for the whole interior, the starts inside all exits.
+    box
+        The part of the plane that the statistics count; None for the window.
     layers
         Names of the layers that are on, as in `plots.layers.table.LAYERS`.
     settings
@@ -134,7 +136,7 @@ class View:
         Parameters
         ----------
         reviewed
-            The review of its system.
+            The review of the view's system.
         """
         side = self.resolution
         return MapSpec(reviewed.potential, self.plane, self._map_energy(reviewed), (side, side), self.window, self.t_max)

@@ -36,12 +36,12 @@ from plots.pictures.time_scale import TimeScale
 WINDOW_UNKNOWN = "The window is not known before the integrator is compiled."
 """Message while the default window is not known."""
 
-# Longest initial t_max of systems without evidence from tori, in natural units of time.
+# Longest initial t_max of systems whose bounded orbits must all be integrated until t_max, in natural units of time.
 _LONGEST_FIRST = 1000.0
 
 
 def plane_of_system(plane: Slice, system: System) -> Slice:
-    """Return the slice for another system, or the default slice if the system lacks the parameter on its axis."""
+    """Return the slice for another system, or the default slice if the system lacks the parameter on an axis of the slice."""
     try:
         return plane.of_system(system)
     except ValueError:

@@ -10,7 +10,7 @@ import param
 from panel.custom import JSComponent
 
 
-# Bokeh does not register classes whose name starts with an underscore in the browser.
+# In the browser, Bokeh does not register classes whose name starts with an underscore.
 class FileSaver(JSComponent):
     """Sends files to the browser, which saves them in its download folder. The component has no size, but must be on the page."""
 

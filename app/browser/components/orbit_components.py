@@ -15,7 +15,7 @@ from app.browser.javascript import component_code
 class OrbitList(JSComponent):
     """Radio buttons in a line, in the colours of the orbits. The CSS variables --orbit-1, --orbit-2, … define these colours.
 
-    Bokeh's radio buttons fail if the chosen button changes while their view is being built, as when a click opens the tab.
+    Bokeh's radio buttons fail if the choice changes while their view is being built, for example when a click opens the tab.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ class OrbitList(JSComponent):
 
 
 class OrbitPlayer(JSComponent):
-    """A button to play and pause, and a slider. The browser drags or plays the time in steps, and reports it.
+    """A button to play and pause, and a slider. Both change the time in steps, and the browser reports each time.
 
     Parameters
     ----------

@@ -16,7 +16,7 @@ SHOWN = "energyshown"
 """Browser event with the energy that the pictures show before the server has received it."""
 
 LONGEST_TYPED = 4000
-"""Largest length of a typed formula, in characters: above the limit for formulas, because the box cuts without a message."""
+"""Largest length of a typed text, in characters: above the limit for formulas, because the box cuts texts without a message."""
 
 
 def _code(name: str) -> str:
@@ -54,7 +54,7 @@ class CountedInput(JSComponent):
         return self.shown["value"]
 
     def show(self, value: Any) -> None:
-        """Show a value."""
+        """Show a value, unless the browser has a newer one."""
         self.shown = self.shown | {"value": value}
 
     def _checked(self, value: Any) -> Any:
@@ -126,7 +126,7 @@ class EnergySlider(CountedInput):
 
 
 class ParameterSlider(CountedInput):
-    """A slider with a box for its number. The number is final when the slider is released or left, or Enter is pressed.
+    """A slider with a box for its number. The number is final when the slider is released, a part is left, or Enter is pressed.
 
     For a number beyond an end of the slider, the thumb is at that end.
     """

@@ -51,6 +51,7 @@ export class CountedValue {
     this.follow()
   }
 
+  /** Send the value with its number. */
   send() {
     this.unsent = false
     this.model.send_msg({value: this.read(), count: ++this.count, done: this.done})

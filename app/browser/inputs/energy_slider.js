@@ -2,7 +2,7 @@
 import {CountedValue} from "./counted_value.js"
 
 /**
- * The slider of the energy. It sends the energy to the page while it moves, and to the server when it is released.
+ * The slider of the energy. While it moves, it sends the energy to the page. Released, it sends the energy to the server.
  *
  * @param {{model: any, el: HTMLElement}} component
  */

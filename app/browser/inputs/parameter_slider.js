@@ -2,8 +2,8 @@
 import {CountedValue} from "./counted_value.js"
 
 /**
- * A slider with a box for its number, which may lie beyond the ends of the slider. Each number is sent. It is final when the
- * slider is released or left, or Enter is pressed.
+ * A slider with a box for its number, which may lie beyond the ends of the slider. Each number is sent. A number is final when
+ * the slider or the box is left, the slider is released, or Enter is pressed.
  *
  * @param {{model: any, el: HTMLElement}} component
  */

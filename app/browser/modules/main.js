@@ -18,6 +18,8 @@ const SIMD = Uint8Array.of(
 )
 
 /**
+ * Start previews, the card and the animation for a component.
+ *
  * @param {any} model
  * @param {HTMLElement} el
  */

@@ -14,7 +14,7 @@ from tornado.websocket import WebSocketClosedError
 from app.runtime.settings import LogFormat
 
 LONGEST_MESSAGE = 400
-"""Largest length of a message, in characters. A visitor may determine most of a message, as by the address of a request."""
+"""Largest length of a message, in characters. A visitor can make a message long, for example by the address of a request."""
 
 # Number of first characters of a session's id in the log.
 _SESSION_CHARACTERS = 8
@@ -50,12 +50,12 @@ def shorten_message(record: logging.LogRecord) -> bool:
 
 
 def is_not_closed_socket(record: logging.LogRecord) -> bool:
-    """Whether a record is not about a message to a client that has disconnected."""
+    """Filter that drops records about messages to clients that have disconnected."""
     return record.exc_info is None or not isinstance(record.exc_info[1], WebSocketClosedError)
 
 
 def is_not_probe(record: logging.LogRecord) -> bool:
-    """Whether a record is not about a request of the readiness probe."""
+    """Filter that drops records about requests of the readiness probe."""
     return " /readiness " not in record.getMessage()
 
 

@@ -31,9 +31,10 @@ def stop_on_signals(state: ProcessState, stop_loop: Callable[[], None]) -> None:
     """Stop gracefully on SIGTERM and Ctrl-C, even while the event loop is busy. Call this on the thread of the loop.
 
     This replaces the handlers of Bokeh and asyncio, which wait for the event loop. Python writes a signal's number to a socket
-    at once, and a thread waits there. Only a C function that keeps the interpreter lock delays this thread, as all others.
+    at once, and a thread reads it. Only a C function that keeps the interpreter lock delays this thread, like all others.
     """
     loop = asyncio.get_running_loop()
+    # On Windows, asyncio has no signal handlers. Python sets signal handlers only on the main thread.
     if os.name != "posix" or threading.current_thread() is not threading.main_thread():
         return
     loop.remove_signal_handler(signal.SIGTERM)

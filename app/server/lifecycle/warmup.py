@@ -40,6 +40,7 @@ def prepare_for_orbits(potential: Potential) -> None:
 def prepare_for_layers(potential: Potential) -> None:
     """Compile the kernels of the layers, or load them from the cache."""
     execution = DEFAULT_EXECUTION.in_this_thread()
+    # A count of 1 is enough to compile the kernels.
     settings = {name: 1 for name, layer in LAYERS.items() if layer.count is not None}
     # Some layers concern orbits that escape, and others bounded orbits: below the escape energy, all orbits are bounded.
     for spec in (small_map(potential, potential.well.energy_at(multiple)) for multiple in (0.5, 1.01)):
@@ -72,7 +73,7 @@ STEPS: Mapping[str, Callable[[], object]] = {
     "the histograms": histograms.prepare,
     "the integrators of the catalogue, to be compiled when they are needed": reserve_catalogue,
 }
-"""Functions that compile kernels or load them from the disk cache, in the order of need. The keys say what they prepare."""
+"""Functions that compile kernels or load them from the disk cache, in the order of need, by what they prepare."""
 
 
 def start_warmup(state: ProcessState, steps: Mapping[str, Callable[[], object]] = STEPS) -> threading.Thread:

@@ -70,7 +70,7 @@ class BasinMeasuresView:
         self._remove([*self._sentences])
 
     def _follow_box(self, box: Window | None) -> None:
-        """Name the region of the measures: a box, or with None the whole view."""
+        """Name the region of the measures, the whole view for None, and remove slow measures of the previous region."""
         self.whole.visible = box is not None
         self._remove([measure.name for measure in DESCRIBED_MEASURES if measure.slow and counts_in_box(measure)])
 
@@ -114,7 +114,7 @@ class BasinMeasuresView:
         self._write()
 
     def _draw(self, result: Result) -> None:
-        """Draw a result that has a chart. The survival of the last map stays until that of the next map arrives."""
+        """Draw a result that has a chart. The survival curve of the last map stays until the next curve arrives."""
         if isinstance(result, UncertaintyExponent):
             self.uncertainty.show(pairs_chart(result))
         elif isinstance(result, DecayLaws):

@@ -1,4 +1,4 @@
-"""Curves of measures against the energy or a parameter. A click on a curve opens the map at this value."""
+"""Curves of measures against the energy or a parameter. A click on a curve opens the map at the clicked value."""
 
 from __future__ import annotations
 

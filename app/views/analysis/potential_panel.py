@@ -28,7 +28,7 @@ from plots.texts.mathml import potential_formula, potential_symbol
 _SLIDER_ENDS = (0.2, 2.0)
 # Ends of the other sliders.
 _OTHER_SLIDER_ENDS = {"rotation": (-1.0, 1.0)}
-# Smallest distance of the ends of a letter's slider from 0. For a large initial value, the distance is twice this value.
+# Smallest distance of the ends of a letter's slider from 0. For a large initial value, the distance is twice that value.
 _LEAST_REACH = 2.0
 _PLACEHOLDER = "½(x² + y²) − x²y + y³/3"
 _HINT = (
@@ -249,7 +249,7 @@ def _accepted(review: PotentialReview, note: str) -> str:
 
 
 def _points(review: PotentialReview) -> str:
-    """Return a table of the critical points."""
+    """Return a table of the critical points, exits first."""
     rows = "".join(
         f"<tr><td>{point.kind.value}</td><td>({format_number(point.x)}, {format_number(point.y)})</td>"
         f"<td>{format_number(point.energy)}</td><td>{point.channel or ''}</td></tr>"

@@ -29,11 +29,11 @@ class ChartView:
     Parameters
     ----------
     frame
-        Frame of the charts.
+        Name, title and axes of the charts.
     text
         Text of the points or lines under the mouse, see `chart_hover`; its columns are x, y, low, high and label.
     described
-        The described shapes: Shape.LINE for all lines, or Shape.POINTS for all points.
+        The shapes that the text describes: Shape.LINE for all lines, or Shape.POINTS for all points.
     x_range
         The range of x; None for a range of the chart's own.
     **options
@@ -103,6 +103,7 @@ def _first_range(is_logarithmic: bool) -> Range1d:
 
 
 def _line_columns(series: Sequence[Series]) -> dict[str, list[Any]]:
+    # Dashed lines come last, so they are drawn over the other lines.
     lines = sorted((one for one in series if one.shape is not Shape.POINTS), key=lambda one: one.shape is Shape.DASHED)
     x, y = ([one.curve[axis] for one in lines] for axis in (0, 1))
     dashes = [_DASHES.get(one.shape, "solid") for one in lines]

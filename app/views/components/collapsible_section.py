@@ -13,14 +13,14 @@ from app.views.components.texts import TextPane
 from app.views.components.widgets import FULL_HEIGHT, button
 
 Build = Callable[[], Sequence[pn.viewable.Viewable]]
-"""Makes a content, or a part of it."""
+"""Makes the parts of a content, or some of the parts."""
 
 Later = Callable[[Callable[[], None]], Callable[[], None]]
 """Wraps a function so that it runs in a later iteration of the event loop."""
 
 
 def at_once(function: Callable[[], None]) -> Callable[[], None]:
-    """Return the function itself, which is then not called later."""
+    """Return the function itself, so that it runs at once."""
     return function
 
 
@@ -30,7 +30,7 @@ class Stack:
     Parameters
     ----------
     makes
-        Functions that make the parts of the contents, by name. They are called when their content is first shown.
+        Functions that make the parts of each content, by name. They are called when the content is first shown.
     css_class
         CSS class of the column.
     head
@@ -169,7 +169,7 @@ class Drawers(Stack):
 
 
 class InTurns:
-    """Makes parts when they are needed. Between two parts, the server can serve other pages.
+    """Makes parts one after another. Between two parts, the server can serve other pages.
 
     Parameters
     ----------

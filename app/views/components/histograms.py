@@ -25,12 +25,12 @@ _ASPECT = 1.6
 
 
 class HistogramView:
-    """A histogram, which changes with its chart.
+    """Draws a histogram from a chart, and draws it again for each new chart.
 
     Parameters
     ----------
     frame
-        Frame of the charts.
+        Name, title and axes of the charts.
     text
         Text of the bar under the mouse, see `chart_hover`; its columns are left, right and top.
     """
@@ -75,7 +75,7 @@ class HistogramView:
         if plot.name != self._frame.name:
             style_chart(plot, self._frame.name, self._frame.title)
             bars = drawing.handles["glyph_renderer"]
-            # HoloViews names them after the values, but names are unique on the page.
+            # HoloViews names these models after the values, but a name must be unique on the page.
             for model in (plot.x_range, plot.y_range, bars):
                 model.name = None
             # The hover tool describes a bar also while the mouse is above its top.

@@ -29,7 +29,7 @@ def legend_items(entries: Iterable[Entry]) -> str:
 def chips(entries: Iterable[Entry]) -> str:
     """Return HTML of the entries of a narrow legend. Each entry is a number or a word, with the whole label as tooltip.
 
-    Entries of a group stand side by side before their word.
+    The patches of neighbouring entries with the same word stand side by side before the word.
     """
     groups = groupby(entries, lambda entry: entry.short_label)
     return "".join(_chip(escape(word), list(group)) for word, group in groups)
@@ -75,7 +75,7 @@ def _number(value: float) -> str:
 
 
 def _table(table: ColourTable) -> str:
-    """Return a line with the tones of each hue, explained by tooltips, and with the order of the tones."""
+    """Return a line of patches: a hue for each end of orbits, its tones for their origins, and the order of the tones."""
     names = [escape(name) for name in table.names]
     hues = "".join(_hue(end, names, tones) for end, tones in zip(names, table.tones, strict=True))
     return f"{hues}<span>tones: from {', '.join(names)}</span>"

@@ -21,6 +21,7 @@ NAME = "notice"
 PASSING_SECONDS = 5.0
 """Duration of a passing message, in seconds."""
 
+# JavaScript that shows a message. It does not send the change to the server, because the connection is lost.
 _ON_CONNECTION_LOST = """
 const pane = Bokeh.documents[0].get_model_by_name(name)
 pane.setv({text: html}, {sync: false})
@@ -59,7 +60,7 @@ class Notice:
 
 
 def show_lasting_notice(document: Document, sentence: str) -> None:
-    """Show a message on the page of a document until the page is reloaded or shows another one; needs the document's lock."""
+    """Show a message on the page of a document until the next message or a reload; needs the document's lock."""
     _set_text(document, _html(sentence))
 
 

@@ -1,4 +1,4 @@
-"""Order, opacity and data columns of the lines of orbits."""
+"""Order, opacity and data columns of the lines of orbits. The slot of an orbit is its place in the list of orbits."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _NO_AREA = np.full(1, np.nan), np.full(1, np.nan)
 
 
 def in_front(orbits: Sequence[OrbitCurves | None], chosen: int) -> list[tuple[int, OrbitCurves]]:
-    """Return the known orbits, each with its place in the list. The chosen orbit is last, so it is drawn over the others."""
+    """Return the known orbits, each with its slot. The chosen orbit is last, so it is drawn over the others."""
     known = [(slot, orbit) for slot, orbit in enumerate(orbits) if orbit is not None]
     return sorted(known, key=lambda item: item[0] == chosen)
 
@@ -34,7 +34,7 @@ def opacities(orbits: Sequence[tuple[int, OrbitCurves]], chosen: int) -> list[fl
 
 
 def orbit_colours(state: ViewState) -> LinearColorMapper:
-    """Return the colours of the orbits by their places in the list, which follow the palette of the view state."""
+    """Return a mapper from the slot of an orbit to its colour. The mapper follows the palette of the view state."""
     mapper = LinearColorMapper(low=-0.5, high=MOST_ORBITS - 0.5)
     state.follow(lambda name: mapper.update(palette=list(PALETTES[name].orbits)), "palette")
     return mapper
@@ -60,7 +60,7 @@ def band_columns(
 ) -> dict[str, list[Any]]:
     """Return the columns of a data source with `MOST_ORBITS` envelopes, some of them without points.
 
-    Their number must not change: Bokeh uses an index of the old envelopes for the new ones, and fails if an envelope is missing.
+    The number must not change: Bokeh uses an index of the old envelopes for the new ones, and fails if an envelope is missing.
     """
     missing = MOST_ORBITS - len(orbits)
     areas = [outline if outline[0].size else _NO_AREA for outline in outlines] + [_NO_AREA] * missing

@@ -1,4 +1,4 @@
-"""Bokeh figures of one style. They fill their place on the page, and the stylesheet colours texts and axes."""
+"""Bokeh figures of one style. They fill their place on the page. A figure's frame is the area inside its axes."""
 
 from __future__ import annotations
 
@@ -34,6 +34,7 @@ HOVER_FORMATS = {name: callback_code(NUMBERS, f"{name}(value)") for name in ("nu
 # A value in a hover text, with the name of its format.
 _HOVER_VALUE = re.compile(r"([@$]\w+)\{(\w+)\}")
 
+# Name of a momentum, px or py.
 _MOMENTUM = re.compile(r"^p([xy])$")
 
 # Width of a history over its height.
@@ -47,7 +48,7 @@ CHART_BORDERS = {"min_border_left": 58, "min_border_right": 10, "min_border_top"
 # Borders of pictures, in pixels. The title is above the frame, and the legend is below the labels of the axis.
 _PICTURE_BORDERS = {"min_border_left": 48, "min_border_right": 10, "min_border_top": 22, "min_border_bottom": 36}
 
-# Power of ten of the last decimal of a label. Longer labels would not fit into the left border, and narrow the frame.
+# Power of ten of the last decimal of a label. Longer labels would not fit into the left border, and would narrow the frame.
 _FINEST_LABEL = -2
 
 # A compact picture has a title, but no axes. A small picture has nothing around its frame.
@@ -153,7 +154,7 @@ def style_chart(plot: figure, name: str, title: str) -> None:
 
 
 class FigurePane(pn.pane.Bokeh):
-    """A figure with callbacks for events. They are set whenever the figure comes to the page, because Panel removes them with it.
+    """A figure with callbacks for events. Panel removes them with the figure, so they are set at each return of the figure.
 
     Parameters
     ----------
@@ -188,7 +189,7 @@ class LaterGlyphs:
         self._is_drawn = False
 
     def expect(self, plot: figure) -> None:
-        """Name a figure that will get the glyphs, or gets them at once if other figures have them."""
+        """Take a figure for the glyphs, which are added at once if other figures have them, otherwise by `draw`."""
         if self._is_drawn:
             self._add(plot)
         else:
@@ -210,7 +211,7 @@ def set_range(edges: Range1d, low: float, high: float) -> None:
 
 
 def set_decades(edges: Range1d, low: float, high: float) -> None:
-    """Set the ends of a logarithmic axis with `find_decades` and `set_range`."""
+    """Set the ends of a logarithmic axis: the power of ten below `low`, and a number a little above `high`."""
     set_range(edges, *find_decades(low, high))
 
 

@@ -1,4 +1,4 @@
-"""The look of the page: one stylesheet for the page frame and all widgets."""
+"""The look of the page: one stylesheet for its HTML and all widgets, and colours that follow the theme."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from plots.pictures.palette import DARK, LIGHT
 THEME_KEY = "escape-explorer-theme"
 """Key of the chosen theme, "light" or "dark", in the browser's local storage."""
 
-# JavaScript that replaces `x`, the colour on a light page, on a dark page.
+# JavaScript of a transform. On a dark page, it replaces `x`, the colour on a light page.
 _THEME_COLOUR = "return document.documentElement.dataset.theme === 'dark' ? dark : x"
 
 _STYLESHEET = Path(__file__).parents[2] / "static" / "theme.css"
@@ -35,7 +35,7 @@ def theme_colour(name: str) -> str:
 
 
 def theme_line(name: str) -> Value:
-    """Return a colour of `LineColours` for the lines of a glyph. The browser chooses it, and page.html renews it."""
+    """Return a colour of `LineColours` for the lines of a glyph. The browser applies the theme, and page.html each new theme."""
     colours = CustomJSTransform(args={"dark": getattr(DARK, name)}, func=_THEME_COLOUR)
     return Value(getattr(LIGHT, name), transform=colours)
 
@@ -49,6 +49,7 @@ class PlainTheme(Theme):
 class ExplorerDesign(Design):
     """Gives all components of a page the same Bokeh model of the stylesheet."""
 
+    # `_patch_modifiers` puts the model in place of this list.
     modifiers = {Viewable: {"stylesheets": [Inherit, "theme"]}}  # noqa: RUF012
     _themes = {"default": PlainTheme, "dark": PlainTheme}  # noqa: RUF012
 

@@ -60,7 +60,7 @@ class ComparedMap:
         self.source.data = _no_map()
 
     def difference(self, columns: Columns, plane: Slice) -> Columns:
-        """Return the column ``difference`` for the columns of a map of a slice; blank without another map with its axes."""
+        """Return the column ``difference`` for the columns of a map of a slice; blank unless the other map has the same axes."""
         is_compared = self.other is not None and self.other.axes == plane.axis_symbols
         return difference_column(columns, self.source.data) if is_compared else {"difference": NO_LAYER}
 

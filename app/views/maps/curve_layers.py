@@ -22,7 +22,7 @@ from plots.pictures.palette import LIGHT, MOST_CHANNELS, Entry
 
 # Number of maps whose curves are cached.
 _CACHED_MAPS = 64
-# Energies of the faint equipotentials, in units of the escape energy.
+# Energies of the faint equipotentials, as multiples of the depth of the well.
 _LEVELS = (0.1, 0.3, 0.5, 0.7, 0.9, 1.2, 1.6, 2.2, 3.0)
 
 

@@ -63,6 +63,7 @@ def pixel_hover(source: ColumnDataSource, compared: ColumnDataSource, x: Range1d
     x, ordinate
         Ranges of the pictures.
     """
+    # Codes of bounded orbits, of the first difference, and of the first kind of evidence, in their images.
     codes = {
         "bounded": list(OUTCOMES).index(Fate.BOUNDED),
         "first": len(OUTCOMES),

@@ -96,6 +96,7 @@ class MapsView:
         self._results: dict[str, Any] = {}
         # Layers that are being computed.
         self._computing: frozenset[str] = frozenset()
+        # Codes of the fates in the frame.
         self._fates: frozenset[int] = frozenset()
         self.ranges = MapRanges(actions.zoom, actions.rest)
         ranges = self.ranges.x, self.ranges.ordinate
@@ -189,7 +190,7 @@ class MapsView:
         self.describe()
 
     def snapped(self, x: float, ordinate: float) -> tuple[float, float]:
-        """Return the centre of the pixel at a point, which is the start of the pixel; the point itself outside the map."""
+        """Return the start of the pixel at a point: the centre of the pixel. Outside the map, return the point itself."""
         pixel = self._spec.pixel_at(x, ordinate) if self._spec is not None else None
         if self._spec is None or pixel is None:
             return x, ordinate
@@ -224,7 +225,7 @@ class MapsView:
         self.well.show_map(spec)
 
     def _show_legends(self) -> None:
-        """Write title, legend, notes and names of the axes around each frame."""
+        """Write title, legend, notes and names of the axes around each picture."""
         spec = self._spec
         if spec is None:
             return

@@ -23,7 +23,7 @@ GESTURE_PAUSE_MS = 500
 """Longest pause between drags or steps of the wheel that share an entry of the browser's history, in milliseconds."""
 
 REST_MS = 90
-"""Time without change after which the ranges report their window, in milliseconds: longer than between two steps of the wheel."""
+"""Time without change after which the ranges report their window, in milliseconds. Steps of the wheel are closer together."""
 
 _FOLLOW = callback_code(Path(__file__).with_name("two_fingers.js"), "followFingers(cb_obj, ranges, held)")
 
@@ -34,14 +34,14 @@ Edges = tuple[float, float, float, float]
 class MapRanges:
     """The ranges of x and of the ordinate, which all maps share.
 
-    The browser and the server both move the ranges. If they do so at the same time, the move of the server counts: the browser
-    answers each of its moves, and until the answer, moves of the browser start from an outdated window.
+    The browser and the server both move the ranges. Of simultaneous moves, the server's counts: the browser answers each move
+    of the server, and until the answer, moves of the browser start from an outdated window.
 
     Parameters
     ----------
     on_zoom
         Shows the window to which the ranges were moved; None is the whole interior. It must lead to a call of `finish_report`.
-        Until that call, the ranges follow no other window, because the user may have moved them again.
+        Until that call, the ranges follow no other window, because the user may have moved the ranges again.
     on_rest
         Handles the end of a gesture, `GESTURE_PAUSE_MS` after the last drag or step of the wheel.
     """
@@ -119,7 +119,7 @@ class MapRanges:
 
     @property
     def _awaits_answer(self) -> bool:
-        """Whether the browser has not answered the last move of the server. Before the page is open, it answers nothing."""
+        """Whether the browser has not answered the last move of the server. A page that is not open yet answers nothing."""
         answered = self.ordinate.tags
         return bool(answered) and answered != self.x.tags
 

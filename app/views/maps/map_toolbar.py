@@ -28,7 +28,7 @@ _BOX_TOOLS = {Drag.ZOOM: partial(BoxZoomTool, match_aspect=True), Drag.COUNT: pa
 
 
 class MapTools:
-    """The tools of all pictures: `toolbar` contains them. They follow touch input.
+    """The tools of all pictures, in the attribute `toolbar`. The tools follow touch input.
 
     Parameters
     ----------

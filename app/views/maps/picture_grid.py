@@ -64,7 +64,7 @@ class PictureGrid:
         self._place()
 
     def mark_empty(self, name: str, empty: bool) -> None:
-        """Set whether a picture shows nothing. The picture of a layer is not the largest if it shows nothing."""
+        """Set whether a picture shows nothing. An empty picture of a layer does not become the largest picture."""
         empty_pictures = self._empty_pictures | {name} if empty else self._empty_pictures - {name}
         if empty_pictures != self._empty_pictures:
             self._empty_pictures = empty_pictures

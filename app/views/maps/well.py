@@ -38,6 +38,7 @@ class WellView:
         self._ranges = Range1d(-1.0, 1.0), Range1d(-1.0, 1.0)
         self._line_style = line_style(orbit_colours(state))
         self._paths, self._trails = lines("paths"), lines("trails")
+        # Density images of long paths.
         self._shades = ColumnDataSource({name: [] for name in ("image", "x", "y", "dw", "dh", "alpha")}, name="shades")
         self._points = ColumnDataSource({"x": [], "y": [], "slot": []}, name="points")
         self._outlines = CurveLayers(state)
@@ -64,7 +65,7 @@ class WellView:
         plot.add_glyph(self._points, point)
 
     def show_map(self, spec: MapSpec) -> None:
-        """Show the well of a map."""
+        """Show the well at the energy of a map."""
         self._spec = spec
         self._outline()
 

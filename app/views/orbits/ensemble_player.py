@@ -115,5 +115,6 @@ class EnsemblePlayer(JSComponent):
             self._flux.submit(Job(compute_flux, (spec.potential, spec.common_energy)))
 
     def _show_flux(self, flux: EscapeFlux) -> None:
+        # Without this, the request would ignore the same job when the analysis is opened again.
         self._flux.cancel()
         self.rate = flux.decay_rate

@@ -1,4 +1,4 @@
-"""Histories of the orbits, each in its colour: a figure for each of `ORBIT_QUANTITIES`."""
+"""Histories of the orbits, which are curves of values against time: a figure for each of `ORBIT_QUANTITIES`."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ _FIRST = ORBIT_QUANTITIES[0].name
 
 
 class OrbitPlots:
-    """Draws the histories. `parts` make the figures once there is an orbit.
+    """Draws the histories, each in the colour of its orbit. The functions of `parts` make the figures.
 
     Parameters
     ----------

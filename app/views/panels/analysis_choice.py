@@ -52,7 +52,7 @@ class LayerSwitches:
         )
 
     def _choice(self, setting: Setting) -> SegmentedControl:
-        """Return the choice of a setting."""
+        """Return the radio buttons of a setting, which the first call makes."""
         if setting.name not in self._choices:
             # The first label also has the word of the setting.
             (first_label, first_value), *others = ((name.capitalize(), value) for name, value in setting.choices.items())

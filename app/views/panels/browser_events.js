@@ -49,7 +49,7 @@ const copy = text =>
       () => copySelection(text),
     )
 
-/** @param {string} text */
+/** Copy a text by selecting it, without navigator.clipboard. @param {string} text */
 function copySelection(text) {
   const focused = focusedElement()
   const area = document.createElement("textarea")
@@ -119,7 +119,7 @@ export function render({model, el}) {
   el.setAttribute("aria-hidden", "true")
   document.addEventListener("keydown", sendKey)
   for (const name of ["focusin", "keydown"]) document.addEventListener(name, updateFocusFrame)
-  // Entries of the history are numbered. An address with a higher number makes a new entry; otherwise, it replaces the address.
+  // Entries of the history are numbered. An address with a higher number makes a new entry; others replace the present address.
   const page = crypto.getRandomValues(new Uint32Array(1))[0]
   let entry = 0
   // Number of steps through the history. An address that the server sent before it knew the last step is out of date.

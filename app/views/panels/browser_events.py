@@ -52,7 +52,7 @@ class BrowserEvents(JSComponent):
     keys
         Some of `KEYS`, which the page uses unless a field, slider or menu uses them.
     locked
-        Wraps a function to run under the session's lock. Events can arrive before the page is ready, when `pn.io.hold` fails.
+        Wraps a function to run under the session's lock. `pn.io.hold` would fail for events that arrive before the page is ready.
     on_key
         Handles one of the keys.
     on_navigate

@@ -29,7 +29,7 @@ LOCK = "Lock colour scale"
 AXES = "Axes …"
 """Label of the button for other slices."""
 
-# Number of characters that fit on the button. The facts below the case contain a longer title of a slice.
+# Number of characters that fit on the button for other slices. A longer title is among the facts below the case.
 _LONGEST_TITLE = 12
 # The slices that have buttons. Other slices are chosen by their axes.
 _PLANES = (Plane.X_Y, Plane.X_PX, Plane.X_H)
@@ -63,7 +63,7 @@ class Controls:
     toggle_drawer
         Opens or closes the drawer "potential" or "slice".
     swap_views
-        Exchanges the two views.
+        Exchanges the two views of the comparison.
     lock_times
         Locks (True) or unlocks (False) the scale of escape times.
     """

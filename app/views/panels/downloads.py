@@ -72,7 +72,7 @@ class Downloads:
 
 
 def file_choices(shown: ShownResults, state: ViewState) -> dict[str, File]:
-    """Return the files of data that the results allow, by label. They use the present results, even if the page changes later."""
+    """Return the files of data that the results allow, by label. Later changes of the page do not change the files."""
     choices: dict[str, File] = {}
     name = partial(_file_name, shown, state)
     system, frame, curves = state.system, shown.whole_map, shown.curves

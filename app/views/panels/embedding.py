@@ -42,7 +42,7 @@ def embed_code(address: str, state: ViewState) -> str:
 
 
 class OpenLink:
-    """The link of an embedded page that opens its view in a new tab."""
+    """The link with which an embedded page opens its view in a new tab."""
 
     def __init__(self) -> None:
         self.pane = TextPane("", margin=0, css_classes=["open-explorer"])

@@ -163,7 +163,7 @@ class FigureForm:
 
 
 def figure_choices(shown: ShownResults, state: ViewState) -> dict[str, Make]:
-    """Return the figures that the results allow, by title. They use the present results, even if the page changes later."""
+    """Return the figures that the results allow, by title. Later changes of the page do not change the figures."""
     choices: dict[str, Make] = {}
     curves = [one.curves for one in shown.orbits if one.curves is not None]
     frame = shown.whole_map

@@ -21,7 +21,7 @@ INVITATION = "Each pixel of the basins is a start, and its colour the exit throu
 HINT = "Each card opens a view with orbits to compare. Its caption appears here."
 """Text in place of a caption."""
 
-# Panel serves app/static below the address of the page, and this address ends in "app".
+# Panel serves the folder app/static below the page. The address of the page ends in "app", which a relative address replaces.
 _THUMBNAILS = "app/static/gallery"
 
 _STYLE = """
@@ -52,7 +52,7 @@ p {
 """
 
 
-# Bokeh does not register classes whose name starts with an underscore in the browser.
+# In the browser, Bokeh does not register classes whose name starts with an underscore.
 class GalleryCards(JSComponent):
     """Shows cards in the browser, and sends the key of the chosen card."""
 

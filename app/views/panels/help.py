@@ -19,7 +19,7 @@ from plots.texts.mathml import equations
 
 
 def help_panes(state: ViewState, results: ShownResults) -> list[pn.viewable.Viewable]:
-    """Return the content of the drawer."""
+    """Return the parts of the drawer. Terms and table open on demand."""
     return [
         TextPane(f"<h3>Keys</h3>{key_legend()}", sizing_mode="stretch_width", margin=(0, 10)),
         _equations_pane(state),

@@ -22,7 +22,7 @@ from engine.systems.parameters import symbol_of
 _HINT = "Starts move along the two axes. The energy decides one momentum, or the speed in a given direction."
 # Labels of the modes in which the energy determines the speed, by the angle of its direction.
 _ANGLES = {Coordinate.THETA: "speed, at angle θ from the x axis", Coordinate.BETA: "speed, at angle β from the radius"}
-# Initial values of the angles.
+# Initial values of the angles, in radians.
 _FIRST_ANGLE = {Coordinate.THETA: 0.0, Coordinate.BETA: 0.5 * math.pi}
 # Step of the boxes.
 _STEP = 0.05
@@ -196,7 +196,7 @@ def _mode_of(plane: Slice) -> str:
 
 
 def _with_axes(plane: Slice, axes: tuple[Any, Any]) -> Slice:
-    """Return a slice with other axes. It keeps the determined momentum and the held values if the new axes permit them."""
+    """Return a slice with other axes, and with the determined momentum and the held values if the new axes permit them."""
     kept = tuple((c, value) for c, value in plane.fixed if c not in axes)
     for solved, sign, fixed in ((plane.solved, plane.sign, kept), (None, 1, kept), (None, 1, ())):
         try:

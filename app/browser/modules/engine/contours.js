@@ -52,6 +52,7 @@ function joinCell(values, level, corner, join) {
   // Nearly all cells have no crossed edge.
   if (isInside(right) === first && isInside(opposite) === first && isInside(above) === first) return
   const inside = [corner, right, opposite, above].map(isInside)
+  // The edges from each corner to the next, counterclockwise.
   const sides = [2 * corner, 2 * (corner + 1) + 1, 2 * (corner + SAMPLES), 2 * corner + 1]
   const crossed = sides.filter((_, k) => inside[k] !== inside[(k + 1) % 4])
   // A cell at a saddle has four crossed edges, and two lines.

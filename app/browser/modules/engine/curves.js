@@ -1,5 +1,5 @@
 // @ts-check
-/** The lines over the pictures of a preview: the limiting curve, and the exits, including circles. */
+/** The lines over the pictures of a preview: the limiting curve, and the exits over saddles or at circles. */
 
 import {Exits} from "./exits.js"
 import {levelLines, SAMPLES} from "./contours.js"
@@ -10,7 +10,7 @@ const EXIT_POINTS = 41
 /** Number of points along a circle. */
 const CIRCLE_POINTS = 121
 
-/** Traces limiting curves. All curves of a window use the same values of V. */
+/** Traces limiting curves. All curves of a window use the same grid of required energies. */
 export class LimitingCurves {
   /** @type {import("./contours.js").Grid | null} */
   #grid = null

@@ -47,8 +47,10 @@ export function propagate(integrator, orbits, exits, rows, {horizon, tolerance, 
   const {step, jets} = integrator.address
   const {lanes_together} = integrator.system.layout
   const todo = integrator.integers(Array.from({length: orbits.t.shape[0]}, (_, orbit) => orbit))
+  // A step of one orbit counts as the steps of all lanes that are computed together.
   const budget = steps ? lanes_together * steps.shape[0] : MOST_STEPS
   const exitsAndOrbits = [exits.gates, exits.curves, rows, ...Object.values(orbits)]
+  // The horizon is final: orbits inside are bounded. The kernel continues with any number of orbits.
   const [isFinal, least] = [1, 0]
   const settings = [horizon, isFinal, tolerance, budget, least]
   const trace = steps ?? integrator.array("float64", [0, 5])

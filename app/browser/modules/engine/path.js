@@ -24,8 +24,8 @@ const POINTS_PER_STEP = 6
 const STEPS_PER_CALL = 512
 
 /**
- * Return the path of the orbit of a point of a slice. The path ends at the escape, or after a duration. It is null for a start that
- * is forbidden or beyond an exit.
+ * Return the path of the orbit of a point of a slice. The path ends at the escape, or after a duration. The result is null for a
+ * start that is forbidden or beyond an exit.
  *
  * @param {Integrator} integrator
  * @param {import("./system.js").Slice} slice

@@ -17,7 +17,7 @@ import {energyAxis, findStarts, keepInside, placeWindow} from "./starts.js"
  * @property {number} rows
  * @property {number} horizon  longest time, in units of the well
  *
- * Some rows of the pixels of a view, and the first columns of these rows.
+ * A part of the pixels of a view: some of the rows, and in them a number of first columns.
  *
  * @typedef {object} Part
  * @property {Uint32Array} rows

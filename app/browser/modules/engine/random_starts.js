@@ -41,6 +41,8 @@ export const drawStarts = (request, scene, integrator) =>
   })
 
 /**
+ * Draw states on the exits, moving inward; with `ofTubes`, states near the edges of the tubes.
+ *
  * @param {Integrator} integrator
  * @param {Request} request
  * @param {number} energy
@@ -56,7 +58,7 @@ function drawAtExits(integrator, {count, seed}, energy, ofTubes) {
 }
 
 /**
- * Return states from which orbits come to the given states, found by following orbits into the well backward in time.
+ * Return states from which orbits come to the given states: the orbits are followed into the well backward in time.
  *
  * @param {Integrator} integrator
  * @param {number} energy

@@ -19,7 +19,7 @@
  *
  * @typedef {{states: Floats, energies: Floats}} Starts
  *
- * The m starts beyond no exit: indices among all starts, states of shape (m, 4), and rows of their energies in the exits.
+ * The m starts that are beyond no exit: their indices, states of shape (m, 4), and rows of their energies in the exits.
  *
  * @typedef {{kept: Integers, states: Floats, rows: Integers}} Inside
  */
@@ -60,7 +60,7 @@ export function placeWindow(integrator, {xLow, xHigh, ordinateLow, ordinateHigh}
 export function describeSlice(integrator, {axes, motion, decided}, energy) {
   const columns = motion[0].length
   const numbers = integrator.array("float64", [motion.length, columns], motion.flat())
-  // The last coordinate is the energy.
+  // The last coordinate is the energy, and the first row is the origin.
   if (energyAxis({axes}) < 0) numbers.values[columns - 1] = energy
   return [integrator.address.potential_value, integrator.table, numbers, decided]
 }

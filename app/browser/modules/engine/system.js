@@ -11,7 +11,7 @@
  * @property {PolynomialTable | null} polynomial  V if it is a polynomial
  * @property {number} innerRadius  radius of the gap at the origin; 0 if the origin belongs to the well
  * @property {ExitData[]} exits  one for each outcome: exits over saddles, then circles
- * @property {number[] | null} mirror  for each outcome, the number of its mirror image under x → −x; null without this symmetry
+ * @property {number[] | null} mirror  mirror image of each outcome under x → −x, after an entry 0; null without this symmetry
  * @property {{length: number, time: number, energy: number}} units
  * @property {number} numberDistance  of an exit, from the origin, as a share of the distance of the middle of the exit
  * @property {Slice} space  the plane of the positions
@@ -27,7 +27,7 @@
  * @typedef {object} Layout
  * @property {number} order  of the series
  * @property {number} rows  numbers in the state of an orbit between two steps
- * @property {number} lanes_together  smallest number of lanes that a step computes
+ * @property {number} lanes_together  smallest number of orbits (lanes) for which a step is computed
  * @property {number} tolerance  of the steps on the server
  * @property {number} beforeExit  time before the exit at which orbits at the edge of tubes start
  * @property {number} heap  address at which the start address of the free memory is stored
@@ -54,8 +54,8 @@
  * @property {number} saddle  energy at which the exit opens
  * @property {number} highest  energy up to which the table is valid
  * @property {number[]} nodes  √(h − saddle) at which the curve is tabulated, rising
- * @property {number[][]} rows  for each node: gate, reach, origin, outward direction, middle, half width, slopes at both ends, and
- *   Chebyshev coefficients
+ * @property {number[][]} rows  for each node: gate, reach, origin, outward direction, middle, half width, slopes at both ends,
+ *   and Chebyshev coefficients
  */
 
 /**
@@ -68,7 +68,7 @@
  * @property {number[][]} motion  coordinates at the origin, then their changes per unit of each axis; the last is the energy
  * @property {number} decided  code of what the energy determines
  * @property {1 | -1} sign
- * @property {[boolean, boolean] | null} mirrored  whether each axis changes its direction under x → −x; null without this symmetry
+ * @property {[boolean, boolean] | null} mirrored  whether each axis changes direction under x → −x; null without this symmetry
  */
 
 /**

@@ -1,7 +1,7 @@
 // @ts-check
 /**
  * The orbit under the cursor, drawn on a card. The card covers the picture of the well, or on a narrow screen a part of the only
- * map. A finger shows orbits when it rests on a map and then moves.
+ * map. A finger that has rested on a map shows orbits, also while it moves.
  */
 
 import {exitLines, LimitingCurves} from "../engine/curves.js"
@@ -101,7 +101,7 @@ export class Card {
     this.#integrator = new Integrator(system, modules)
   }
 
-  /** @param {PointerEvent} event */
+  /** Hide the card at a click, or wait until a finger has rested. @param {PointerEvent} event */
   #press(event) {
     this.#lift()
     const picture = this.#viewAt(event)
@@ -119,6 +119,7 @@ export class Card {
     this.#finger = {timer, x: event.clientX, y: event.clientY}
   }
 
+  /** End the gesture of a finger. */
   #lift() {
     if (this.#finger) clearTimeout(this.#finger.timer)
     if (this.#isPressed) this.#hide()
@@ -126,7 +127,7 @@ export class Card {
     this.#isPressed = false
   }
 
-  /** @param {PointerEvent} event */
+  /** Show the orbit under the mouse, or under a finger that has rested. @param {PointerEvent} event */
   #move(event) {
     if (event.pointerType === "touch") {
       const finger = this.#finger

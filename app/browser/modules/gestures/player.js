@@ -1,7 +1,7 @@
 // @ts-check
 /** Animates the energy, which rises in each frame of the display up to the end of the range. */
 
-/** Duration of the animation of the whole range. */
+/** Duration of the animation of the whole range, in ms. */
 const SWEEP_MS = 20_000
 /** Smallest number of steps of the range. The step is a power of ten, which keeps the numbers on the page short. */
 const STEPS = 1000
@@ -27,7 +27,7 @@ export class Player {
   }
 
   /**
-   * Start at an energy, or at the low end of the range if the energy is its high end or outside.
+   * Start at an energy, or at the low end of the range if the energy is at the high end or outside.
    * During an animation, this has no effect.
    *
    * @param {number} energy

@@ -5,7 +5,7 @@
  * @typedef {object} Shown
  * @property {import("../engine/system.js").System} system
  * @property {import("../engine/integrator.js").Modules} modules
- * @property {() => import("../workers/frames.js").Scene | null} scene  slice, energy and window in view; null if not computable here
+ * @property {() => import("../workers/frames.js").Scene | null} scene  slice, energy and window; null if not computable here
  * @property {() => string[]} colours  of the outcomes, exits first
  * @property {() => string[]} labels  of the outcomes
  * @property {HTMLElement} host  for canvases over the pictures
@@ -16,7 +16,7 @@ let shown = null
 /** @type {Set<() => void>} */
 const listeners = new Set()
 
-/** @returns {Shown | null} */
+/** What the page shows; null while its system is not loaded. @returns {Shown | null} */
 export const present = () => shown
 
 /**

@@ -1,7 +1,7 @@
 // @ts-check
 /**
  * Previews computed in the browser while the energy or the window changes. A preview stays until the server's map of the same
- * view has at least as many pixels.
+ * view is complete or has at least as many pixels.
  */
 
 import {exitLines, LimitingCurves} from "../engine/curves.js"

@@ -24,7 +24,7 @@ const SIDE = 2.5
 const TRAIL = 0.88
 /** Number of frames from one update of the counters to the next. */
 const FRAMES_PER_NUMBER = 6
-/** Opacity of the layer that covers the map under the passages of the section. */
+/** Opacity of the layer between the map and the passages of the section. */
 const COVER_OPACITY = 0.85
 /** Time in each frame for finding the outcomes of orbits, in ms. */
 const OUTCOMES_MS = 6
@@ -181,6 +181,7 @@ class Watch {
     const scene = shown?.scene() ?? null
     /** @type {Record<string, unknown>} */
     const dependences = {view: scene, disc: [scene, radius, point], box: [scene, box]}
+    // Starts at other places depend on the energy, but not on the window.
     const place = dependences[where] ?? scene?.energy
     const ensembleKey = JSON.stringify([where, count, seed, place, scene?.slice, shown?.system.key])
     if (ensembleKey === this.#ensembleKey) return this.#draw()
@@ -205,6 +206,8 @@ class Watch {
   }
 
   /**
+   * Draw the starts, and prepare their ensemble and outcomes.
+   *
    * @param {import("./present.js").Shown} shown
    * @param {import("../workers/frames.js").Scene} scene
    */
@@ -219,7 +222,7 @@ class Watch {
     this.#outcomes = new Outcomes(system, modules, energy, states, LONGEST)
   }
 
-  /** @param {boolean} isPlaying */
+  /** Play, from the beginning if the end is reached, or pause. @param {boolean} isPlaying */
   #setPlaying(isPlaying) {
     cancelAnimationFrame(this.#playFrame)
     this.#playFrame = 0
@@ -255,7 +258,7 @@ class Watch {
     this.#play.setAttribute("aria-pressed", String(isPlaying))
   }
 
-  /** @param {number} time */
+  /** Go to a time, in units of the well. @param {number} time */
   #show(time) {
     this.#ensemble?.advance(Math.min(time, LONGEST))
     this.#draw()
@@ -284,6 +287,7 @@ class Watch {
     drawSurvival(this.#chart, ensemble, {longest: LONGEST, unit: shown.system.units.time, rate: this.#model.rate, ink})
   }
 
+  /** Return the text below the controls: what is shown, or what is missing. */
   #explain() {
     if (!present()) return "The engine in the browser is being loaded …"
     if (!this.#ensemble) return "Choose a slice of one energy and one potential, within the range of the slider."
@@ -354,6 +358,7 @@ class Watch {
     const context = cover(canvas, box)
     if (!context) return
     if (this.#trails.checked) {
+      // Fade the particles of earlier frames.
       context.globalCompositeOperation = "destination-in"
       context.fillStyle = `rgba(0,0,0,${TRAIL})`
       context.fillRect(0, 0, box.width, box.height)

@@ -4,7 +4,7 @@
  *
  * @typedef {object} Coding
  * @property {[number, number][]} outcomes  fate and code of the outcomes that are not escapes
- * @property {number} first  code of the first class
+ * @property {number} first  code of the first end, and of the first class of crossings
  * @property {number[]} ends  place of each outcome, from fate 1, among all ends
  * @property {string[]} words  descriptions of all ends
  * @property {number[]} leastCrossings  fewest crossings of each class
@@ -99,7 +99,7 @@ const SAME_ENERGY = 1e-12
 export const sameEnergy = (one, other) => Math.abs(one - other) <= SAME_ENERGY * Math.abs(other)
 
 /**
- * Whether columns from the server show a scene and are complete or have at least as many rows as a preview.
+ * Whether columns from the server show a scene, with a map that is complete or has at least as many rows as a preview.
  *
  * @param {Columns} columns
  * @param {import("../workers/frames.js").Scene} scene

@@ -22,6 +22,8 @@ export class Outlines {
   #labels
 
   /**
+   * Show other curves in place of the server's.
+   *
    * @param {Line[]} limit
    * @param {Exit[]} exits
    */

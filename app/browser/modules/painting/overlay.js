@@ -37,7 +37,7 @@ export class Overlay {
   #pixels = document.createElement("canvas")
   #isShown = false
 
-  /** @param {Painting} painting */
+  /** Paint all pictures on their canvases, and the well if it changes. @param {Painting} painting */
   show(painting) {
     this.#isShown = true
     const {energy, window, columns, lines, well} = painting
@@ -147,6 +147,7 @@ function tableOf(palette) {
   const cachedTable = tables.get(palette)
   if (cachedTable) return cachedTable
   const table = Uint32Array.from(palette, colour => {
+    // The bytes of a canvas are red, green, blue, alpha. A 32-bit number has its lowest byte first.
     const value = typeof colour === "number" ? colour : parseInt(colour.slice(1).padEnd(8, "f"), 16)
     return ((value & 0xff) << 24) | ((value & 0xff00) << 8) | ((value >>> 8) & 0xff00) | (value >>> 24)
   })
@@ -155,7 +156,8 @@ function tableOf(palette) {
 }
 
 /**
- * Write the colours of an image, upside down, as the linear and logarithmic mappers of Bokeh choose them.
+ * Write the colours of an image as the linear and logarithmic mappers of Bokeh choose them. An image begins with its lowest row,
+ * the result with the highest row.
  *
  * @param {any} image  numbers, with NaN for no colour
  * @param {{type: string, palette: any[], low: number, high: number}} mapper

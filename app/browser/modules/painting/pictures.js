@@ -33,8 +33,8 @@ function withBox(view) {
 /**
  * Call a function whenever a picture has moved, or the theme has changed.
  *
- * No event reports all causes: windows, layers and panels change the layout, and Bokeh follows some frames later, so
- * the boxes are compared in each frame.
+ * No event reports all causes: windows, layers and panels change the layout, and Bokeh follows later, so the boxes are
+ * compared before each repaint of the screen.
  *
  * @param {() => void} call
  * @returns {() => void} a function that ends the calls

@@ -92,7 +92,9 @@ export class Frames {
     this.#computing = "moving"
     const side = Math.min(this.#side, scene.mostPixels)
     const startTime = performance.now()
+    // With two parts for each worker, workers that finish early take another part.
     this.#compute({...scene, columns: side, rows: side, horizon: MOVING_HORIZON}, 2 * this.#workers, () => {
+      // The time for a picture is proportional to the square of the side.
       const change = Math.sqrt(FRAME_MS / Math.max(performance.now() - startTime, 1))
       const nextSide = Math.round(side * Math.min(Math.max(change, LEAST_CHANGE), LARGEST_CHANGE))
       this.#side = Math.min(Math.max(nextSide, LEAST_SIDE), this.#largestSide)
@@ -115,6 +117,7 @@ export class Frames {
     }
     const {horizon} = RESTING[level]
     const side = Math.min(RESTING[level].side, scene.mostPixels)
+    // The picture on the page is finer already.
     if (side < this.#side) {
       this.#refine(scene, level + 1)
       return

@@ -1,7 +1,7 @@
 // @ts-check
 /**
- * Workers that compute a picture in parts. Each worker has one part at a time. The other parts wait here until
- * another picture replaces them.
+ * Workers that compute a picture in parts. Each worker has one part at a time. The other parts wait here until a worker is free
+ * or another picture replaces them.
  *
  * @typedef {import("../engine/pixels.js").View} View
  * @typedef {import("../engine/pixels.js").Part} Part
