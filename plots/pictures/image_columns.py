@@ -172,7 +172,7 @@ def end_numbers(fate: np.ndarray, outcomes: Sequence[Outcome]) -> np.ndarray:
 
 
 def pixel_codes(fate: np.ndarray, classes: np.ndarray, *, bounded_too: bool = False) -> np.ndarray:
-    """Return pixel codes: of fates that are not ends, and of classes elsewhere. With `bounded_too`, bounded pixels have classes."""
+    """Return codes of fates that are not ends, and of classes elsewhere. With `bounded_too`, bounded pixels also have classes."""
     codes = (FIRST_CLASS + classes).astype(np.min_scalar_type(FIRST_CLASS + int(classes.max(initial=0))))
     for outcome, code in _OUTCOME_CODES.items():
         if not (bounded_too and outcome is Fate.BOUNDED):

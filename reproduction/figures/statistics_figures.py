@@ -1,4 +1,8 @@
-"""Draw the statistics of the paper: shares against energy, escapes by number of crossings, and remaining starts against time."""
+"""Draw the statistics of the paper: shares against energy, escapes by number of crossings, and remaining starts against time.
+
+Symbols are those of the paper. Of N0 starts, Ne escape, Nde escape without a crossing, and dN_n after n crossings. p_n is dN_n
+divided by the number of starts that remain until then.
+"""
 
 from __future__ import annotations
 
@@ -85,7 +89,7 @@ def _draw_crossings(share_axes: Axes, probability_axes: Axes, statistics: Mappin
 
 
 def draw_percentages(case: str, cache: MapCache) -> Figure:
-    """Draw percentages of the interior starts on (x, y) and (x, px)."""
+    """Draw the percentages of bounded starts and of each exit against h, on (x, y) and (x, px)."""
     figure = new_figure(SCREEN, 11.7, f"Case {case}: percentages of bounded and escaping starts")
     panels = list(figure.subplots(1, 2, sharey=True))
     planes = (Plane.X_Y, Plane.X_PX)
