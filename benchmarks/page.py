@@ -96,7 +96,7 @@ TWO_FRAMES = "() => new Promise(done => requestAnimationFrame(() => requestAnima
 
 
 def report_opening(browser: Browser, address: str) -> None:
-    """Print the times from navigation to the first map, with an empty and a full browser cache, and the server's share of them."""
+    """Print the times from navigation to the first map, with an empty and a full browser cache, and of the server's answer."""
     context = browser.new_context(viewport={"width": 1600, "height": 1000})
     openings = []
     for _ in range(OPENINGS):

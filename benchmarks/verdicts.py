@@ -73,7 +73,7 @@ def count_verdicts(potential: Potential, energy: float, count: int, seed: int) -
 
 
 def count_pixels(potential: Potential, energy: float) -> Counter[tuple[float, Regularity, bool]]:
-    """Count pixels of a map by time, by character at this time, and by whether the orbit is chaotic or escapes by the last time."""
+    """Count pixels of a map by time, by character at this time, and by whether orbits are chaotic or escape by the last time."""
     characters = {}
     for time in TIMES:
         pixels = compute_map(MapSpec(potential, Plane.X_PX, energy, (SIDE, SIDE), t_max=time))

@@ -53,7 +53,7 @@ def server(tmp_path_factory: pytest.TempPathFactory, host: str) -> Iterator[str]
     assert "Traceback" not in text, text
 
 
-# Messages that are not problems. Without a graphics card, the driver of Chromium reports that it is slow. Bokeh rebuilds the label
+# Messages that are no problems. Without a graphics card, the driver of Chromium reports that it is slow. Bokeh rebuilds the label
 # of a button before the previous rebuild ends (`AbstractButtonView._rebuild_label`), and warns that it removes a label twice.
 _HARMLESS = re.compile(r"GL Driver Message|bokeh\.models\.dom\.TextView\(\w+\)\.remove\(\): view was already destroyed")
 
