@@ -92,8 +92,8 @@ def test_orbits_that_have_crossed_do_not_come_back() -> None:
 
 
 def test_an_orbit_that_comes_back_into_the_well_returns() -> None:
-    # Left of x = −0.5, the energy of the motion along x is above the saddle at x = 1. So orbits that leave to the left at x = −0.6
-    # are thrown back by the wall, pass x = −0.6 inward, and leave the well on the right.
+    # Left of x = −0.5, the energy of the motion along x is above the saddle at x = 1. So orbits that leave to the left at
+    # x = −0.6 are thrown back by the wall, pass x = −0.6 inward, and leave the well on the right.
     potential, energy, place = parse_formula("½x² − x³/3 + ½y²"), 0.5, -0.6
     across = np.sqrt(2.0 * (energy - float(potential.value(place, 0.0))))
     path = np.array([np.full(101, place), -across * np.cos(np.linspace(0.0, np.pi, 101))])[:, ::-1]

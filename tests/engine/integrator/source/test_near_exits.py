@@ -14,7 +14,7 @@ from engine.integrator.source.recurrence import LANES, ROWS, TOLERANCE
 from engine.integrator.source.series import ORDER
 from engine.integrator.source.step_flags import NEAR
 
-# Number of batches of orbits, number of points along a step, and least distance beyond an exit of orbits that return.
+# Number of batches of orbits, number of points along a step, and distance beyond an exit that returning orbits reach.
 BATCHES, TIMES, DEPTH = 40, 401, 1e-4
 
 

@@ -9,7 +9,7 @@ from engine.integrator.source.series_plan import plan_series
 
 
 def kinds_of(text: str) -> list[str]:
-    """Return the kinds of nodes whose series need a sum over all lower orders. Factors of a coordinate count as one node."""
+    """Return the kinds of nodes whose series need a sum over all lower orders. A group of factors of a coordinate counts once."""
     graph, _ = make_graph(slopes(parse_formula(text).form.definition))
     plan = plan_series(graph)
     kinds = [plan.nodes[index].kind for index in plan.needed]
