@@ -117,7 +117,7 @@ async def link_to_radial_potentials(visitor: SimulatedSession, choice: random.Ra
 
 
 async def name_modules(visitor: SimulatedSession, choice: random.Random) -> AsyncGenerator[None]:
-    """Request resources of components that large packages do not have, in each of their modules."""
+    """Request a resource of a component in each module of large packages. The page needs few of these modules."""
     names = _module_names()
     choice.shuffle(names)
     for name in itertools.cycle(names):

@@ -30,10 +30,7 @@ def specs() -> Iterator[MapSpec]:
 
 
 def count_orbits(spec: MapSpec) -> np.ndarray:
-    """Return the numbers of bounded orbits, of orbits bounded on evidence, of escapes among these, and of escapes after t = 1000.
-
-    All but the second are numbers of the map without evidence.
-    """
+    """Count bounded orbits, orbits bounded on evidence, escapes among orbits bounded on evidence, and escapes after t = 1000."""
     on_evidence, whole = compute_map(spec), compute_map(replace(spec, use_evidence=False))
     early = np.isin(on_evidence.evidence, EARLY)
     assert np.array_equal(on_evidence.fate[~early], whole.fate[~early])

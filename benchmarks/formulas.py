@@ -67,7 +67,7 @@ async def begin_formula(visitor: SimulatedSession, other: SimulatedSession, choi
     await visitor.type_formula(random_link(choice)["V"], done=False)
 
 
-# A way by which a formula reaches the server: from an open page, or from another address, drawn with a random generator.
+# Sends a random formula from the page of a visitor or from another address.
 Way = Callable[[SimulatedSession, SimulatedSession, random.Random], Awaitable[None]]
 
 WAYS: dict[Way, int] = {open_page: 2, request_page: 4, follow_link: 12, type_formula: 12, begin_formula: 70}
@@ -78,9 +78,9 @@ A formula without Enter takes a fifth of the time of a formula with a map, and a
 
 
 async def send_formulas(places: Sequence[Place], visitors: int, count: int, seed: int) -> tuple[Record, Record, int]:
-    """Send `count` formulas from a number of visitors of each place.
+    """Send `count` formulas from visitors of each place.
 
-    Return what `observe` expects: an empty record of normal visitors, the record of the senders, and the number of formulas.
+    Return an empty record of normal visitors, the record of the senders, and `count`.
     """
     numbers, record = iter(range(count)), Record()
     senders = [(place, seed + number) for number, place in enumerate([*places] * visitors)]

@@ -140,7 +140,7 @@ class Server:
 
 @contextmanager
 def busy_cores(count: int) -> Iterator[None]:
-    """Run other programs, each of which occupies a core. Yield when the load monitors of servers have measured them."""
+    """Run other programs, each of which occupies a core. Yield when servers have had time to measure them."""
     programs = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(count)]
     try:
         time.sleep(WINDOW_SECONDS if programs else 0.0)

@@ -21,8 +21,8 @@ TIMEOUT_MS = 120_000.0
 ORBITS = "?case=III&h=0.35&t_max=10000&orbits=0.1,0.2;-0.3,0.02"
 
 PLAYED = "?case=III&plane=x_y&h=0.28&t_max=1000"
-"""Link to case III just above its escape energy, where the animation begins."""
-# Number of frames of the animation, milliseconds of each, and width in pixels.
+"""Link to case III just above its escape energy."""
+# Number, duration and width of the frames of the animation.
 FRAMES, FRAME_MS, PLAYED_WIDTH = 30, 250, 900
 
 

@@ -43,7 +43,7 @@ class ColourTable:
     Attributes
     ----------
     names
-        Names of the ends, in the order of `tones`. The origins have the same names in the same order.
+        Names of the ends, which are also those of the origins.
     tones
         For each end, the colours by origin.
     """

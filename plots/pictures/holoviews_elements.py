@@ -11,7 +11,7 @@ from plots.pictures.charts import Chart, Series, Shape
 
 
 def chart_elements(chart: Chart) -> list[hv.Element]:
-    """Return an element for each series of a chart, and one for the error bars of each series that has them."""
+    """Return the HoloViews elements of the series of a chart and of their error bars."""
     x, y = chart.frame.labels
     elements: list[hv.Element] = []
     for series in chart.series:

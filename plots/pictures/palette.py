@@ -189,7 +189,7 @@ def rgba(colours: Sequence[str]) -> np.ndarray:
 
 
 def mixed(colour: str, other: str, share: float) -> str:
-    """Interpolate linearly between two colours ``#rrggbb``. `share` is the share of the second colour, `other`."""
+    """Interpolate linearly between two colours ``#rrggbb``. `share` is that of the second colour, `other`."""
     pairs = zip(bytes.fromhex(colour[1:]), bytes.fromhex(other[1:]), strict=True)
     return "#" + "".join(f"{round(value + share * (other_value - value)):02x}" for value, other_value in pairs)
 
@@ -231,7 +231,7 @@ MOST_CHANNELS = len(PAPER.channels)
 
 @dataclass(frozen=True)
 class LineColours:
-    """Colours of lines and text on a light or a dark page. A halo is behind a line, and quiet lines are secondary."""
+    """Colours of lines and text on a light or a dark page. A halo is behind a line."""
 
     limiting_curve: str
     equipotential: str

@@ -130,9 +130,9 @@ def _draw_stage(potential: Potential, orbits: SampledOrbits, palette: Palette, s
 
 
 def _draw_chart(axes: Axes, potential: Potential, orbits: SampledOrbits, style: FigureStyle) -> Line2D:
-    """Draw the chart of the share inside, and return the line that `_show_frame` extends.
+    """Draw the chart of the share inside, and its exponential law, at the rate flux over volume, for motion that mixes.
 
-    If the motion mixes, the share decays exponentially, at the rate flux over volume. This law is drawn as well.
+    Return the line that `_show_frame` extends.
     """
     last_time = float(orbits.t[0, -1])
     least_share = _LEAST_SHARE / len(orbits.fate)

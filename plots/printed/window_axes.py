@@ -34,7 +34,7 @@ _LINE_SCALE = 0.6
 _HALO_ORDER = 1.5
 # Distance outside the window at which curves are cut, as a share of its sides.
 _CLIP_MARGIN = 0.02
-# Within this distance of the right or upper edge, the number of a start is on the inner side of its cross. A share of the side.
+# Largest distance from the right or upper edge, as a share of a side, at which the number of a start is moved to the inner side.
 _LABEL_MARGIN = 0.06
 
 

@@ -1,7 +1,6 @@
 """Draw the statistics of the paper: shares against energy, escapes by number of crossings, and remaining starts against time.
 
-Symbols are those of the paper. Of N0 starts, Ne escape, Nde escape without a crossing, and dN_n after n crossings. p_n is dN_n
-divided by the number of starts that remain until then.
+As in the paper, Ne of N0 starts escape, Nde without a crossing, and dN_n after n crossings, a share p_n of those still inside.
 """
 
 from __future__ import annotations

@@ -57,7 +57,7 @@ class Comparison:
     def difference(self) -> float:
         """The largest difference computed − stated; 0 if a stated bound holds, NaN without a value.
 
-        A quantity that rises to the stated value has only the difference at the last energy.
+        For `RISES_TO`, it is the difference at the last energy.
         """
         return _largest_difference(self.stated, self.computed)
 

@@ -12,8 +12,7 @@ from plots.layers.table import LAYERS
 from tests.browser.explorer_page import ExplorerPage
 
 LAYERS_ON = "?case=I&plane=x_px&h=0.19&t_max=100&resolution=112&trust=yes&judge=yes&origins=yes"
-# Disable a button and enable it again, as messages of the server do. The second message comes when the button has been drawn, and
-# before the browser can answer the first.
+# Disable and enable a button with two messages as of the server: the second when the button is drawn, before the browser answers.
 _ENABLE_AGAIN = """async label => {
     const model = [...Bokeh.documents[0].all_models].find(model => model.label === label)
     const set = value => Bokeh.documents[0].apply_json_patch(

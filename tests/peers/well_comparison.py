@@ -32,9 +32,9 @@ DRAWN = Scaling(1.0, 1.0)
 
 
 def flood_fill(potential: Potential, energy: float, exits: Exits) -> tuple[np.ndarray, ...]:
-    """Return x, y, whether points are inside, and whether this is known, each of shape (GRID, GRID).
+    """Return x, y, whether inside, and whether this is known, each of shape (GRID, GRID).
 
-    It is known for points below the energy that are three pixels from all exits and walls.
+    Known are points below the energy and three pixels from all exits and walls.
     """
     corner, inside = np.full(2, SMALLEST * potential.units.length), np.ones((GRID, GRID), bool)
     # The grid grows along each axis until it contains the whole interior, which may be slender.

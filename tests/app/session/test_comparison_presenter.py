@@ -100,7 +100,7 @@ def test_a_view_of_a_refused_system_ends_the_comparison(session: Session) -> Non
 
 def test_potentials_along_a_parameter_of_a_typed_formula_are_found_within_limits(frame: EscapeMap) -> None:
     def limit(call: Callable[[], Any], cancel: threading.Event) -> Any:
-        # The review is within the limits, and the search along the parameter is not.
+        # Only the search along the parameter takes too long.
         if call.func is find_members:  # type: ignore[attr-defined]
             raise ValueError("it takes too long.")
         return call()
