@@ -14,6 +14,7 @@ from engine import MapSpec, System, Trust, compute_map, compute_trust
 from tests.app.browser.test_agreement import expected_fate, random_specs, run_views
 
 SYSTEMS = ("I", "III", "C5", "HH", "Barred galaxy", "Copenhagen", "Two Yukawa centres")
+# Numbers of zooms from the whole plane to each view.
 ZOOMS = (0, 2, 6)
 
 
@@ -31,7 +32,10 @@ def main() -> None:
 
 
 def report(name: str, spec: MapSpec, fate: np.ndarray, time: np.ndarray) -> None:
-    """Print one line: agreement on all pixels, on robust pixels, and of the times of pixels that escape in both."""
+    """Print a row: how many of all pixels and of robust pixels have the same fate, and the largest difference of times.
+
+    Robust pixels are not doubtful. The times are those of robust pixels that escape.
+    """
     escape_map, window = compute_map(spec), spec.find_window()
     expected = expected_fate(escape_map).ravel()
     same = fate == expected

@@ -19,8 +19,11 @@ from bokeh.util.token import generate_jwt_token
 from benchmarks.simulated_sessions import SimulatedSession
 from tests.fuzz.random_formulas import random_link
 
+# Link to the map that takes longest, with all layers.
 _WORST_MAP = "?case=III&h=0.3&plane=x_px&t_max=1000000&resolution=900&judge=yes&trust=yes&manifolds=yes&origins=yes"
+# Seconds between requests that follow one another.
 _REQUEST_PAUSE = 0.05
+# Number of pages that `read_nothing` opens.
 _SLOW_PAGES = 10
 # Seconds for each attack when all follow one another.
 _TURN_SECONDS = 15.0
@@ -37,7 +40,7 @@ async def do_nothing(visitor: SimulatedSession, choice: random.Random) -> AsyncG
 
 
 async def compute_worst_map(visitor: SimulatedSession, choice: random.Random) -> AsyncGenerator[None]:
-    """Request the map that takes longest, with all layers, at slightly different energies."""
+    """Request the map that takes longest at slightly different energies, so that no result is cached."""
     for number in itertools.count():
         visitor.follow_link(_WORST_MAP.replace("h=0.3", f"h={0.3 + 1e-6 * number!r}"))
         await asyncio.sleep(10.0)
@@ -55,7 +58,7 @@ async def sweep_energies(visitor: SimulatedSession, choice: random.Random) -> As
 
 
 async def type_potentials(visitor: SimulatedSession, choice: random.Random) -> AsyncGenerator[None]:
-    """Type a potential of new powers each second, so that its integrator must be compiled."""
+    """Follow a link to a potential of new powers each second, so that an integrator must be compiled."""
     while True:
         powers = [(i, degree - i) for degree in range(3, 9) for i in range(degree + 1)]
         terms = " + ".join(f"{choice.uniform(-0.2, 0.2):.3f}*x^{i}*y^{j}" for i, j in choice.sample(powers, 6))
@@ -114,7 +117,7 @@ async def link_to_radial_potentials(visitor: SimulatedSession, choice: random.Ra
 
 
 async def name_modules(visitor: SimulatedSession, choice: random.Random) -> AsyncGenerator[None]:
-    """Request resources of components in all modules of large packages that the page does not need."""
+    """Request a resource of a component in each module of large packages. The page needs few of these modules."""
     names = _module_names()
     choice.shuffle(names)
     for name in itertools.cycle(names):

@@ -1,4 +1,4 @@
-"""Measure the engine in the browser: frames per second and delays of drags, orbit under the cursor, memory of the page.
+"""Measure the engine in the browser: frames per second and delays of drags, times of single orbits, memory of the page.
 
 Run alone on the machine: uv run python -m benchmarks.drag --memory 10
 """
@@ -17,6 +17,7 @@ from benchmarks.page import CHROMIUM, open_page
 from tests.browser.explorer_page import ExplorerPage
 from tests.browser.served_app import served_app
 
+# Case and energy of each view.
 VIEWS = (("I", 0.19), ("III", 0.45), ("III", 0.30))
 # Half the range of a drag, in units of the energy.
 SPAN = 0.06
@@ -25,13 +26,15 @@ DRAG_SECONDS = 4.0
 HOVERS = 60
 # Numbers of orbits in the tab "Watch".
 ENSEMBLES = (1000, 5000, 20000)
+# Number of times that orbits of each number are started.
 REPEATS = 10
+# Number of measurements of the memory after the first.
 MEMORY_SAMPLES = 5
 SCRIPT = Path(__file__).with_name("drag.js")
 
 
 def ready_page(browser: Browser, address: str, case: str, energy: float, more: str = "") -> ExplorerPage:
-    """Return a page whose browser has the system of the view."""
+    """Return a page whose engine in the browser is ready for the system of a view."""
     explorer = open_page(browser, address, f"?case={case}&h={energy}&t_max=1000{more}")
     explorer.page.evaluate(f"async () => {{ {SCRIPT.read_text()}; window.bench = bench }}")
     explorer.page.evaluate("() => window.bench.ready()")
@@ -39,7 +42,7 @@ def ready_page(browser: Browser, address: str, case: str, energy: float, more: s
 
 
 def drag(explorer: ExplorerPage, energy: float, seconds: float) -> dict[str, Any]:
-    """Drag the slider around an energy."""
+    """Drag the slider around an energy, and return what `SCRIPT` measured."""
     rail = explorer.page.get_by_role("slider", name="Energy h", exact=True)
     found: dict[str, Any] = rail.evaluate(
         "(rail, options) => window.bench.drag(rail, ...options)", [energy - SPAN, energy + SPAN, seconds]
@@ -70,7 +73,7 @@ def report_drags(browser: Browser, address: str) -> None:
 
 
 def report_hover(browser: Browser, address: str) -> None:
-    """Print the time for the orbit under the cursor, on the thread of the page."""
+    """Print the time in which the thread of the page computes and draws the orbit under the cursor."""
     explorer = ready_page(browser, address, "III", 0.45)
     points = [explorer.point("basins", 0.5 * (2 * k / HOVERS - 1), 0.2) for k in range(HOVERS)]
     times = explorer.page.evaluate("points => window.bench.hover(points)", points)
@@ -107,7 +110,7 @@ def report_memory(browser: Browser, address: str, minutes: float) -> None:
 
 
 def heap_megabytes(session: CDPSession) -> float:
-    """Return the memory in use after a garbage collection."""
+    """Return the memory that scripts use after a garbage collection, in MB."""
     session.send("HeapProfiler.collectGarbage")
     usage = session.send("Runtime.getHeapUsage")
     return float(usage["usedSize"] + usage.get("backingStorageSize", 0)) / 1e6

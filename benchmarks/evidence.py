@@ -18,6 +18,7 @@ from engine.systems.catalogue.table import PAPER_ENERGIES
 
 SIDE = 61
 T_MAX = 1e5
+# Evidence that ends the integration before t_max.
 EARLY = [code for code in Evidence if code > Evidence.INTEGRATED]
 
 
@@ -29,7 +30,7 @@ def specs() -> Iterator[MapSpec]:
 
 
 def count_orbits(spec: MapSpec) -> np.ndarray:
-    """Count bounded orbits, orbits bounded on evidence, escapes among the latter, and escapes after t = 1000."""
+    """Count bounded orbits, orbits bounded on evidence, escapes among orbits bounded on evidence, and escapes after t = 1000."""
     on_evidence, whole = compute_map(spec), compute_map(replace(spec, use_evidence=False))
     early = np.isin(on_evidence.evidence, EARLY)
     assert np.array_equal(on_evidence.fate[~early], whole.fate[~early])

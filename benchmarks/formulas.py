@@ -3,7 +3,7 @@
 Run: uv run python -m benchmarks.formulas --count 20000
      uv run python -m benchmarks.formulas --count 20000 --proxy
 
-Options and the printed table are those of `benchmarks.hostile`; there is no other visitor.
+Most options and the printed table are those of `benchmarks.hostile`, but there is no normal visitor.
 """
 
 from __future__ import annotations
@@ -38,11 +38,11 @@ REOPEN_SECONDS = 1.0
 """Pause before a closed page is opened again, in seconds."""
 
 PROGRESS = 1000
-"""After each this many formulas, a line is printed."""
+"""Number of formulas after which a line is printed."""
 
 
 async def open_page(visitor: SimulatedSession, other: SimulatedSession, choice: random.Random) -> None:
-    """Open a page from another address, with its connection, until its formula is reviewed."""
+    """Open and connect a page from another address, and close it when its formula is reviewed."""
     await other.open_formula(formula_link(choice))
     await other.close()
 
@@ -67,6 +67,7 @@ async def begin_formula(visitor: SimulatedSession, other: SimulatedSession, choi
     await visitor.type_formula(random_link(choice)["V"], done=False)
 
 
+# Sends a random formula from the page of a visitor or from another address.
 Way = Callable[[SimulatedSession, SimulatedSession, random.Random], Awaitable[None]]
 
 WAYS: dict[Way, int] = {open_page: 2, request_page: 4, follow_link: 12, type_formula: 12, begin_formula: 70}
@@ -77,7 +78,10 @@ A formula without Enter takes a fifth of the time of a formula with a map, and a
 
 
 async def send_formulas(places: Sequence[Place], visitors: int, count: int, seed: int) -> tuple[Record, Record, int]:
-    """Send formulas by visitors of each place; return an empty record for other visitors, the visitors' record, and the count."""
+    """Send `count` formulas from visitors of each place.
+
+    Return an empty record of normal visitors, the record of the senders, and `count`.
+    """
     numbers, record = iter(range(count)), Record()
     senders = [(place, seed + number) for number, place in enumerate([*places] * visitors)]
     await asyncio.gather(*(_send(place, address, numbers, record) for place, address in senders))

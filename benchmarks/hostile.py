@@ -122,7 +122,10 @@ def new_session(
 
 
 async def observe(servers: Sequence[Server], run: Awaitable[tuple[Record, Record, int]]) -> Effect:
-    """Return the effects of an attack, which returns the records of normal visitors and attackers, and the number of actions."""
+    """Await an attack, and return its effects.
+
+    The attack returns the record of normal visitors, the record of attackers, and the number of actions.
+    """
     before, liveness, limited = largest_memory(servers), list[float](), [0.0]
     lines = [len(server.log_lines()) for server in servers]
     for server in servers:
@@ -206,6 +209,7 @@ def behind_proxy(servers: Sequence[Server], folder: Path) -> Iterator[list[Place
 
 
 async def _find_places(proxy: Proxy, servers: Sequence[Server]) -> list[Place]:
+    """Try cookies until each server has had a session, and return a place with such a cookie for each server."""
     found: dict[int, Place] = {}
     for number in itertools.count():
         headers = {**authorization(), "Cookie": f"explorer_visitor={number}"}
@@ -225,7 +229,7 @@ def waits(record: Record) -> list[float]:
 
 
 def count_delayed_messages(servers: Sequence[Server]) -> int:
-    """Return messages of all processes that waited because their page took more than its share."""
+    """Return the number of messages, of all processes, that waited because their page took more than its share."""
     return sum(server.delayed_messages() for server in servers)
 
 
@@ -275,7 +279,7 @@ def _find_problems_of_formulas(effect: Effect) -> Iterator[str]:
 
 @contextmanager
 def running(processes: int, *, proxy: bool) -> Iterator[tuple[list[Server], list[Place]]]:
-    """Run servers, with a proxy two servers behind nginx, and yield the servers and their places."""
+    """Run servers, print the head of the table, and yield the servers and their places. With a proxy, run two behind nginx."""
     with tempfile.TemporaryDirectory() as folder, ExitStack() as end:
         count = 2 if proxy else processes
         servers = [end.enter_context(served(Path(folder) / f"log {n}", **shared_by(count))) for n in range(count)]

@@ -49,12 +49,14 @@ SERVER_OPTIONS = (
 )
 
 CACHE_SENTENCE = "Kernel cache: empty when the first process started, shared by all."
+# Longest time until the kernels of a server are compiled.
 START_SECONDS = 240.0
 WARM_SESSIONS = 6
 """Number of sessions that do not count for the memory of a page, because they load what all sessions share."""
 _ROOT = Path(__file__).parents[1]
-# Refused pages are counted by the visitors.
+# Lines of errors, except answers 503: these are refused pages, which the visitors count.
 _ERROR_LINE = re.compile(r"\b(ERROR|CRITICAL)\b(?!.*tornado.access: 503 )|^\s*Traceback|Task exception was never retrieved")
+# Words of the lines on late iterations of the event loop.
 _LATE = "event loop "
 _TURN = re.compile(_LATE + r"\d+ ms late, (\d+) ms of its own, with (\d+) ms of garbage collection; cause: (.*)")
 
@@ -104,7 +106,7 @@ class Server:
             return time.perf_counter() - begin
 
     def forget_peak(self) -> None:
-        """Measure the peak of the resident memory from now on."""
+        """Measure the peak of the resident memory from now on: Linux resets it when 5 is written to this file."""
         Path(f"/proc/{self.process}/clear_refs").write_text("5")
 
     def peak_megabytes(self) -> float:
@@ -121,6 +123,7 @@ class Server:
 
     def cpu_seconds(self) -> float:
         """Return the processor time of the process so far."""
+        # User and system time, in ticks of 10 ms, are fields 14 and 15, that is 11 and 12 after the name in brackets.
         fields = Path(f"/proc/{self.process}/stat").read_text().rpartition(")")[2].split()
         return (int(fields[11]) + int(fields[12])) / 100.0
 
@@ -129,7 +132,7 @@ class Server:
         return [line for line in self.log_lines() if _ERROR_LINE.search(line)]
 
     async def watch(self) -> None:
-        """Record the resident memory."""
+        """Record the resident memory once per second, until cancelled."""
         while True:
             self.megabytes.append(resident_megabytes(self.process))
             await asyncio.sleep(1.0)
@@ -137,7 +140,7 @@ class Server:
 
 @contextmanager
 def busy_cores(count: int) -> Iterator[None]:
-    """Run this many other programs, each of which occupies a core, until servers have measured them."""
+    """Run other programs, each of which occupies a core. Yield when servers have had time to measure them."""
     programs = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(count)]
     try:
         time.sleep(WINDOW_SECONDS if programs else 0.0)
@@ -245,7 +248,7 @@ async def load(servers: Sequence[Server], record: Record, sessions: int, seconds
 
 
 def count_sessions(servers: Sequence[Server]) -> int:
-    """Open sessions of all processes."""
+    """Return the number of open sessions of all processes."""
     return sum(server.sessions() for server in servers)
 
 
@@ -260,7 +263,7 @@ def count_megabytes(servers: Sequence[Server]) -> float:
 
 
 def resident_megabytes(process: int) -> float:
-    """Return the resident memory of a process."""
+    """Return the resident memory of a process with pages of 4 kB."""
     pages = int(Path(f"/proc/{process}/statm").read_text().split()[1])
     return pages * 4096 / 2**20
 
@@ -278,6 +281,7 @@ def summary(times: list[float]) -> str:
     """Return count, minimum, median, 95th and 99th percentile, and maximum as text."""
     if not times:
         return "0 | – | – | – | – | –"
+    # `quantiles` needs two values. With a single value, all percentiles are equal to it.
     percentiles = statistics.quantiles(times, n=100, method="inclusive") if len(times) > 1 else times * 99
     values = (min(times), percentiles[49], percentiles[94], percentiles[98], max(times))
     return " | ".join([str(len(times)), *(f"{value:.2f}" for value in values)])

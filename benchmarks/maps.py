@@ -13,6 +13,7 @@ from engine.foundations.execution import DEFAULT_EXECUTION
 
 REPEATS = 7
 T_MAX = 1000.0
+# Case, plane, and energy or range of energies of each map.
 MAPS = (
     ("I", Plane.X_PX, 0.25),
     ("II", Plane.X_PX, 0.25),

@@ -25,11 +25,13 @@ from engine.measures.starts import exit_labels
 
 SIDE = 224
 SIDES = (SIDE, 2 * SIDE, 4 * SIDE)
+# Case and energy.
 System = tuple[str, float]
 
 ENTROPIES: tuple[System, ...] = (("I", 0.2), ("II", 0.2), ("III", 0.45))
+# System whose basin entropy is also computed on finer grids.
 FINER: System = ("II", 0.25)
-# Whether bounded orbits count as a basin.
+# Systems, and whether bounded orbits count as a basin.
 WADA: tuple[tuple[System, bool], ...] = ((("II", 0.2), False), (FINER, False), (("III", 0.45), False), (("III", 0.45), True))
 EXPONENTS: tuple[System, ...] = (
     ("I", 0.15), ("I", 0.3), ("II", 0.17), ("II", 0.2), ("II", 0.25), ("II", 0.3), ("III", 0.26), ("III", 0.45), ("III", 0.6),

@@ -27,8 +27,8 @@ SHARES = (0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.5, 0.4)
 # Number of pages that are opened and closed for the memory of the server.
 CYCLES = 30
 NEW_POTENTIALS = ("½(x² + y²) − x²y² − x³/4", "½(x² + y²) − x²y² − 0.1x⁴y²")
-# Pixels are on the screen at the second animation frame after a change of the source.
-# `begin` is called at the start of each action.
+# Script that stores the times of the first and of all pixels. Pixels are on the screen at the second animation frame after a
+# change of the source. `begin` is called at the start of each action.
 WATCH = """() => {
     const source = Bokeh.documents[0].get_model_by_name('maps')
     window.painted = {}
@@ -66,14 +66,16 @@ def zoom(explorer: ExplorerPage, share: float) -> None:
 
 
 def zoom_box(explorer: ExplorerPage, share: float) -> None:
-    """Zoom to a box."""
+    """Zoom to a box, whose size depends on the share."""
     explorer.set_drag("Zoom")
     side = 0.2 + 0.3 * share
     explorer.drag("basins", (-side, 0.4 + side / 2), (0.0, 0.4 - side / 2))
 
 
+# Number of openings, the first with an empty browser cache.
 OPENINGS = 11
 LONGEST_OPENING_MS = 120_000
+# Script that counts the elements of the page, also in shadow roots.
 ELEMENTS = """() => {
     let count = 0
     const walk = root => {
@@ -85,7 +87,7 @@ ELEMENTS = """() => {
     walk(document)
     return count
 }"""
-# Conditions that the first pixels, or all pixels, have arrived.
+# Conditions in JavaScript: the first pixels have arrived; all pixels have arrived.
 FIRST_PIXELS, ALL_PIXELS = (
     f"() => {{ const data = window.Bokeh?.documents[0]?.get_model_by_name('maps')?.data; return {condition} }}"
     for condition in ("data?.fate?.[0]?.shape[0] > 1", "data?.complete?.[0] === true")
@@ -94,7 +96,7 @@ TWO_FRAMES = "() => new Promise(done => requestAnimationFrame(() => requestAnima
 
 
 def report_opening(browser: Browser, address: str) -> None:
-    """Print the time from navigation to the first map, with an empty and a full browser cache, and the server's time."""
+    """Print the times from navigation to the first map, with an empty and a full browser cache, and of the server's answer."""
     context = browser.new_context(viewport={"width": 1600, "height": 1000})
     openings = []
     for _ in range(OPENINGS):
@@ -184,7 +186,7 @@ def report_latency(browser: Browser, address: str) -> None:
 
 
 def measure(explorer: ExplorerPage, action: Callable[[ExplorerPage, float], None], share: float) -> tuple[float, float]:
-    """Return the latency of one action, as in `wait_for_map`; after a box zoom the view returns to the whole plane."""
+    """Return the latency of one action, as in `wait_for_map`. After a box zoom, show the whole plane again."""
     action(explorer, share)
     times = wait_for_map(explorer)
     if action is zoom_box:

@@ -24,8 +24,10 @@ from engine.integrator.kernels.events import crossed_exit
 from tests.peers import taylor_heyoka
 from tests.peers.exit_lines import exit_lines
 
+# Case and energy of each map.
 MAPS = (("I", 0.19), ("III", 0.45))
 T_MAX = 1000.0
+# Number of starts that each method classifies.
 SAMPLES = {"heyoka": 300, "scipy": 12, "numba": 2000}
 HEYOKA_TOLERANCE, SCIPY_TOLERANCE, NUMBA_TOLERANCE = 2.2e-16, 1e-13, 1e-11
 
@@ -51,7 +53,7 @@ def starts_of(spec: MapSpec) -> tuple[np.ndarray, np.ndarray]:
 
 
 def by_scipy(potential: Potential, energy: float, states: np.ndarray) -> np.ndarray:
-    """Return the fates by a straightforward use of `scipy.integrate.solve_ivp`, with an event for each exit."""
+    """Return the fates found by a straightforward use of `scipy.integrate.solve_ivp`, with an event for each exit."""
     lines = exit_lines(potential, energy)
 
     def motion(_t: float, s: np.ndarray) -> list[float]:
@@ -79,12 +81,16 @@ def by_scipy(potential: Potential, energy: float, states: np.ndarray) -> np.ndar
     return fate
 
 
+# Coefficients of the method of order 8: stages, result and error estimate of order 5.
 A, B, E5 = dop853.A[:12, :12].copy(), dop853.B.copy(), dop853.E5.copy()
 
 
 @numba.njit(fastmath=True)
 def runge_kutta(exponents, coefficients, states, t_max, tolerance, curves, gates):
-    """Return the fates by an adaptive Runge-Kutta method of order 8 that tests for exits and crossings after each step."""
+    """Return fates and crossings, found by an adaptive Runge-Kutta method of order 8 that tests for both after each step.
+
+    The final states are written into `states`.
+    """
     fate = np.zeros(states.shape[0], np.int64)
     crossings = np.zeros(states.shape[0], np.int64)
     k, point, new, error = np.empty((13, 4)), np.empty(4), np.empty(4), np.empty(4)
@@ -176,6 +182,7 @@ def main() -> None:
         order = np.random.default_rng(1).permutation(len(states))
         for name, classify in PEERS.items():
             part = order[: SAMPLES[name]]
+            # The first call compiles.
             classify(potential, energy, states[part[:1]])
             begin = time.perf_counter()
             peer_fates = classify(potential, energy, states[part])

@@ -29,6 +29,7 @@ DRAG_SECONDS = 0.4
 """Duration of a drag of the slider."""
 
 POLL_SECONDS = 0.05
+# Shortest and longest pause between two actions.
 PAUSE_SECONDS = 1.0, 5.0
 FRAME_TIMEOUT_SECONDS = 30.0
 """Longest permitted wait for a frame; longer waits are errors."""
@@ -42,6 +43,7 @@ ACTIONS = {"slider": 80, "case": 7, "plane": 6, "click": 7}
 ALL_ACTIONS = {"slider": 50, "case": 10, "plane": 10, "click": 10, "type": 10, "open": 10}
 """Actions and their weights, including typed formulas and pages opened again."""
 
+# Actions that request a map.
 _OF_MAPS = ("slider", "case", "plane")
 
 
@@ -111,13 +113,13 @@ class SimulatedSession:
         self._channel: Channel | None = None
         self._models: dict[str, str] = {}
         self._case, self._plane = "I", Plane.X_PX
-        # The action whose map is awaited, and its time.
+        # The action whose map is awaited, and the time of the action.
         self._awaited: tuple[str, float] | None = None
-        # Parameters of the page's address after that action, and whether the address has them.
+        # Parameters of the page's address after the awaited action, and whether the address has these parameters.
         self._parameters: dict[str, str] = {}
         self._accepted = True
         self._opened = asyncio.Event()
-        # The pane that says that a formula is being reviewed, and the event that its text has changed.
+        # The pane that says that a formula is being reviewed, and the event that the text of the pane has changed.
         self._reviewing: str | None = None
         self._reviewed = asyncio.Event()
         self._closing = False
@@ -188,7 +190,7 @@ class SimulatedSession:
         return True
 
     async def run(self, end: float) -> None:
-        """Act at random until `time.perf_counter()` reaches `end`, then wait for the last map; without a page do nothing."""
+        """Act at random until `time.perf_counter()` reaches `end`, then wait for the last map. Without a page, do nothing."""
         while self.is_open:
             pause = self._random.uniform(*PAUSE_SECONDS)
             if time.perf_counter() + pause > end:
@@ -203,7 +205,7 @@ class SimulatedSession:
         self._check_timeout()
 
     async def run_when_admitted(self, end: float) -> None:
-        """Ask a full server for the page as a refused page does, and once admitted act until `end`."""
+        """Ask a full server for the page again, as a refused page does, and act until `end` once the page is open."""
         while not self.is_open and time.perf_counter() + RETRY_SECONDS < end:
             await asyncio.sleep(RETRY_SECONDS)
             await self.open()
@@ -296,7 +298,7 @@ class SimulatedSession:
         self._open_channel.set(self._models["Plane"], active=planes.index(self._plane))
 
     async def _act_type(self) -> None:
-        # The formula has no exits, so that the maps do not follow it.
+        # The formula has no exits, so it is reviewed, but the page keeps its maps.
         factors = (self._random.uniform(0.5, 2.0) for _ in range(2))
         await self.type_formula("{:.6f} x² + {:.6f} y²".format(*factors))
 
@@ -318,7 +320,7 @@ class SimulatedSession:
         return self._channel
 
     def _await_map(self, action: str, **parameters: str) -> None:
-        """Begin to wait for the map of an action, after which the page's address has these parameters."""
+        """Begin to wait for the map of an action. After the action, the address of the page has these parameters."""
         if self._awaited is not None:
             self._record.replaced.append(time.perf_counter() - self._awaited[1])
         self._awaited, self._parameters, self._accepted = (action, time.perf_counter()), parameters, False

@@ -25,7 +25,9 @@ from engine.integrator.source import polynomial_recurrence, recurrence
 
 T_MAX = 1e5
 ORBITS = 64
+# Energies below the escape energies.
 ENERGIES = {"I": 0.12, "II": 0.16, "III": 0.24}
+# Orders with their tolerances.
 TRIALS = ((17, 1e-15), (18, 1e-15), (18, 3e-15), (19, 1e-15), (19, 3e-15), (19, 1e-14), (20, 3e-15), (22, 1e-14))
 
 
@@ -38,7 +40,7 @@ def bounded_starts(case: str) -> np.ndarray:
 
 
 def measure(case: str, order: int, tolerance: float) -> tuple[float, float, float]:
-    """Return million steps per second, million time units per second, worst relative energy error.
+    """Return million steps per second, million time units per second, and the worst relative energy error.
 
     The function runs in a new process with its own kernel cache, because the order is compiled into the kernels.
     """
@@ -66,6 +68,7 @@ def _measure(case: str, order: int, tolerance: float, cache: str) -> tuple[float
         steps = kernels.propagate(np.arange(n), horizon, True, tolerance, 2**62, 0, exits, orbits, propagate.NO_TRACE)
         return state, steps, time.perf_counter() - begin
 
+    # The first run compiles.
     run(10.0)
     state, steps, seconds = run(T_MAX)
     error = np.max(np.abs(potential.energy(state) / ENERGIES[case] - 1))

@@ -1,10 +1,10 @@
 """Compare the integration speed on one core with heyoka's batch mode, on the same bounded orbits of each potential.
 
-The engine runs with refill, exit and crossing tests. heyoka runs without events, in the faster of its batches, with two
-tolerances: 1e-13, and the loosest with an energy error of at most 1e-11, or at most the engine's error if that is larger. Times
-are the least processor time of some runs in turn, so that other programs disturb little. Energy errors are the worst relative
-errors at the end. State errors are the median errors after a short time against an integration in extended precision, relative
-to the largest coordinate.
+The engine runs with refill, exit and crossing tests. heyoka runs without events, in the faster of two batch sizes, with two
+tolerances: 1e-13, and the loosest whose energy error is at most 1e-11, or at most the engine's error if that is larger. Times are
+the least processor times of runs in turn, so that other programs disturb little. Energy errors are the worst relative errors at
+the end. State errors are the median errors after a short time, compared with an integration in extended precision and relative to
+the largest coordinate.
 
 Run: uv run python -m benchmarks.throughput [NAME …]
 """
@@ -55,7 +55,7 @@ WIDE_BATCH = 8
 
 
 class Run(NamedTuple):
-    """States (n, 4) and their times (n,) after an integration, and the processor time in seconds."""
+    """States of shape (n, 4) and their times of shape (n,) after an integration, and the processor time in seconds."""
 
     states: np.ndarray
     times: np.ndarray
@@ -63,11 +63,11 @@ class Run(NamedTuple):
 
 
 Integrate = Callable[[np.ndarray, float], Run]
-"""Integrates (n, 4) states over a duration."""
+"""Integrates states of shape (n, 4) over a duration."""
 
 
 class Problem(NamedTuple):
-    """A potential and an energy in units of the well, bounded starts (n, 4), a duration and a short duration."""
+    """Potential, energy, starts of shape (n, 4) of bounded orbits, and a long and a short duration, in units of the well."""
 
     potential: Potential
     energy: float
@@ -90,7 +90,7 @@ def pose(name: str) -> Problem:
 
 
 def bounded_starts(potential: Potential, energy: float) -> np.ndarray:
-    """Return (ORBITS, 4) starts of orbits that do not end."""
+    """Return starts of orbits that neither end nor come close to a body, of shape (ORBITS, 4)."""
     wide = [type(c)(c.x, c.y, KEPT_APART, c.name) for c in potential.centres]
     kept_apart, t_max = potential.with_outcomes(wide, potential.escape_radius), DURATION * potential.well.exact_time_unit
     found = np.empty((0, 4))
@@ -103,7 +103,7 @@ def bounded_starts(potential: Potential, energy: float) -> np.ndarray:
 
 
 def by_engine(problem: Problem) -> Integrate:
-    """Return the integrator of the engine, with refill, exit and crossing tests; its states are at the start of the last step."""
+    """Return the integrator of the engine, with refill, exit and crossing tests. It returns the states before the last step."""
     curves, kernels = closed_exits(problem.potential)[None], problem.potential.well.kernels
     gates = exit_gates(curves)
 
@@ -150,13 +150,13 @@ def state_error(problem: Problem, integrate: Integrate) -> float:
 
 
 def fastest_batch(problem: Problem) -> int:
-    """Return the batch with which heyoka is faster."""
+    """Return the batch size with which heyoka is faster."""
     runs = {n: by_heyoka(problem, USUAL_TOLERANCE, n) for n in (hy.recommended_simd_size(), WIDE_BATCH)}
     return min(runs, key=lambda n: runs[n](problem.starts, problem.duration / 10.0).seconds)
 
 
 def loosest(problem: Problem, batch: int, permitted: float) -> tuple[float, Integrate]:
-    """Return the loosest tolerance with a permitted error of heyoka, or else the tightest tolerance."""
+    """Return the loosest tolerance of heyoka whose energy error is permitted, or else the tightest, and its integrator."""
     for tolerance in TOLERANCES:
         integrate = by_heyoka(problem, tolerance, batch)
         if problem.energy_error(integrate(problem.starts, problem.duration).states) <= permitted:

@@ -1,7 +1,7 @@
 """Count verdicts on single orbits and on pixels of maps that later turn out wrong, in ten chaotic seas with their islands.
 
-Starts are uniform on the energy surface; those that are bounded until t = 1000 are judged at several times, and again at 1e5. An
-orbit counts as chaotic if its SALI falls to 1e-7 by then or it escapes. Maps of (x, px) are judged at the same times.
+Starts are uniform on the energy surface. Orbits that are bounded until t = 1000 are judged at several times up to 1e5. An orbit
+counts as chaotic if, by t = 1e5, its SALI falls to 1e-7 or it escapes. Maps of (x, px) are judged at the same times.
 
 Run: uv run python -m benchmarks.verdicts [orbits per sea, by default 200] [seed]
 """
@@ -39,6 +39,7 @@ SEAS = (
     (CASES["III"], 0.25), (CASES["III"], 0.26), (CASES["III"], 0.28), (FIVE, 1.03 * FIVE.escape_energy),
 )  # fmt: skip
 TIMES = (1e3, 2e3, 4e3, 1e4, 2e4, 5e4, 1e5)
+# Wrong verdicts: a character, and whether the orbit counts as chaotic.
 WRONG = ((Verdict.REGULAR, True), (Verdict.CHAOTIC, False))
 SIDE = 48
 # Number of random starts per start that is bounded until the first time.
@@ -59,19 +60,20 @@ def shortened(orbit: Orbit, t_end: float) -> Orbit:
 
 
 def count_verdicts(potential: Potential, energy: float, count: int, seed: int) -> Counter[tuple[float, Verdict | None, bool]]:
-    """Count orbits by time, verdict at that time, and whether they are chaotic."""
+    """Count orbits by time, by their verdict at this time, and by whether they count as chaotic."""
     counts: Counter[tuple[float, Verdict | None, bool]] = Counter()
     for state in bounded_starts(potential, energy, count, seed):
         orbit = integrate_orbit(potential, state, TIMES[-1])
         is_chaotic = orbit.fate != Fate.BOUNDED or bool(orbit.sali.min() <= CHAOS_THRESHOLD)
         for time in TIMES:
+            # The factor allows for rounding of the last time.
             if time <= orbit.t[-1] * (1.0 + 1e-12):
                 counts[time, judge_orbit(shortened(orbit, time)).character, is_chaotic] += 1
     return counts
 
 
 def count_pixels(potential: Potential, energy: float) -> Counter[tuple[float, Regularity, bool]]:
-    """Count bounded pixels of a map by time, character at that time, and whether their orbits are chaotic by the last time."""
+    """Count pixels of a map by time, by character at this time, and by whether orbits are chaotic or escape by the last time."""
     characters = {}
     for time in TIMES:
         pixels = compute_map(MapSpec(potential, Plane.X_PX, energy, (SIDE, SIDE), t_max=time))

@@ -1,6 +1,7 @@
 """Read values such as the system, the slice, the energy and the start from the words of a command.
 
-`READERS` lists functions that make a value from several options. A command with a parameter of that type has these options.
+`READERS` lists functions that make a value from several options. A command with a parameter of the type of the value has these
+options.
 """
 
 from __future__ import annotations
@@ -236,7 +237,7 @@ READERS: Mapping[Any, Callable[..., Any]] = {
     Palette: find_palette,
     LayerOptions: read_layers,
 }
-"""Functions that make values from options, by type of the value. Their parameters may have types with a function here."""
+"""Functions that make values from options, by type of the value. A parameter of a function may also have a type listed here."""
 
 OPTION_TYPES: Mapping[Any, Any] = {
     GivenWindow | None: Annotated[tuple[float, float, float, float] | None, typer.Option(metavar="X0 X1 Y0 Y1")],

@@ -39,7 +39,7 @@ class _Command(TyperCommand):
     """A command whose arguments may begin with one minus, as formulas do. All its options begin with two."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Move the words that begin with one minus behind ``--``, which makes them arguments, and parse all words."""
+        """Parse the words. Those that begin with one minus are first moved behind ``--``, where all words are arguments."""
         value_counts = {name: _count_values(option) for option in self.params for name in option.opts}
         words = deque(args)
         other_words: list[str] = []

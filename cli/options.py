@@ -37,7 +37,7 @@ def with_options(function: Callable[..., None]) -> Callable[..., None]:
 
 
 def _list_options(make: Callable[..., Any]) -> dict[str, inspect.Parameter]:
-    """Return the options of a function or request, by name. `_build` makes its arguments from their values."""
+    """Return the options of a function or request, by name. `_build` makes arguments from the values of these options."""
     options: dict[str, inspect.Parameter] = {}
     for parameter in _parameters(make):
         kind, marks = _split(parameter.annotation)

@@ -51,7 +51,7 @@ def split_ending(path: Path, endings: Collection[str], default: Sequence[str]) -
 def name_files(
     output: Path | None, endings: Collection[str], default: Sequence[str], stem: Path | None = None
 ) -> dict[str, Path]:
-    """Return the output files by ending, named after --output, or else after the stem; none without both."""
+    """Return the output files by ending, named after --output, or else after the stem; empty if both are None."""
     chosen_endings = default
     if output is not None:
         stem, chosen_endings = split_ending(output, endings, default)

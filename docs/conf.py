@@ -1,4 +1,4 @@
-"""The documentation as a site. Run: .ci/docs
+"""Settings of Sphinx, which builds the documentation as a site. Run: .ci/docs
 
 The folder of sources is the repository, so that the links between Markdown files are the same here as on GitHub.
 """
@@ -38,16 +38,16 @@ myst_enable_extensions = ["dollarmath"]
 myst_fence_as_directive = ["math"]
 nb_execution_mode = "force"
 nb_execution_raise_on_error = True
-# A loaded machine, with an empty cache of kernels.
+# Seconds for each cell: enough on a loaded machine with an empty cache of kernels.
 nb_execution_timeout = 300
-# Progress bars, and what libraries say about this machine.
+# The output on stderr is progress bars, and what libraries say about this machine.
 nb_output_stderr = "remove"
 
 default_role = "py:obj"
 autodoc_default_options = {"members": True, "member-order": "bysource"}
 python_maximum_signature_line_length = 100
 napoleon_attr_annotations = False
-# Sentences, not a list of types.
+# Sections "Returns" contain sentences. By default, Napoleon reads a list of types.
 napoleon_custom_sections = ["Returns"]
 
 html_theme = "furo"
@@ -55,22 +55,22 @@ html_title = project
 html_extra_path = ["redirect"]
 html_static_path = ["static"]
 html_css_files = ["formulas.css"]
-# Browsers show MathML without a program; MathJax would come from another host.
+# Browsers show MathML without a program. MathJax would come from another host.
 html_math_renderer = "mathml"
 
 
 def setup(app: Sphinx) -> None:
-    """Add formulas as MathML and the list of terms; set docstrings after the extensions, which do not find or misread some."""
+    """Add formulas as MathML and the list of terms, and replace docstrings that the extensions misread or do not find."""
     app.add_html_math_renderer("mathml", (_write_formula, None), (_write_formula, None))
     app.add_directive("terms", Terms)
     app.connect("autodoc-process-docstring", _set_docstring, priority=900)
 
 
 class Terms(SphinxDirective):
-    """The terms of the page with their meanings, as a glossary."""
+    """Writes the terms of the page with their meanings, as a glossary."""
 
     def run(self) -> list[nodes.Node]:
-        """Parse the glossary."""
+        """Return the nodes of the glossary."""
         entries = (f"{term}\n  {meaning}\n" for term, meaning in GLOSSARY.items())
         return self.parse_text_to_nodes("\n".join(["```{glossary}", ":sorted:", "", *entries, "```"]))
 
@@ -94,7 +94,7 @@ def _set_docstring(app: Sphinx, what: str, name: str, obj: object, options: obje
 
 
 def _docstring(name: str, module: str) -> str:
-    """The string below the definition of a constant, in the module that defines it."""
+    """Return the string below the definition of a constant, in the module that defines it."""
     body = ast.parse(Path(str(importlib.import_module(module).__file__)).read_text(encoding="utf-8")).body
     for node, following in pairwise(body):
         if isinstance(node, ast.ImportFrom) and name in {alias.name for alias in node.names}:

@@ -16,7 +16,7 @@ def axis_label(name: str) -> str:
 
 
 def plane_label(plane: Slice) -> str:
-    """Return the name of a slice, which consists of its axes."""
+    """Return the name of a slice: its axes in brackets."""
     return f"$({', '.join(_SYMBOLS[name] for name in plane.axis_names)})$"
 
 

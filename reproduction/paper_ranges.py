@@ -15,7 +15,7 @@ STICKY_CASE = "III"
 """Case of the paper's regular, chaotic and super-sticky orbits, on (x, px)."""
 
 STICKY_ENERGY = 0.26
-"""Energy of these orbits."""
+"""Energy of the orbits of `STICKY_CASE`."""
 
 # Number of decimals of energies. Maps are looked up by energy, so equal energies must be identical to the bit.
 _DECIMALS = 6

@@ -9,7 +9,7 @@ from engine.maps.spec import DEFAULT_RESOLUTION
 
 @dataclass(frozen=True)
 class Quality:
-    """Resolution of a reproduction.
+    """Resolution and limits of the work of a reproduction.
 
     Attributes
     ----------

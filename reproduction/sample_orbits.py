@@ -35,6 +35,7 @@ def find_sample_starts(frame: EscapeMap) -> dict[int, tuple[float, float, float,
         selected = int(crossings[is_enough].min()) if is_enough.any() else int(crossings.max())
         times = np.where(crossings == selected, frame.escape_time[rows, columns], np.inf)
         index = int(np.argmin(times))
+        # `start_states` takes arrays, here of a single start.
         x, ordinate = frame.x[columns[index : index + 1]], frame.ordinate[rows[index : index + 1]]
         x_start, y_start, px_start, py_start = frame.spec.start_states(x, ordinate)[0].tolist()
         starts[channel] = (x_start, y_start, px_start, py_start)

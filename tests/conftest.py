@@ -1,4 +1,4 @@
-"""Shared configuration: fixed inputs of Hypothesis, and one Chromium for all browser tests of a process.
+"""Configure all tests: fixed inputs of Hypothesis, and one Chromium for all browser tests of a process.
 
 ``--hypothesis-profile=random`` makes inputs random, and four times as many.
 """
@@ -20,11 +20,11 @@ from xdist.scheduler import LoadScopeScheduling
 
 from engine.integrator.jit.compiled_operations import compiled_operations
 
-# All processes of a run import the same modules. Without bytecode files each compiles them anew, which takes 9 s.
+# All processes of a run import the same modules. Without bytecode files, each process would compile the modules, which takes 9 s.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
 
-# Of processes that import the same libraries at the same time, each compiles them all: each begins with others.
+# If processes imported the same libraries at the same time, each would compile all of them. So each begins with different ones.
 FIRST = {"gw1": ("sympy", "matplotlib.pyplot", "scipy.stats"), "gw2": ("zarr", "distributed", "xarray")}
 for library in FIRST.get(os.environ.get("PYTEST_XDIST_WORKER", ""), ()):
     importlib.import_module(library)
@@ -33,7 +33,7 @@ for library in FIRST.get(os.environ.get("PYTEST_XDIST_WORKER", ""), ()):
 os.environ.setdefault("ESCAPE_EXPLORER_CORES_PER_PAGE", "0.001")
 
 TIMEOUT_MS = 120_000
-"""Much longer than any step takes, even on a busy machine."""
+"""Limit for a step in a browser: much longer than any step takes, even on a busy machine."""
 BROWSERS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome")
 
 settings.register_profile("fixed", derandomize=True, deadline=None, max_examples=15, database=None)
@@ -65,13 +65,13 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> SharedProces
 
 
 def pytest_collection_finish() -> None:
-    """Exclude imported modules, which stay until the end, from garbage collections."""
+    """Exclude imported modules from garbage collections, because they stay until the end."""
     gc.freeze()
 
 
 @pytest.fixture(autouse=True)
 def _unlimited_compiled_code() -> Iterator[None]:
-    """After each test remove the limit of compiled code that its server state has set, and do not count its code."""
+    """After each test, remove the limit of compiled code that a server state has set, and stop counting the code of the test."""
     yield
     compiled_operations.most = None
     compiled_operations.reserve(compiled_operations.codes)
@@ -79,7 +79,7 @@ def _unlimited_compiled_code() -> Iterator[None]:
 
 @pytest.fixture(scope="session")
 def chromium() -> Iterator[Browser]:
-    """A running Chromium; without one, browser tests are skipped, or fail in CI."""
+    """Yield a running Chromium. Without Chromium, skip browser tests, or fail in CI."""
     path = next(filter(None, map(shutil.which, BROWSERS)), None)
     if path is None:
         message = f"no browser: none of {', '.join(BROWSERS)} is on PATH (Debian: apt-get install chromium-headless-shell)"

@@ -1,4 +1,4 @@
-"""The examples of docs/extending.md, which tests run as a part of the module that each is for."""
+"""Run the examples of docs/extending.md as a part of the modules for which they are written."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _TEXT = (Path(__file__).parents[1] / "docs" / "extending.md").read_text(encoding
 
 
 def run_example(heading: str, given: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the names that the Python under a heading defines, beside those that are given."""
+    """Return the given names and the names that the Python code under a heading defines."""
     section = _TEXT.split(f"\n## {heading}\n")[1].split("\n## ")[0]
     names = dict(given)
     exec("\n".join(re.findall(r"^```python\n(.*?)^```$", section, re.MULTILINE | re.DOTALL)), names)

@@ -10,7 +10,7 @@ from typing import Any
 
 
 class ForgetfulPool(ThreadPoolExecutor):
-    """Drops the call after `good_calls`, as a cluster does whose scheduler restarts, or on `cancel`, which it then sets."""
+    """Drops the call after `good_calls`, as a cluster does whose scheduler restarts. If given, `cancel` is set at this call."""
 
     def __init__(self, good_calls: int, cancel: threading.Event | None = None) -> None:
         super().__init__(2)

@@ -18,7 +18,7 @@ from tests.waiting import SECONDS
 
 @dataclass(frozen=True)
 class Finished:
-    """Exit code, minus the signal if it was killed, and what was written to stdout and stderr."""
+    """Exit code of a process, or minus the signal that killed it, and what it wrote to stdout and stderr."""
 
     code: int | None
     out: str
@@ -26,14 +26,14 @@ class Finished:
 
 
 def start(function: Callable[..., Any], *arguments: Any) -> BaseProcess:
-    """Call a function of a module, with arguments that can be pickled, in a child process with the environment of this one."""
+    """Call a function of a module in a child process with the environment of this process. Arguments must be picklable."""
     process = fork_context().Process(target=_call, args=(dict(os.environ), function, arguments))
     process.start()
     return process
 
 
 def run(folder: Path, function: Callable[..., Any], *arguments: Any) -> Finished:
-    """Call a function in a child process and wait for its end; its output goes to a temporary file in `folder`."""
+    """Call a function in a child process, and wait for its end. The output of the process goes to temporary files in `folder`."""
     out, err = folder / ".out", folder / ".err"
     process = start(_call_redirected, out, err, function, arguments)
     process.join(SECONDS)

@@ -1,4 +1,4 @@
-"""Run the scripts for Node.js beside the tests of app/browser."""
+"""Run the scripts for Node.js that are in the folder of the tests of app/browser."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ needs_node = pytest.mark.skipif(shutil.which("node") is None, reason="Node.js is
 
 
 def run_node(script: str, data: dict[str, Any], folder: Path) -> Any:
-    """Return what a script prints as JSON, given data as JSON, with the kernels if it has the module of a system.
+    """Return what a script prints as JSON, given data as JSON. Data with the module of a system also get the kernels.
 
-    Bytes become files in `folder` and their paths.
+    Bytes are written to files in `folder`, and replaced by the paths.
     """
     if "module" in data:
         data["kernels"] = kernel_module()

@@ -35,13 +35,13 @@ class Channel:
 
     @classmethod
     async def connect(cls, address: str, page: str, options: Options = NO_OPTIONS) -> Channel:
-        """Connect with the token of a page already fetched."""
+        """Connect with the token of a page that is already fetched."""
         token = re.search(r'"token":"([^"]+)"', page)
         if token is None:
             raise RuntimeError("the page has no token")
         request = HTTPRequest(re.sub("^http", "ws", address) + "/ws", **options)
         socket = await websocket_connect(request, subprotocols=["bokeh", token[1]])
-        # Options as in browsers.
+        # Browsers also send small messages without delay.
         socket.protocol.set_nodelay(True)
         return cls(address, socket)
 
@@ -51,7 +51,7 @@ class Channel:
         self.write(*(json.dumps(part) for part in (header, {}, content)))
 
     def write(self, *parts: str | bytes) -> None:
-        """Send parts that need not be a message."""
+        """Send parts, which need not form a message."""
         for part in parts:
             self._socket.write_message(part, binary=isinstance(part, bytes))
 
@@ -71,7 +71,7 @@ class Channel:
         self.patch({"kind": "MessageSent", "msg_type": "bokeh_event", "msg_data": data})
 
     async def messages(self) -> AsyncIterator[tuple[str, str]]:
-        """Yield the kind and content of each message from the server until the socket closes; binary buffers are skipped."""
+        """Yield the kind and content of each message of the server until the socket closes. Binary buffers are skipped."""
         try:
             while True:
                 header, _, content = [await self.part() for _ in range(3)]
@@ -84,7 +84,7 @@ class Channel:
 
     async def part(self) -> Any:
         """Return the next part of a message."""
-        # A closed socket gives None once, then no further message.
+        # A closed socket returns None once, and no further message.
         part = await self._socket.read_message()
         if part is None:
             raise EOFError

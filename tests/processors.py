@@ -1,4 +1,4 @@
-"""Environment variables with which libraries compute as on another processor."""
+"""List environment variables with which libraries compute as on another processor."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _OF_NUMPY = [
 
 X86_64_V3: Mapping[str, str] = MappingProxyType(
     {
-        # The name alone would keep the features of the processor.
+        # The name alone would keep the features of this processor.
         "NUMBA_CPU_NAME": "haswell",
         "NUMBA_CPU_FEATURES": ",".join(f"+{name}" for name in _FEATURES),
         "OPENBLAS_CORETYPE": "Haswell",

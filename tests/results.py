@@ -74,7 +74,7 @@ RESULTS = tuple(_MAKERS)
 
 @functools.cache
 def result_of(name: str) -> Result:
-    """Return the result of a name."""
+    """Return the result with a name."""
     result = _MAKERS[name]()
     assert result is not None
     return result

@@ -78,13 +78,13 @@ def test_drawings_are_shown_and_small() -> None:
 
 
 def test_pictures_of_the_documents_use_names_that_exist() -> None:
-    # No picture has this name.
+    # No picture has the name "none", so the modules are only imported.
     subprocess.run([sys.executable, "-W", "error", "-m", "docs.pictures", "none"], cwd=ROOT, check=True)
 
 
 @pytest.fixture(scope="module")
 def small_site(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A site of two pages, that with the terms and that on chaos, without the pages that they link to."""
+    """Return a site of the page with the terms and the page on chaos, without the pages to which these link."""
     folder = tmp_path_factory.mktemp("site")
     pages = "include_patterns=docs/page.md,docs/chaos.md"
     subprocess.run(

@@ -23,13 +23,13 @@ NUMBER = r"[-+]?[\d.]+(?:e[-+]?\d+)?"
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Working directory of the example."""
+    """Return the working directory of the example."""
     return tmp_path_factory.mktemp("case-three")
 
 
 @pytest.fixture(scope="module")
 def output(folder: Path) -> str:
-    """Standard output of the example."""
+    """Return the standard output of the example."""
     run = subprocess.run(
         [sys.executable, "-W", "error", str(ROOT / "examples" / "case_three.py")],
         cwd=folder, env={**os.environ, "MPLBACKEND": "Agg"},
@@ -40,7 +40,7 @@ def output(folder: Path) -> str:
 
 
 def numbers(output: str, pattern: str) -> list[float]:
-    """Return the numbers in a line of the output, at the places marked # in the pattern."""
+    """Return the numbers of the output at the signs # of a pattern, which is a line of the output or a part of it."""
     line = re.search(re.escape(pattern).replace(r"\#", f"({NUMBER})"), output)
     assert line, pattern
     return [float(number) for number in line.groups()]

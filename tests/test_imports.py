@@ -1,4 +1,4 @@
-"""Importing a module imports no large libraries and reads no settings, in child processes that have imported the engine."""
+"""Importing a module imports no large libraries and reads no settings. Each test imports in a child process."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def list_lyapunov_orbits() -> None:
 
     with contextlib.redirect_stdout(io.StringIO()):
         assert main(["lyapunov", "I", "--energy", "0.19"]) == 0
-    # Numba imports the last of these libraries when it compiles.
+    # Numba imports numba.np.linalg when it compiles.
     list_imported("typer", *SLOW, "numba.np.linalg")
 
 
@@ -69,7 +69,7 @@ def test_engine_imports_numba_and_no_other_large_library(tmp_path: Path) -> None
 
 
 def test_lyapunov_command_loads_neither_scipy_nor_a_compiler_nor_a_plotting_library(tmp_path: Path) -> None:
-    # The first call puts the orbits into the cache.
+    # The first call fills the caches on disk.
     run(tmp_path, list_lyapunov_orbits)
     assert run(tmp_path, list_lyapunov_orbits) == Finished(0, "typer", "")
 

@@ -23,17 +23,17 @@ NAME = re.compile(r"(?<!`)`([A-Za-z_]\w*(?:\.\w+)*)(?:\([^`\n]*\))?`(?!`)")
 
 FOREIGN = re.compile(
     r"BOKEH_\w+|PANEL_\w+|(?:asyncio|concurrent|datashader|matplotlib|np|numpy|pandas|zlib)\.[\w.]+"
-    # Of Bokeh, Panel, nginx and the files of this project.
+    # Names of Bokeh, Panel, nginx and the files of this project.
     r"|Application\._set_session_prefix|ComponentResourceHandler\.parse_url_path|OAuthProvider\.get_user_async"
     r"|_BytesDecoder\.bytes_object_hook|_dispatch_msgs|auth_basic|get_token_payload|secret_key_bytes|settings\.sign_sessions"
     r"|kernels\.wasm|formulas_stopped"
-    # Of the result of a function: attributes that its docstring explains, and the example of CONTRIBUTING.
+    # Attributes of the result of a function, which the docstring of the function explains, and the example of CONTRIBUTING.
     r"|bytes|conclusion|orbits|seconds|LateMap"
 )
 
 
 def members(name: str, thing: Any) -> Iterator[tuple[str, Any]]:
-    """Yield a public name and, of a class, its public functions and properties."""
+    """Yield a public name, and for a class its public functions and properties."""
     yield name, thing
     inner = {"inner_names", *getattr(thing, "inner_names", ())}
     for attribute, member in vars(thing).items() if inspect.isclass(thing) else ():

@@ -13,7 +13,7 @@ import yaml
 ROOT = Path(__file__).parents[1]
 PROJECT: dict[str, Any] = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 RECIPE: dict[str, Any] = yaml.safe_load((ROOT / "packaging" / "recipe.yaml").read_text(encoding="utf-8"))
-# Packages with another name in conda.
+# Names in PyPI of packages that have another name in conda.
 NAMES = {"matplotlib-base": "matplotlib"}
 
 

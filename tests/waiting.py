@@ -7,13 +7,13 @@ import time
 from collections.abc import Callable
 
 SECONDS = 240.0
-"""Longest wait, on a slow and busy machine with kernels to be compiled. Only tests that fail take so long."""
+"""Longest wait: enough for a slow and busy machine that has to compile kernels. Only tests that fail wait so long."""
 
 _BETWEEN_LOOKS = 0.01
 
 
 def wait_until(condition: Callable[[], bool], seconds: float = SECONDS) -> None:
-    """Wait until a condition holds; AssertionError if it does not hold in time."""
+    """Wait until a condition holds. AssertionError if it does not hold in time."""
     begun, never = time.monotonic(), threading.Event()
     while not condition():
         assert time.monotonic() - begun < seconds, f"not within {seconds} s"

@@ -53,7 +53,7 @@ def run(
 
 
 def _choose(chosen: Sequence[str] | None, slow: bool) -> list[str]:
-    """Return the names of the chosen measures, in the order of the table."""
+    """Return the names of the chosen measures, in the order of `DESCRIBED`, without slow measures unless `slow`."""
     names = check_measures(chosen, DESCRIBED) or list(DESCRIBED)
     return [name for name in names if slow or not DESCRIBED[name].slow]
 

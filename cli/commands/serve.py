@@ -56,6 +56,7 @@ def serve_arguments(port: int, address: str, origins: list[str], show: bool) -> 
 
 def server_environment() -> dict[str, str]:
     """Return the environment of this process with a PYTHONPATH that contains the installed packages."""
+    # The folder that contains the top-level package of this module.
     root = Path(__file__).parents[__name__.count(".")]
     paths = [str(root), *filter(None, [os.environ.get("PYTHONPATH")])]
     return {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}

@@ -1,1 +1,1 @@
-"""Makes the pictures of the documents and the thumbnails of the page."""
+"""Make the pictures of the documents and the thumbnails of the page."""

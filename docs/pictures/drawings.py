@@ -1,4 +1,4 @@
-"""Drawings of the documents, docs/drawings/<name>.webp."""
+"""Make the drawings of the documents, docs/drawings/<name>.webp. Functions without parameters draw one figure each."""
 
 from __future__ import annotations
 
@@ -62,11 +62,12 @@ from plots.printed.orbit_figure import draw_quantity
 from plots.printed.window_axes import draw_limits, draw_pixels, show_window
 
 DOCS = Path(__file__).parents[1]
+# Number of colours of a file.
 _COLOURS = 64
 
 
 def make(names: Sequence[str]) -> None:
-    """Draw these."""
+    """Draw and write the figures with these names."""
     for name in names:
         draw = PICTURES[name]
         picture = Image.open(BytesIO(save_figure(draw(), FigureFormat.PNG, {}))).convert("RGB")
@@ -75,7 +76,7 @@ def make(names: Sequence[str]) -> None:
 
 
 def cases() -> Figure:
-    """The wells of the three cases."""
+    """Draw the wells of the three cases."""
     figure, panels = new_panels(3, 8.5)
     for axes, case in zip(panels, CASES.values(), strict=True):
         case.plot(axes)
@@ -83,7 +84,7 @@ def cases() -> Figure:
 
 
 def potentials() -> Figure:
-    """Some wells of the catalogue."""
+    """Draw some wells of the catalogue."""
     figure, panels = new_panels(3, 8.5)
     for axes, name in zip(panels, ("C5", "C8", "One exit"), strict=True):
         POTENTIALS[name].plot(axes)
@@ -91,7 +92,7 @@ def potentials() -> Figure:
 
 
 def sali() -> Figure:
-    """The sections of a regular and a chaotic orbit, and their SALI."""
+    """Draw the sections of a regular and a chaotic orbit, and their SALI."""
     figure, (left, right) = new_panels(2, 11.0)
     case, energy = CASES["III"], 0.26
     window = MapSpec(case, SECTION, energy).find_window()
@@ -108,7 +109,7 @@ def sali() -> Figure:
 
 
 def trust() -> Figure:
-    """Two orbits that start 10⁻¹¹ apart, a map, and its doubtful pixels."""
+    """Draw two orbits that start 10⁻¹¹ apart, a map, and its doubtful pixels."""
     figure, (growth, basins, pixels) = new_panels(3, 9.0)
     frame = compute_map(MapSpec(CASE, Plane.X_PX, ENERGY, (200, 200), t_max=1e4))
     first, second = start_states(CASE, Plane.X_PX, ENERGY, np.array([-0.3, -0.3 + 1e-11]), np.zeros(2))
@@ -120,7 +121,7 @@ def trust() -> Figure:
 
 
 def basin_entropy() -> Figure:
-    """Boxes of 5 × 5 starts, and their entropies."""
+    """Draw boxes of 5 × 5 starts, and the entropies of the boxes."""
     figure, (left, right) = new_panels(2, 11.0)
     frame = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.2, (60, 60), Window(0.0, 0.3, 0.0, 0.3), t_max=1e4))
     draw_picture(left, frame, "basins", PAPER)
@@ -137,7 +138,7 @@ def basin_entropy() -> Figure:
 
 
 def wada() -> Figure:
-    """Three basins with one boundary, and the test of it."""
+    """Draw three basins with a common boundary, and the Wada test of this boundary."""
     figure, (left, right) = new_panels(2, 11.0)
     frame = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.25, (SIDE, SIDE), t_max=1e4))
     draw_picture(left, frame, "basins", PAPER)
@@ -147,7 +148,7 @@ def wada() -> Figure:
 
 
 def uncertainty_exponent() -> Figure:
-    """The share of uncertain pairs against their separation at two energies."""
+    """Draw the share of uncertain pairs against their separation at two energies."""
     figure, panels = new_panels(2, 10.0, sharey=True)
     for axes, energy in zip(panels, (0.2, 0.3), strict=True):
         found = compute_uncertainty_exponent(MapSpec(CASES["II"], Plane.X_PX, energy), work=3e7)
@@ -157,14 +158,14 @@ def uncertainty_exponent() -> Figure:
 
 
 def escape_laws() -> Figure:
-    """The share of starts inside against time, with both laws."""
+    """Draw the share of starts inside against time, with the exponential law and the power law."""
     figure, (axes,) = new_panels(1, 10.0, width=18.0)
     fit_decay_laws(compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.2, (224, 224), t_max=1e4))).plot(axes)
     return figure
 
 
 def slices() -> Figure:
-    """Launch angle and energy, and a parameter as an axis."""
+    """Draw basins on a slice of launch angle and energy, and on a slice with a parameter as an axis."""
     figure, panels = new_panels(2, 11.5)
     throws = MapSpec(CASES["III"], Slice(Coordinate.THETA, Coordinate.H), (0.2, 0.8), (SIDE, SIDE), t_max=1e3)
     stronger = MapSpec(CASE, Slice(Coordinate.X, ParameterAxis("epsilon", 0.5, 2.0, System("I"))), 0.2, (SIDE, SIDE), t_max=1e3)
@@ -175,13 +176,13 @@ def slices() -> Figure:
 
 
 def statistics() -> Figure:
-    """Escape times, and probabilities of an escape by crossings."""
+    """Draw a histogram of escape times, and the probability of an escape after each number of crossings."""
     frame = compute_map(MapSpec(CASES["II"], SECTION, 0.2, (SIDE, SIDE), t_max=1e4))
     return draw_statistics_figure(compute_statistics(frame), replace(STYLE, titles=True))
 
 
 def curves() -> Figure:
-    """Shares of the outcomes against energy."""
+    """Draw shares of the outcomes against energy."""
     figure, (axes,) = new_panels(1, 9.5, width=18.0)
     values = tuple(float(h) for h in np.linspace(0.25, 0.45, 41))
     compute_sweep(SweepSpec(CASES["III"], Plane.X_PX, values, (80, 80), t_max=1e4, measures="shares")).plot(axes)
@@ -189,7 +190,7 @@ def curves() -> Figure:
 
 
 def flux() -> Figure:
-    """The share of random starts inside against time, and the decay at the rate of the flux."""
+    """Draw the share of random starts inside against time, and the decay at the rate of the flux."""
     figure, (axes,) = new_panels(1, 9.5, width=18.0)
     case, energy, count = CASES["II"], 0.2, 20_000
     rate = compute_flux(case, energy).decay_rate
@@ -204,7 +205,7 @@ def flux() -> Figure:
 
 
 def evidence() -> Figure:
-    """The evidence of a map, and the sections of a regular orbit and of one that leaves."""
+    """Draw the evidence of a map, and the sections of a regular orbit and of an orbit that leaves."""
     figure, (left, right) = new_panels(2, 12.0)
     case, energy = CASES["III"], 0.30
     frame = compute_map(MapSpec(case, Plane.X_PX, energy, (SIDE, SIDE), t_max=1e4))
@@ -224,12 +225,12 @@ def evidence() -> Figure:
     return figure
 
 
-# Of the codes of `Evidence`.
+# Colours by code of `Evidence`.
 _EVIDENCE_COLOURS = dict(zip(Evidence, ("#f2f2f2", "#d1495b", "#7f7f7f", "#4c8dc4", "#8fd0b5", "#b9a2d8"), strict=True))
 
 
 def origins() -> Figure:
-    """Origin and exit of each orbit."""
+    """Draw origin and exit of each orbit."""
     figure, panels = new_panels(2, 11.0)
     spec = MapSpec(CASE, Plane.X_PX, 0.3, (SIDE, SIDE), t_max=1e3)
     draw_picture(panels[0], compute_map(spec), "basins", PAPER)

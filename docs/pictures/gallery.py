@@ -1,4 +1,4 @@
-"""Thumbnails of the presets, app/static/gallery/<key>.png."""
+"""Make the thumbnails of the presets, app/static/gallery/<key>.png."""
 
 from __future__ import annotations
 
@@ -36,21 +36,22 @@ from plots.printed.window_axes import draw_curve, draw_pixels
 STATIC = Path(__file__).parents[2] / "app" / "static"
 PICTURES = {f"gallery/{preset.key}": preset for preset in PRESETS}
 SIDE = 160
-# One point is a pixel.
+# Pixels per inch at which a point is a pixel.
 _DPI = 72
+# Largest number of colours of a file.
 _MOST_COLOURS = 64
-# In units of the escape energy.
+# Energies of equipotentials, in units of the escape energy.
 _LEVELS = (0.1, 0.3, 0.5, 0.7, 0.9, 1.6, 2.2)
 
 
 def make(names: Sequence[str]) -> None:
-    """Draw these."""
+    """Draw and write the thumbnails with these names."""
     for name in names:
         _reduce_colours(_draw_thumbnail(PICTURES[name])).save(STATIC / f"{name}.png", optimize=True)
 
 
 def _draw_thumbnail(preset: Preset) -> Image.Image:
-    """RGBA; transparent where no orbit can start, for light and dark pages."""
+    """Return a thumbnail in RGBA. It is transparent where no orbit can start, for light and dark pages."""
     frame = compute_map(replace(preset.view.map_spec(review_catalogue_entry(preset.view.system.case)), resolution=(SIDE, SIDE)))
     analyses = _analyse(frame, preset.view)
     pixels = picture_pixels(frame, preset.picture, PAPER, analyses)
@@ -88,7 +89,7 @@ def _draw_strokes(axes: Axes, strokes: Sequence[Stroke], window: Window) -> None
 
 
 def _draw_curves(axes: Axes, frame: EscapeMap, view: View) -> None:
-    """Equipotentials, limiting curve, orbits and exits."""
+    """Draw equipotentials, limiting curve, orbits and exits."""
     spec, escape = frame.spec, frame.spec.potential.escape_energy
     energies = (view.energy, escape, *(level * escape for level in _LEVELS))
     limit, critical, *levels = trace_equipotentials(spec.potential, spec.plane, energies, spec.find_window())
@@ -106,7 +107,7 @@ def _draw_curves(axes: Axes, frame: EscapeMap, view: View) -> None:
 
 
 def _reduce_colours(picture: Image.Image) -> Image.Image:
-    """Convert to a palette: exact if there are few colours."""
+    """Return the picture with a palette, with the exact colours if there are few."""
     colours, codes = np.unique(np.asarray(picture).reshape(-1, 4), axis=0, return_inverse=True)
     if len(colours) > _MOST_COLOURS:
         return picture.quantize(_MOST_COLOURS, Image.Quantize.FASTOCTREE)

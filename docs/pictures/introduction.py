@@ -1,4 +1,4 @@
-"""Drawings of case I that explain escapes: the well, the maps, the tubes and the exits."""
+"""Draw figures of case I that explain escapes: the well, the maps, the tubes and the exits."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ from plots.printed.window_axes import draw_curve, draw_limits, draw_strokes, sho
 
 
 def well() -> Figure:
-    """Case I with its saddles; two orbits above the escape energy."""
+    """Draw case I with its saddles, and two orbits above the escape energy."""
     figure, (left, right) = new_panels(2, 11.5)
     CASE.plot(left)
     starts = start_states(CASE, Plane.X_Y, ENERGY, np.array([-0.2, -0.1]), np.array([-0.2, -0.1]))
@@ -47,13 +47,13 @@ def well() -> Figure:
 
 
 def maps() -> Figure:
-    """The three maps of the page."""
+    """Draw the three maps of the page."""
     frame = compute_map(MapSpec(CASE, Plane.X_PX, ENERGY, (SIDE, SIDE), Window(-0.65, 0.65, -0.65, 0.65), t_max=1e4))
     return draw_map_figure(frame, ("basins", "times", "crossings"), PAPER, replace(STYLE, titles=True))
 
 
 def blob() -> Figure:
-    """A disc of starts on a boundary of the basins, at three times."""
+    """Draw a disc of starts on a boundary of the basins, at three times."""
     times, count, radius = (0.0, 10.0, 20.0), 2000, 0.04
     figure, panels = new_panels(len(times), 8.5)
     angle, distance = np.random.default_rng(1).random((2, count)) * [[2.0 * np.pi], [1.0]]
@@ -72,7 +72,7 @@ def blob() -> Figure:
 
 
 def tubes() -> Figure:
-    """The sections of the tubes around the Lyapunov orbits, and the basins that they bound."""
+    """Draw the sections of the tubes around the Lyapunov orbits, and the basins that they bound."""
     figure, panels = new_panels(3, 9.0)
     window = MapSpec(CASE, SECTION, ENERGY).find_window()
     manifolds = find_stable_manifolds(CASE, ENERGY, images=2)
@@ -86,7 +86,7 @@ def tubes() -> Figure:
 
 
 def energies() -> Figure:
-    """The basins at three energies."""
+    """Draw the basins at three energies."""
     figure, panels = new_panels(3, 9.5)
     for axes, energy in zip(panels, (0.13, 0.19, 0.4), strict=True):
         frame = compute_map(MapSpec(CASE, Plane.X_PX, energy, (SIDE, SIDE), t_max=1e4))
@@ -97,7 +97,7 @@ def energies() -> Figure:
 
 
 def exits() -> Figure:
-    """Three orbits that start close together, at an exit."""
+    """Draw three orbits that start close together, at an exit."""
     figure, (left, right) = new_panels(2, 11.5)
     orbits = _orbits_at_the_exit()
     for axes, window in ((left, find_well_window(CASE, ENERGY)), (right, Window(0.2, 0.8, 0.45, 1.05))):
@@ -111,7 +111,7 @@ def exits() -> Figure:
 
 
 def _orbits_at_the_exit() -> list[Orbit]:
-    """One orbit inside the tube of exit 1, one on it to rounding, and one outside, which start side by side on y = 0."""
+    """Return three orbits that start side by side on y = 0: inside the tube of exit 1, on the tube to rounding, and outside."""
 
     def start(x: float) -> np.ndarray:
         return start_states(CASE, Plane.X_PX, ENERGY, np.array([x]), np.array([0.3]))
@@ -120,6 +120,7 @@ def _orbits_at_the_exit() -> list[Orbit]:
         outcome = classify_orbits(CASE, ENERGY, start(x), 100.0)
         return bool(outcome.fate[0] == 1 and outcome.crossings[0] == 0)
 
+    # Bisect x to the last digit.
     inside, outside = 0.0, 0.5
     for _ in range(60):
         middle = 0.5 * (inside + outside)

@@ -1,4 +1,4 @@
-"""Drawings of systems in rotating frames, and with bodies, from the maps that are compared with papers."""
+"""Draw systems in rotating frames, and with bodies, from the maps that are compared with papers."""
 
 from __future__ import annotations
 
@@ -16,28 +16,28 @@ from plots.printed.figure_axes import add_figure_legend, legend_handles, set_tit
 from plots.printed.map_figure import draw_picture
 from reproduction.rotating.paper_maps import PAPER_MAPS, PaperMap
 
-# Pixels of a side: the maps are fractal, and files grow with them.
+# Number of pixels along a side. Fractal maps compress badly, so files grow with it.
 _SIDE = 120
 
 
 def earth_moon() -> Figure:
-    """Basins around the Moon with no, one and two open necks."""
+    """Draw basins around the Moon with no, one and two open necks."""
     closed, _, one_open, _, both_open = PAPER_MAPS["Earth–Moon system"]
     return _draw((closed, one_open, both_open), {"exit 1": "L2", "exit 2": "L1"})
 
 
 def copenhagen() -> Figure:
-    """Basins of the Copenhagen problem with small and large bodies."""
+    """Draw basins of the Copenhagen problem with small and large bodies."""
     return _draw(PAPER_MAPS["Copenhagen problem"][1:])
 
 
 def star_cluster() -> Figure:
-    """Basins of a star cluster at three energies."""
+    """Draw basins of a star cluster at three energies."""
     return _draw(PAPER_MAPS["Star cluster"])
 
 
 def four_hills() -> Figure:
-    """Directions in which orbits leave four hills, at energies below and above their tops."""
+    """Draw directions in which orbits leave four hills, at energies below and above their tops."""
     first, _, second, third = PAPER_MAPS["Four hills"]
     return _draw((first, second, third), {"collision with the ": "to the "})
 

@@ -1,4 +1,4 @@
-"""Screenshots of the page, docs/screenshots/<name>-<width>-<theme>.webp, and the animation of the README, docs/explorer.webp."""
+"""Take screenshots of the page, docs/screenshots/<name>-<width>-<theme>.webp, and record the animation docs/explorer.webp."""
 
 from __future__ import annotations
 
@@ -21,13 +21,14 @@ TIMEOUT_MS = 120_000.0
 ORBITS = "?case=III&h=0.35&t_max=10000&orbits=0.1,0.2;-0.3,0.02"
 
 PLAYED = "?case=III&plane=x_y&h=0.28&t_max=1000"
-"""Case III just above its escape energy."""
+"""Link to case III just above its escape energy."""
+# Number, duration and width of the frames of the animation.
 FRAMES, FRAME_MS, PLAYED_WIDTH = 30, 250, 900
 
 
 @dataclass(frozen=True)
 class Screenshot:
-    """A picture of the page: its link, width in pixels, theme, what is done first, and whether it shows more than the window."""
+    """A picture of the page after `act`, in a window of some width in pixels. With `whole`, it shows more than the window."""
 
     name: str
     width: int
@@ -76,7 +77,7 @@ SCREENSHOTS = (
 
 
 def record(browser: Browser, address: str) -> None:
-    """Record the energy as it is played upward."""
+    """Record the page while the energy is played upward."""
     explorer = ExplorerPage(browser.new_context(viewport={"width": 1600, "height": 800}).new_page(), address + PLAYED)
     explorer.open()
     explorer.press("▶ Play")
@@ -94,7 +95,7 @@ PICTURES = {f"screenshots/{one.name}-{one.width}-{one.theme}": one.take for one 
 
 
 def make(names: Sequence[str]) -> None:
-    """Serve the page and take these."""
+    """Serve the page, and take the pictures with these names."""
     if not names:
         return
     with tempfile.TemporaryDirectory() as folder, served_app(Path(folder) / "log") as address, sync_playwright() as playwright:

@@ -18,7 +18,7 @@ from plots.pictures.palette import Entry, Palette
 
 # Number of classes of equal width. Their codes and the codes of other pixels fit into uint8.
 _CLASSES = 240
-# Share of the pixels below the first class, and share above the last class.
+# Share of the values below the scale, and equal share above the scale. They are drawn in the colours of its ends.
 _LEFT_OUT = 0.01
 
 DURATION = Setting(
@@ -83,7 +83,7 @@ def _codes(result: DescriptorMap, frame: EscapeMap | None) -> np.ndarray:
     fate = np.full(result.descriptor.shape, Fate.NOT_COMPUTED) if frame is None else frame.fate
     fate_without_value = np.where((fate == Fate.FORBIDDEN) | (fate == Fate.OUTSIDE), fate, Fate.NOT_COMPUTED)
     classes = np.minimum((share * _CLASSES).astype(int), _CLASSES - 1)
-    # Pixels with a value get the codes of classes, as bounded pixels do.
+    # `pixel_codes` keeps the classes of bounded pixels, so all pixels with a value are passed as bounded.
     return pixel_codes(np.where(is_known, Fate.BOUNDED, fate_without_value), classes, bounded_too=True)
 
 

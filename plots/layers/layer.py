@@ -52,25 +52,26 @@ class Code:
 
     def entry(self, palette: Palette) -> Entry:
         """Return the entry of a legend."""
+        # The remainder is 0 for a code with one colour, which all palettes share.
         index = list(PALETTES.values()).index(palette)
         return Entry(self.label, self.colours[index % len(self.colours)])
 
 
 def occurring_entries(codes: Sequence[Code], values: np.ndarray, palette: Palette) -> list[Entry]:
-    """Return the entries of the codes among values of any shape."""
+    """Return the legend entries of the codes that occur among `values`, an array of any shape."""
     return [code.entry(palette) for code in codes if np.any(values == code.code)]
 
 
 @dataclass(frozen=True)
 class Setting:
-    """A choice of how a layer is computed or drawn.
+    """A setting of how a layer is computed or drawn.
 
     Attributes
     ----------
     name
         Name in links and on the command line.
     title
-        Label of the choice on the page, for screen readers.
+        Label of the setting on the page, for screen readers.
     word
         Text before the first choice.
     choices
@@ -102,7 +103,7 @@ class Count:
     metavar
         Word in the help for the counted things.
     most
-        Largest number.
+        Largest legal number.
     """
 
     metavar: str
@@ -116,15 +117,15 @@ class Pixels:
     Attributes
     ----------
     column
-        Name of the column of codes.
+        Name of the column of codes in the data source of the pictures.
     codes
-        Returns the uint8 codes, of shape (rows, columns), of a result on its map, or without the map.
+        Returns the uint8 codes of a result, of shape (rows, columns). The map is None when the result is drawn alone.
     colours
         Colours of the codes when the result is drawn alone.
     entries
         Legend when the result is drawn alone.
     sentences
-        Descriptions of the codes in the hover text; empty for codes without one.
+        Descriptions of the codes in the hover text; empty for codes without a description.
     own_sentences
         Returns descriptions of the codes for a result; None if descriptions do not depend on the result.
     values
@@ -132,7 +133,7 @@ class Pixels:
     value_name
         Name of the values in the hover text.
     first_codes
-        Returns codes, of shape (rows, columns), from images of `EscapeMap.thinned` while there is no result; None without codes.
+        Returns the codes until there is a result, from the images of `EscapeMap.thinned`; None if there are none until then.
     """
 
     column: str
@@ -147,7 +148,7 @@ class Pixels:
 
     @property
     def value_column(self) -> str:
-        """Name of the column of numbers."""
+        """Name of the column of values."""
         return f"{self.column}_value"
 
     @property
@@ -163,7 +164,7 @@ class Pixels:
         return (self.column, *numbers, *words)
 
     def columns(self, result: Any, frame: EscapeMap | None) -> dict[str, list[Any]]:
-        """Return the columns of a result on its map, or without the map."""
+        """Return the columns of a result. `frame` is the map of the result, or None as in `codes`."""
         numbers: dict[str, list[Any]] = {} if self.values is None else {self.value_column: [self.values(result)]}
         words = {} if self.own_sentences is None else {self.word_column: [list(self.own_sentences(result))]}
         return {self.column: [self.codes(result, frame)], **numbers, **words}
@@ -180,7 +181,7 @@ class Stroke:
     lines
         Points of each line in the plane, of shape (n, 2).
     width, halo_width
-        Widths of the line and of the light line below it, in pixels; 0 for no line below.
+        Widths of each line and of the light line behind it, in pixels. A halo width of 0 means no light line.
     alpha
         Opacity of the line, 0 to 1.
     """
@@ -231,14 +232,14 @@ class Layer:
     result
         Class of the result. Its method ``describe()`` returns a sentence, even for an incomplete result.
     job
-        Returns the job that computes the result of a map. The number of `count` is the setting with the layer's name.
-        Raises ValueError if a setting is out of range.
+        Returns the job that computes the result of a map, or raises ValueError if a setting is out of range. The settings contain
+        the number of `count` under the name of the layer.
     refusal
         Reason why the layer cannot be computed for a map; empty if it can.
     count
         The number that switches the layer on; None if the option is a flag.
     settings
-        Choices of how the layer is computed or drawn.
+        Settings of how the layer is computed or drawn.
     select
         Returns the part of a result that is drawn; by default the whole result.
     spec_of
@@ -256,7 +257,7 @@ class Layer:
     is_empty
         Whether the picture would show nothing for a map.
     is_offered
-        Whether the page offers the layer for a map.
+        Whether the page suggests the layer below a map.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""The pixels of the pictures of a map."""
+"""Make the pixels of the pictures of a map."""
 
 from __future__ import annotations
 
@@ -19,7 +19,10 @@ LAYER_COLUMNS = tuple(name for layer in LAYERS.values() if layer.pixels is not N
 
 
 def layer_columns(frame: EscapeMap, names: Collection[str]) -> dict[str, list[Any]]:
-    """Return the columns of all layers. Layers that are not named, or not determined by the map, have a single pixel."""
+    """Return the columns of all layers before their results.
+
+    A layer in `names` that has `Pixels.first_codes` has these codes. The columns of all other layers are a single pixel.
+    """
     images, _ = frame.thinned()
     pixels = (layer.pixels for layer in LAYERS.values() if layer.name in names)
     known_columns = {

@@ -29,7 +29,7 @@ def _count_ends() -> int:
 
 
 def passage_colour(palette: Palette, origin: int, fate: int) -> str:
-    """Return the colour for an origin and a fate, numbered from 1 (0: none). The fate sets the hue, the origin sets the tone."""
+    """Return the colour of an origin and a fate, numbered from 1; 0 means never entered, or bounded. The fate sets the hue."""
     colour = palette.ends[fate - 1] if fate else palette.bounded
     if origin == 0:
         return mixed(colour, palette.bounded, _BOUNDED_SHARE)
@@ -59,7 +59,7 @@ def _refusal(spec: MapSpec) -> str:
 
 def _codes(origins: OriginFateMap, frame: EscapeMap | None) -> np.ndarray:
     origin, fate = (end_numbers(codes, origins.spec.outcomes) for codes in (origins.origin, origins.fate))
-    # If the origin or the fate is neither an end nor bounded, the pixel has the colour of this outcome.
+    # Fates that are neither ends nor bounded are negative. If the origin or the fate is one of them, it colours the pixel.
     outcome = np.minimum(origins.origin, origins.fate)
     return pixel_codes(outcome, origin * _count_ends() + fate, bounded_too=True)
 

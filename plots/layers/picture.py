@@ -43,7 +43,7 @@ class ColourTable:
     Attributes
     ----------
     names
-        Names of the ends, and of the origins.
+        Names of the ends, which are also those of the origins.
     tones
         For each end, the colours by origin.
     """
@@ -61,11 +61,11 @@ class Legend:
     entries
         Entries of the classes of pixels.
     others
-        Entries of pixels without a class. They are omitted where there is little room, unless the labels are short.
+        Entries of pixels without a class. They are omitted where there is little room, unless `is_short`.
     is_short
         Whether the labels have short forms.
     scale
-        Scale of the numbers that are drawn over the classes.
+        Scale of the numbers that the picture shows; None if it shows none.
     table
         Table by hue and tone, which replaces the entries where there is little room.
     sentence
@@ -139,7 +139,7 @@ class ShownMap:
         return cls(frame.spec, palette, times or fitted_scale(frame), fates, results=results)
 
     def outcome_entries(self) -> dict[Fate, Entry]:
-        """Return the entries of the map's fates that are not ends."""
+        """Return the entries of the map's fates that are not ends, bounded orbits first."""
         return {fate: entry for fate, entry in reversed(self.palette.outcomes.items()) if fate in self.fates}
 
     def time_scale(self) -> ColourScale:

@@ -37,7 +37,7 @@ CODES = (
 
 
 def entries(palette: Palette) -> list[Entry]:
-    """Return the entries of the codes."""
+    """Return the legend entries of all codes, in order."""
     return [code.entry(palette) for code in CODES]
 
 

@@ -26,7 +26,7 @@ class Offset(NamedTuple):
     exponent: int
 
     def describe(self, name: str) -> str:
-        """Return the text of the labels: an expression in the variable of the axis."""
+        """Return the name of the axis, an expression such as (x − 0.5) / 1e-6."""
         distance = f"({name} {'−' if self.base > 0 else '+'} {abs(self.base):f})" if self.base else name
         return f"{distance} / 1e{self.exponent}"
 
@@ -58,7 +58,7 @@ def label_axis(name: str, low: float, high: float) -> Axis:
 
 
 def _step(low: float, high: float) -> Decimal:
-    """Return the distance between neighbouring ticks."""
+    """Return the distance between neighbouring ticks, exact so that labels have no rounding errors."""
     largest_step = (high - low) / _FEWEST_TICKS
     exponent = math.floor(math.log10(largest_step))
     mantissa = next((m for m in (5, 2) if m * 10.0**exponent <= largest_step), 1)

@@ -24,7 +24,7 @@ SHARES = MEASURES["shares"]
 """The measure of a sweep with a curve for each outcome."""
 
 CURVE_PANELS = tuple(measure for measure in MEASURES.values() if measure.labels)
-"""The other measures of a sweep with a chart, in order."""
+"""The other measures of a sweep that have a chart, in order."""
 
 # Colours of the numbers of a measure, in order.
 _NUMBER_COLOURS = MEASURED, LAW_COLOURS["exponential"]
@@ -38,7 +38,7 @@ Limits = tuple[float, float]
 
 
 class Shape(Enum):
-    """How a series is drawn: dashed lines over other lines; the points of steps have the same y until the next x."""
+    """How a series is drawn. Dashed lines are in front of other lines. Steps keep the y of a point until the next x."""
 
     LINE = auto()
     DASHED = auto()
@@ -63,7 +63,7 @@ class Series:
     shape
         How the points are drawn.
     bars
-        Ends of the error bars in y, or, for `Shape.BARS`, of the bars in x; None without bars.
+        Lower and upper ends of the error bars; for `Shape.BARS`, left and right edges of the bars; None without bars.
     """
 
     label: str
@@ -106,7 +106,7 @@ class Frame:
 
 @dataclass(frozen=True, eq=False)
 class Chart:
-    """Series in a frame. `limits` are those of x and y; None for limits that fit the points."""
+    """Series in a frame. `limits` are those of the x axis and the y axis; None fits an axis to the points."""
 
     frame: Frame
     series: Sequence[Series]
@@ -165,7 +165,7 @@ def _shares_chart(curves: Sweep, palette: Palette) -> Chart:
 
 
 def _is_dashed(code: int) -> bool:
-    """Whether the curve of a fate is dashed; code 0 stands for bounded starts."""
+    """Whether the curve of a fate is dashed: that of every second outcome. Code 0 stands for bounded starts."""
     return code > 0 and code % 2 == 0
 
 
@@ -195,6 +195,7 @@ def survival_chart(laws: DecayLaws, t_end: float | None = None) -> Chart:
     # A logarithmic axis cannot show 0.
     is_positive = (laws.survival > 0.0) & (laws.times > 0.0)
     times, shares = laws.times[is_positive], laws.survival[is_positive]
+    # The chart begins at t = 1, or at a tenth of the last escape time if that is earlier. Without escapes, it also begins at 1.
     latest = float(times[-1]) if times.size else 10.0
     begin = min(1.0, 0.1 * latest)
     steps = np.vstack([[begin, 1.0], np.column_stack([times, shares])])

@@ -13,10 +13,10 @@ ENVELOPE_ALPHA = 0.3
 # Number of intervals of a history, of equal length on the axis of time: about one for each pixel of a plot.
 _BINS = 300
 
-# Time up to which values on a linear axis are drawn against linear time, which shows their oscillations.
+# Time (dimensionless) up to which values on a linear axis are drawn against linear time, which shows their oscillations.
 _SHORT = 1000.0
 
-# Largest number of minima and maxima in an interval whose curve is drawn. Other intervals are drawn as an envelope.
+# Largest number of minima and maxima in an interval whose curve is drawn. An interval with more of them is fast.
 _MOST_TURNS = 2
 
 # Largest number of samples of the curve that are drawn in an interval.
@@ -73,6 +73,7 @@ def reduce_history(t: np.ndarray, values: np.ndarray, *, logarithmic: bool) -> H
     if t.size <= _BINS:
         return History((t, values), (t[:0], values[:0], values[:0]))
     space = np.geomspace if has_log_time(float(t[-1]), logarithmic=logarithmic) else np.linspace
+    # Indices of the first samples of the intervals. Intervals without samples are dropped.
     edges = np.unique(np.searchsorted(t, space(t[0], t[-1], _BINS + 1)[:-1]))
     fast_intervals = np.flatnonzero(np.add.reduceat(_turns(values), edges) > _MOST_TURNS)
     # The envelope replaces the curve in the first fast interval and in all later intervals.
@@ -99,7 +100,7 @@ def _visible_samples(edges: np.ndarray, end: int) -> np.ndarray:
 
 
 def _envelope(t: np.ndarray, values: np.ndarray, edges: np.ndarray, *, logarithmic: bool) -> tuple[np.ndarray, ...]:
-    """Return time, minimum, maximum and mean in each interval. The first and last time are the ends of the history."""
+    """Return time, minimum, maximum and mean in each interval. The first and last times are those of the end samples."""
     if not edges.size:
         return (t[:0],) * 4
     ends = np.append(edges[1:], t.size)

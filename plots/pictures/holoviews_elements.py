@@ -1,4 +1,4 @@
-"""HoloViews elements of charts."""
+"""Make HoloViews elements of charts."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from plots.pictures.charts import Chart, Series, Shape
 
 
 def chart_elements(chart: Chart) -> list[hv.Element]:
-    """Return the HoloViews elements of the series of a chart."""
+    """Return the HoloViews elements of the series of a chart and of their error bars."""
     x, y = chart.frame.labels
     elements: list[hv.Element] = []
     for series in chart.series:
@@ -27,7 +27,7 @@ def chart_elements(chart: Chart) -> list[hv.Element]:
 
 
 def axis_options(chart: Chart) -> dict[str, Any]:
-    """Return the options of the elements of a chart for its axes."""
+    """Return the options that give elements the limits and logarithmic axes of a chart."""
     limits = {f"{axis}lim": ends for axis, ends in zip("xy", chart.limits, strict=True) if ends is not None}
     return {**limits, **{f"log{axis}": True for axis in chart.frame.logarithmic}}
 
@@ -35,4 +35,5 @@ def axis_options(chart: Chart) -> dict[str, Any]:
 def _histogram(series: Series, x: str, y: str) -> hv.Histogram:
     assert series.bars is not None
     low, high = series.bars
+    # HoloViews takes n + 1 edges of n adjacent bars.
     return hv.Histogram((np.append(low, high[-1:]), series.y), kdims=x, vdims=y)

@@ -13,7 +13,7 @@ from plots.pictures.palette import CROSSING_CLASSES, OUTCOMES, PAPER, end_places
 NO_LAYER = [np.zeros((1, 1), np.uint8)]
 """Column of a layer that is off."""
 
-# Images of a map without layers.
+# Columns of images that do not belong to a layer.
 _IMAGES = ("fate", "crossing_class", "crossings", "escape_time")
 
 # Pixel codes by fate, of fates that are not ends.
@@ -30,7 +30,7 @@ _LEAST_CROSSINGS = np.array([least for least, _ in CROSSING_CLASSES])
 
 
 def map_columns(frame: EscapeMap) -> dict[str, list[Any]]:
-    """Return one image per column, in the smallest integer types, and the position of the images in the plane.
+    """Return the columns of a map: images in the smallest integer types, and their position in the plane.
 
     Coarse frames have coarse images. The column of differences is one pixel, because it needs another map (`difference_column`).
     """
@@ -124,7 +124,7 @@ def difference_column(columns: dict[str, list[Any]], other: dict[str, list[Any]]
 
 
 def _difference_codes(codes: np.ndarray, other_codes: np.ndarray) -> np.ndarray:
-    """Return codes of `DIFFERENCES` for pixel codes of fates in two views. Pixels without an orbit in both keep their codes."""
+    """Return codes of `DIFFERENCES` for pixel codes of fates in two views. Pixels without an orbit in either view keep theirs."""
     lacks_orbit = np.isin(codes, _WITHOUT_ORBIT)
     lacks_other_orbit = np.isin(other_codes, _WITHOUT_ORBIT)
     # Indices of `DIFFERENCES`.
@@ -139,7 +139,7 @@ def end_words(outcomes: Sequence[Outcome]) -> list[str]:
 
 
 def at_places(outcomes: Sequence[Outcome], words: Sequence[str]) -> list[str]:
-    """Return words for each outcome, at its place among `Palette.ends`."""
+    """Return a list with the word of each outcome at its place among `Palette.ends`, and empty words elsewhere."""
     words_by_place = [""] * len(PAPER.ends)
     for place, word in zip(end_places(outcomes), words, strict=True):
         words_by_place[place] = word
@@ -172,7 +172,7 @@ def end_numbers(fate: np.ndarray, outcomes: Sequence[Outcome]) -> np.ndarray:
 
 
 def pixel_codes(fate: np.ndarray, classes: np.ndarray, *, bounded_too: bool = False) -> np.ndarray:
-    """Return pixel codes of fates that are not ends, and of classes elsewhere. `bounded_too` gives bounded pixels classes."""
+    """Return codes of fates that are not ends, and of classes elsewhere. With `bounded_too`, bounded pixels also have classes."""
     codes = (FIRST_CLASS + classes).astype(np.min_scalar_type(FIRST_CLASS + int(classes.max(initial=0))))
     for outcome, code in _OUTCOME_CODES.items():
         if not (bounded_too and outcome is Fate.BOUNDED):

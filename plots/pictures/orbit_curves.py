@@ -71,7 +71,7 @@ class OrbitCurves:
 
 
 def compute_orbit_curves(potential: Potential, orbit: Orbit, *, with_visits: bool = True) -> OrbitCurves:
-    """Compute the curves of an orbit. This is slow: call it once per orbit, and outside the session's lock.
+    """Compute the curves of an orbit. This is slow: call it once per orbit, and outside the lock of a session of the page.
 
     With `with_visits`, a long path gets a density image, which needs the extra ``page``.
     """
@@ -139,6 +139,7 @@ def _visits(orbit: Orbit, window: Window, part: slice) -> np.ndarray | None:
     counts = canvas.line(pd.DataFrame({"x": x, "y": y}), "x", "y")
     shaded = transfer_functions.shade(counts, cmap="#000000", how="eq_hist", min_alpha=_LEAST_OPACITY)
     image = transfer_functions.dynspread(shaded, max_px=1).to_numpy()
+    # The highest byte of a pixel is its opacity.
     return np.ascontiguousarray((image >> 24).astype(np.uint8))
 
 
@@ -151,7 +152,7 @@ class Trail:
 
 
 def find_trail(orbit: Orbit, t: float) -> Trail:
-    """Return the trail of an orbit at a time. A time outside the orbit is replaced by its nearest end."""
+    """Return the trail of an orbit at a time. A time outside the orbit is replaced by the nearest time of the orbit."""
     last = max(int(np.searchsorted(orbit.t, t, side="right")) - 1, 0)
     first = int(np.searchsorted(orbit.t, orbit.t[last] - TRAIL_DURATION))
     trail = slice(first, last + 1)

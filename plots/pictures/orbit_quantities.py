@@ -31,7 +31,7 @@ class OrbitQuantity:
     Attributes
     ----------
     name
-        Name in files, and name of the field of `Orbit.plot`.
+        Name in files, and value of the option `show` of `Orbit.plot`.
     title
         Title of the plot.
     label
@@ -45,7 +45,7 @@ class OrbitQuantity:
     threshold
         Value to be marked; None if there is none.
     ticks
-        Labels of the axis; empty if the plot chooses them.
+        Positions of the labels of the axis; empty if the plot chooses them.
     """
 
     name: str

@@ -75,7 +75,7 @@ DIFFERENCES = (
 
 
 def end_places(outcomes: Sequence[Outcome]) -> list[int]:
-    """Return the place of each outcome in `Palette.ends`, equal in all systems. Surplus outcomes of a kind share a place."""
+    """Return the place of each outcome in `Palette.ends`. It depends on kind and number only; surplus outcomes share a place."""
     counts = {key: len(PAPER.of_kinds[key]) for key in KINDS}
     # `accumulate` also returns the sum of all counts, which `zip` drops.
     first_places = dict(zip(counts, accumulate(counts.values(), initial=0), strict=False))
@@ -189,7 +189,7 @@ def rgba(colours: Sequence[str]) -> np.ndarray:
 
 
 def mixed(colour: str, other: str, share: float) -> str:
-    """Interpolate linearly between two colours ``#rrggbb``; `share` is that of the other colour."""
+    """Interpolate linearly between two colours ``#rrggbb``. `share` is that of the second colour, `other`."""
     pairs = zip(bytes.fromhex(colour[1:]), bytes.fromhex(other[1:]), strict=True)
     return "#" + "".join(f"{round(value + share * (other_value - value)):02x}" for value, other_value in pairs)
 
@@ -231,7 +231,7 @@ MOST_CHANNELS = len(PAPER.channels)
 
 @dataclass(frozen=True)
 class LineColours:
-    """Colours of lines and text on a light or a dark page."""
+    """Colours of lines and text on a light or a dark page. A halo is behind a line."""
 
     limiting_curve: str
     equipotential: str

@@ -20,8 +20,9 @@ from plots.printed.figure_style import SCREEN, FigureStyle
 _HEIGHT = 1.2
 # Height of the figure of curves with one column, in units of the width.
 _ONE_COLUMN_HEIGHT = 4.5
-# Line styles and markers of the shapes.
+# Line styles of shapes without solid lines.
 _LINES = {Shape.DASHED: (0, (4.0, 3.0)), Shape.POINTS: ""}
+# Markers of shapes with points.
 _MARKERS = {Shape.POINTS: "o", Shape.JOINED_POINTS: "o"}
 
 
@@ -62,7 +63,7 @@ def _draw_figure(charts: Sequence[Chart], figure: Figure, style: FigureStyle) ->
 
 
 def draw_chart(axes: Axes, chart: Chart, style: FigureStyle = SCREEN, corner: Corner | None = "best") -> None:
-    """Draw a chart with its axes, and with a legend in a corner if it has more than one entry; None omits the legend."""
+    """Draw a chart with its axes. A legend with more than one entry is drawn in a corner; `corner` None omits the legend."""
     frame = chart.frame
     for series in chart.series:
         _draw_series(axes, series)

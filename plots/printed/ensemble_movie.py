@@ -37,7 +37,7 @@ _HEIGHT = 0.55
 _PARTICLE_AREA = 3.0
 # Lower end of the axis of shares, in units of the share of one orbit.
 _LEAST_SHARE = 0.5
-# Dashes of the law of mixed motion.
+# Dashes of the exponential law for motion that mixes.
 _LAW_DASHES = (0, (4, 3))
 
 
@@ -130,7 +130,10 @@ def _draw_stage(potential: Potential, orbits: SampledOrbits, palette: Palette, s
 
 
 def _draw_chart(axes: Axes, potential: Potential, orbits: SampledOrbits, style: FigureStyle) -> Line2D:
-    """Draw the chart of the share inside, with the law of mixed motion. Return the line that `_show_frame` extends."""
+    """Draw the chart of the share inside, and its exponential law, at the rate flux over volume, for motion that mixes.
+
+    Return the line that `_show_frame` extends.
+    """
     last_time = float(orbits.t[0, -1])
     least_share = _LEAST_SHARE / len(orbits.fate)
     times = np.linspace(0.0, last_time, 200)

@@ -37,7 +37,7 @@ MOST_PIXELS = 20_000_000
 Drawing needs up to 50 bytes per pixel.
 """
 
-# Fonts of texts, which Matplotlib contains. STIX has Greek letters, fractions and mathematical symbols. DejaVu Serif has
+# Fonts of texts. Matplotlib contains the first two. STIX has Greek letters, fractions and mathematical symbols. DejaVu Serif has
 # superscripts that STIX lacks.
 _FONT_FAMILIES = ["STIXGeneral", "DejaVu Serif", "serif"]
 # Fonts of formulas.
@@ -89,7 +89,7 @@ def write_below(figure: Figure, lines: Iterable[str], style: FigureStyle, size: 
 
 def fit_height(figure: Figure) -> None:
     """Fit the height of a figure to its panels and the lines below them. Their sizes follow from the width of the figure."""
-    # In a much higher figure, rows of panels are far apart, so the first height can be too large.
+    # In a figure that is much too high, rows of panels are far apart, so the first fitted height can still be too large.
     for _ in range(2):
         figure.draw_without_rendering()
         panels = Bbox.union([box for axes in figure.axes if (box := axes.get_tightbbox()) is not None])
@@ -280,7 +280,7 @@ def save_figure(figure: Figure, format: FigureFormat, facts: Mapping[str, str]) 
     file = BytesIO()
     with rc_context(_FILE_OPTIONS):
         figure.savefig(file, format=format, dpi=figure.dpi, metadata=_metadata(format, facts))
-    # Freeze the layout, so that further files of this figure have the same one.
+    # Freeze the layout, so that further files of this figure have the same layout.
     figure.set_layout_engine("none")
     return file.getvalue()
 

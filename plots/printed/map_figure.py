@@ -70,7 +70,7 @@ def draw_map_figure(
 ) -> Figure:
     """Draw pictures of a map in rows, each with title, axes, curves and legend. The provenance is below all pictures.
 
-    A legend has the entries that no legend before has.
+    A legend omits the entries of earlier legends.
 
     Parameters
     ----------
@@ -147,13 +147,13 @@ def draw_picture(
 def _explain_picture(axes: Axes, legend: Legend, explained: set[str], width: float, style: FigureStyle) -> None:
     """Draw the colour bar and the legend below a map, in a column that is `width` inches wide.
 
-    The legend has the entries that are not in `explained`, which gets their labels.
+    The legend omits entries whose labels are in `explained`. The labels of its entries are added to `explained`, in place.
     """
     depth = _BELOW_AXIS * style.font_size
     if legend.scale is not None:
         bar_axes = axes.inset_axes((0.0, -_BAR_HEIGHT, 1.0, _BAR_HEIGHT), transform=transform_below(axes, depth))
         length = width * POINTS_PER_INCH - _BESIDE_MAP * style.font_size
-        # The last label ends at the end of the bar. A letter is about half of the label before it.
+        # The last label ends at the end of the bar, so its whole width counts, and half the width of the label before: a letter.
         last_label = _tick_labels(legend.scale, [legend.scale.high])[0]
         between_ticks = label_width(f"{last_label}0") * style.small_size / length
         add_colour_bar(figure_of(axes), legend.scale, style, between_ticks, cax=bar_axes, orientation="horizontal")

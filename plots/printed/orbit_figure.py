@@ -1,4 +1,4 @@
-"""Draw an orbit with Matplotlib: its path between the exits, and SALI and R² against time."""
+"""Draw orbits with Matplotlib: their paths between the exits, and SALI and R² against time."""
 
 from __future__ import annotations
 
@@ -81,6 +81,7 @@ def draw_well_figure(
     draw_well(axes, potential, energy, window, palette)
     _draw_paths(axes, orbits, window, palette)
     show_window(axes, window, "x", "y", style, equal=True)
+    # Matplotlib gives curves without a label names such as "_child0".
     curves = [curve for curve in axes.collections if not str(curve.get_label()).startswith("_")]
     add_figure_legend(figure, curves, style, columns=2)
     return figure
@@ -115,7 +116,7 @@ def _draw_paths(axes: Axes, orbits: Sequence[OrbitCurves], window: Window, palet
 def draw_quantity(
     axes: Axes, quantity: OrbitQuantity, orbits: Sequence[OrbitCurves], palette: Palette, style: FigureStyle = SCREEN
 ) -> None:
-    """Draw a quantity of orbits against time, or against its logarithm as `has_log_time` says."""
+    """Draw a quantity of orbits against time. `has_log_time` decides whether the axis of time is logarithmic."""
     histories = [curves.histories[quantity.name] for curves in orbits]
     for history, colour, number in zip(histories, cycle(palette.orbits), count(1), strict=False):
         _draw_history(axes, history, colour, f"orbit {number}")

@@ -1,4 +1,4 @@
-"""Draw the equipotentials of a potential with Matplotlib, in red at the escape energy."""
+"""Draw the equipotentials of a potential with Matplotlib, in red at the `critical_energies`."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from engine.systems.review.potential_review import critical_energies
 from plots.pictures.palette import LIGHT, Palette
 from plots.printed.window_axes import draw_curve, draw_limits
 
-# Levels of equipotentials above the bottom of the well, in units of the depth of the well: dense inside the well, sparse outside.
+# Levels of equipotentials relative to the bottom of the well, in units of its depth: dense inside the well, sparse outside.
 _LEVELS = (-6.0, -4.0, -2.0, -1.0, 0.0, 0.15, 0.3, 0.5, 0.7, 0.85, 1.25, 1.6, 2.2, 3.0, 4.5, 6.5, 9.0)
 # Levels of equipotentials inside the well, in the same units.
 _INNER_LEVELS = (0.1, 0.3, 0.5, 0.7, 0.9)

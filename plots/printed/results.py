@@ -52,7 +52,7 @@ _NOTEBOOK_DPI = 72.0
 _BELOW_AXES = (0.5, -0.13)
 # CSS that puts the picture and the table of a result side by side.
 _SIDE_BY_SIDE = "display:flex;gap:1em;flex-wrap:wrap;align-items:flex-start"
-# Smallest value drawn on a logarithmic axis, which cannot show 0. Smaller values are drawn there.
+# Lowest position on a logarithmic axis, which cannot show 0. Smaller values are drawn at this position.
 _LOG_FLOOR = 1e-16
 # Largest number of points of a line with markers.
 _MOST_MARKERS = 60

@@ -34,7 +34,7 @@ _LINE_SCALE = 0.6
 _HALO_ORDER = 1.5
 # Distance outside the window at which curves are cut, as a share of its sides.
 _CLIP_MARGIN = 0.02
-# Distance from the right or upper edge within which the number of a start is on the inner side, as a share of the side.
+# Largest distance from the right or upper edge, as a share of a side, at which the number of a start is moved to the inner side.
 _LABEL_MARGIN = 0.06
 
 
@@ -120,7 +120,7 @@ def draw_curve(
 def mark_starts(
     axes: Axes, starts: Sequence[tuple[float, float]], palette: Palette, shown_window: Window, style: FigureStyle = SCREEN
 ) -> None:
-    """Mark starts (x, ordinate) with numbered crosses in the colours of their orbits. A start outside is not drawn."""
+    """Mark starts (x, ordinate) with numbered crosses in the colours of their orbits. Starts outside the window are skipped."""
     scale = style.font_size / SCREEN.font_size
     for number, start in enumerate(starts, 1):
         x, y = _to_shares(shown_window, np.array(start))

@@ -98,7 +98,7 @@ def python_lines(spec: MapSpec, system: System, starts: Sequence[Sequence[float]
     spec
         The map.
     system
-        Its potential.
+        System of the map's potential.
     starts
         (x, y, px, py) of each orbit, finite.
 

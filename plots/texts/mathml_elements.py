@@ -6,7 +6,7 @@ from math import isqrt
 
 from engine.expressions.text import short_fraction
 
-# Largest distance of a number, or of its square, from a short fraction in whose place the fraction is written.
+# Largest distance of a number, or of its square, from a short fraction by which it is written.
 _ROUNDING = 1e-10
 COORDINATE_DIGITS = 4
 """Significant digits of coordinates that are decimal numbers."""
@@ -16,11 +16,12 @@ COEFFICIENT_DIGITS = 12
 
 
 def number(value: float, shown: int = COORDINATE_DIGITS) -> str:
-    """Return a number as a fraction, the square root of a fraction, or a decimal number."""
+    """Return a number as a fraction, the square root of a fraction, or a decimal number with `shown` significant digits."""
     if value < 0.0:
         return row(op("−") + number(-value, shown))
     for power in (1, 2):
         exact = short_fraction(value**power, _ROUNDING)
+        # A small number that is not 0 is not written as 0.
         if exact is not None and (exact or not value):
             numerator, denominator = (_root(n) if power == 2 else digits(n) for n in exact.as_integer_ratio())
             return numerator if denominator == digits(1) else f"<mfrac>{numerator}{denominator}</mfrac>"
@@ -48,7 +49,7 @@ def op(sign: str) -> str:
 
 
 def digits(written: int | str) -> str:
-    """Return a number as text for screen readers."""
+    """Return an element with the text of a number."""
     return f"<mn>{written}</mn>"
 
 

@@ -79,14 +79,14 @@ class ShareFit:
 
 @dataclass(frozen=True, eq=False)
 class CaseFit:
-    """Computed shares of a case on (x, px), with both fitted curves.
+    """Computed shares of a case on (x, px), with the published and the new curve.
 
     Attributes
     ----------
     name
         Name of the share.
     h, shares
-        (m,) energies, and the share at each energy.
+        Energies, and the share at each energy, each of shape (m,).
     published
         The curve of the paper.
     fitted
@@ -116,11 +116,11 @@ def fit_escape_shares(h: np.ndarray, shares: np.ndarray) -> ShareFit:
     The intervals are not binomial. Counts of starts on a grid scatter less than random draws, and the data deviate from the curve
     systematically, because the form is only a convention and islands appear and vanish with h. Larger maps would not reduce this
     deviation. An interval states how much a parameter would change for other energies, drawn at random from the same range with
-    the same density. It uses the sandwich covariance of White (1980, Econometrica 48, 817), with residuals divided by one minus
-    their leverage (HC3; MacKinnon & White 1985, J. Econometrics 29, 305), and Student's t. In trials in which the form was true,
-    at least 92 % of the intervals contained the true parameters. In trials with another form and 25 random energies, 80 to 94 %
-    contained the parameters of the best curve through all energies, and with evenly spaced energies, which scatter much less,
-    all did. For another density of energies the best curve differs, and can lie outside the interval.
+    the same density. Intervals use the sandwich covariance of White (1980, Econometrica 48, 817), with residuals divided by one
+    minus their leverage (HC3; MacKinnon & White 1985, J. Econometrics 29, 305), and Student's t. In trials in which the form was
+    true, at least 92 % of the intervals contained the true parameters. In trials with another form and 25 random energies, 80 to
+    94 % contained the parameters of the best curve through all energies. With evenly spaced energies, where fits scatter much
+    less, all did. For another density of energies the best curve differs, and its parameters can lie outside the intervals.
 
     Parameters
     ----------
@@ -131,8 +131,8 @@ def fit_escape_shares(h: np.ndarray, shares: np.ndarray) -> ShareFit:
 
     Returns
     -------
-    The `ShareFit`. Its parameters are NaN if fewer than 3 shares are strictly between 0 and 1, because these would not determine
-    the slope.
+    The `ShareFit`. Its parameters are NaN if fewer than 3 shares are strictly between 0 and 1, because fewer do not determine the
+    slope.
     """
     if np.count_nonzero((shares > 0.0) & (shares < 1.0)) < _MIN_UNSATURATED:
         return _build_fit(HyperbolicTangent(np.nan, np.nan), np.full(2, np.nan), h, shares)
@@ -161,9 +161,10 @@ def measure_deviation(curve: Callable[[Any], Any], h: np.ndarray, shares: np.nda
 def _fit(
     curve: Callable[[np.ndarray], np.ndarray], guess: np.ndarray, degree: int, h: np.ndarray, shares: np.ndarray
 ) -> tuple[list[float], np.ndarray]:
-    """Fit `curve` of a polynomial in h to shares. Return the coefficients, lowest power first, and the intervals' half widths.
+    """Fit `curve`, a function of the values of a polynomial in h, to shares.
 
-    The fit begins with the polynomial closest to `guess`, of shape (m,).
+    The fit begins with the polynomial closest to `guess`, of shape (m,). Return the coefficients, lowest power first, and the
+    half widths of their intervals.
     """
     powers = np.vander(h, degree + 1, increasing=True)
     solution = optimize.least_squares(

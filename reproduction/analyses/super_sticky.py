@@ -20,8 +20,8 @@ from engine.results import RegularityMap
 class SuperStickySearch:
     """The chaotic bounded starts of a map, integrated beyond its t_max.
 
-    The starts are ordered row by row. Both of two mirror images in a symmetric map are listed, but only one is integrated: its
-    mirror image escapes at the same time through the opposite exit.
+    The starts are ordered row by row. In a symmetric map, both of two mirror images are listed, but only the first is integrated:
+    the second escapes at the same time through the mirrored exit.
 
     Attributes
     ----------
@@ -123,6 +123,7 @@ def find_super_sticky_orbits(
     is_integrated = np.isin(pixels, first_pixels)
     outcomes = classify_orbits(spec.potential, spec.common_energy, states[is_integrated], t_max, execution=execution)
     execution.raise_if_cancelled()
+    # Index of the integrated orbit of each start: its own, or that of its mirror image.
     outcome_index = np.searchsorted(first_pixels, np.minimum(pixels, mirror.partner[pixels]))
     fate = outcomes.fate[outcome_index]
     if mirror.symmetric:

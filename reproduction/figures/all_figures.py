@@ -27,9 +27,9 @@ class FigureEntry:
     Attributes
     ----------
     name
-        Name, which is the stem of the names of the files.
+        Name of the figure, and stem of the names of its files.
     caption
-        Caption.
+        What the figure shows, in a line.
     draw
         Draws the figure with maps of a cache. This may take minutes.
     """

@@ -25,7 +25,7 @@ from reproduction.notation import axis_label, plane_label
 from reproduction.paper_ranges import nine_energies, plane_energies
 
 TITLES = {"basins": "basins of escape", "times": "escape times", "crossings": "upward crossings of $y = 0$ before the escape"}
-"""Titles of the kinds of maps."""
+"""Titles by picture of `draw_nine_maps`."""
 
 # Number of panels in a row and in a column.
 _SIDE = 3
@@ -37,6 +37,7 @@ def draw_nine_maps(case: str, cache: MapCache, *, plane: Plane, picture: str) ->
     window = _common_window(frames)
     times = common_scale(frames)
     title = f"Case {case}, {plane_label(plane)} plane: {TITLES[picture]}"
+    # The colour bar of the escape times needs more width.
     figure = new_figure(replace(SCREEN, width=26.9 if picture == "times" else 24.4), 26.4, title, equal=True)
     panels = figure.subplots(_SIDE, _SIDE, sharex=True, sharey=True)
     for axes, frame in zip(panels.flat, frames, strict=True):

@@ -1,4 +1,7 @@
-"""Draw the statistics of the paper: shares against energy, escapes by number of crossings, and remaining starts against time."""
+"""Draw the statistics of the paper: shares against energy, escapes by number of crossings, and remaining starts against time.
+
+As in the paper, Ne of N0 starts escape, Nde without a crossing, and dN_n after n crossings, a share p_n of those still inside.
+"""
 
 from __future__ import annotations
 
@@ -85,7 +88,7 @@ def _draw_crossings(share_axes: Axes, probability_axes: Axes, statistics: Mappin
 
 
 def draw_percentages(case: str, cache: MapCache) -> Figure:
-    """Draw percentages of the interior starts on (x, y) and (x, px)."""
+    """Draw the percentages of bounded starts and of each exit against h, on (x, y) and (x, px)."""
     figure = new_figure(SCREEN, 11.7, f"Case {case}: percentages of bounded and escaping starts")
     panels = list(figure.subplots(1, 2, sharey=True))
     planes = (Plane.X_Y, Plane.X_PX)

@@ -30,7 +30,7 @@ from reproduction.paper_ranges import STICKY_CASE, STICKY_ENERGY
 from reproduction.sample_orbits import find_lyapunov_r2
 
 LONGEST_DRAWN = 4e6
-"""Latest escape time of a drawn orbit. Integration takes a second per 1e5 time units."""
+"""Latest escape time of a drawn orbit, dimensionless. Integration takes a second per 1e5 time units."""
 
 # Number of time intervals in each panel. The minimum and maximum of R² in each interval are drawn.
 _INTERVALS = 1000

@@ -55,7 +55,10 @@ class Comparison:
 
     @property
     def difference(self) -> float:
-        """Largest difference computed − stated (the last for `RISES_TO`); 0 if a stated bound holds, NaN without a value."""
+        """The largest difference computed − stated; 0 if a stated bound holds, NaN without a value.
+
+        For `RISES_TO`, it is the difference at the last energy.
+        """
         return _largest_difference(self.stated, self.computed)
 
     @property

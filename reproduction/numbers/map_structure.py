@@ -14,7 +14,10 @@ _NEIGHBOURHOOD = (3, 3)
 
 
 def neighbouring_fates(fate: np.ndarray, counts: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the lowest and the highest fate, up to `most`, among each start and its eight neighbours that count."""
+    """Return the lowest and the highest fate among each start and its eight neighbours, of those where `counts` is true.
+
+    The fates that count are from 0 to `most`.
+    """
     from scipy import ndimage
 
     lowest = ndimage.minimum_filter(np.where(counts, fate, most), _NEIGHBOURHOOD, mode="nearest")

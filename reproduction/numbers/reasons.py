@@ -79,4 +79,4 @@ FACTS: Mapping[str, Callable[[Measures, StatedNumber], float]] = MappingProxyTyp
         "below_largest": _below_largest,
     }
 )
-"""Computed values for the remarks of numbers, by name."""
+"""Computed values for the remarks of numbers, by name. Shares are in percent."""

@@ -109,12 +109,14 @@ _SHARES = (
     Quantity.IN_BASINS, Quantity.WADA,
 )  # fmt: skip
 
+# Short names for the tables below.
 _ABOUT, _MORE, _LESS, _EXACTLY = Relation.ABOUT, Relation.MORE_THAN, Relation.LESS_THAN, Relation.EXACTLY
 _THROUGH, _BOUNDED, _ESCAPED, _DIRECT = Quantity.ESCAPED_BY, Quantity.BOUNDED, Quantity.ESCAPED, Quantity.DIRECT
 _ACCURATE, _IN_BASINS, _CHAOTIC = Quantity.ACCURATE, Quantity.IN_BASINS, Quantity.CHAOTIC
 _INTERIOR, _WINDOW = Counting.INTERIOR, Counting.WINDOW
 _X_Y, _X_PX, _X_H = Plane.X_Y, Plane.X_PX, Plane.X_H
 
+# Remarks, whose fields in braces are names of `reproduction.numbers.reasons.FACTS`.
 _MEDIAN = "Only {late_escapes:.1f} % of the escapes are so late."
 _HALF = "{bounded_at_5000:.1f} % of the starts are bounded at t = 5000, {bounded_at_20000:.1f} % at t = 20 000."
 _REGULAR = (
@@ -135,6 +137,7 @@ _FLAT = "At the stated h the share is lower by {below_largest:.1f} points only."
 _STILL_FRACTAL = "The boundaries are still fractal at the highest h of the paper."
 _NEAR = "Depends on the grid and on the definition: times next to an island rise with the resolution."
 
+# Derivations.
 _SHARED = "three equal shares"
 _HALVED = "half of the rest"
 _REST = "the rest to 100"

@@ -28,7 +28,7 @@ _INSTANT = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class FittedWindow:
-    """Window that best explains stated percentages.
+    """The window that best explains stated percentages.
 
     Attributes
     ----------
@@ -113,7 +113,7 @@ class _Outside:
         return cls(int(np.count_nonzero(frame.interior)), channel, frame.x[columns], frame.ordinate[rows])
 
     def count(self, window: Window) -> np.ndarray:
-        """Return the numbers of starts outside in a window by exit, of shape (exits + 1,). Entry 0 is 0."""
+        """Return how many starts of a window lie beyond each exit, of shape (exits + 1,). Entry 0 is 0."""
         contained = (self.x >= window.x_low) & (self.x <= window.x_high) & (np.abs(self.ordinate) <= window.ordinate_high)
         return np.bincount(self.channel[contained], minlength=int(self.channel.max(initial=0)) + 1)
 
@@ -136,6 +136,7 @@ def _best(
 def _largest_difference(
     outside: np.ndarray, inside: int, fractions: Mapping[int, float], stated: Mapping[tuple[int, ...], float]
 ) -> float:
+    """Return the largest difference of percentages from the stated ones. `outside` contains the numbers of starts by exit."""
     total = inside + outside.sum()
 
     def share(code: int) -> float:

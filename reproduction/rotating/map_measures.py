@@ -15,7 +15,7 @@ ISLAND_PIXELS = 2
 LATE = 0.01
 """Share of the escaping orbits that count as late."""
 
-# Limit of the total integration time of the pairs, in time units of the well.
+# Limit of the total integration time of the pairs of starts of an exponent, in time units of the well.
 _WORK = 1e7
 
 

@@ -25,6 +25,7 @@ _T_MAX = 1e3
 # Integration time around the Moon, where orbits end soon, in units of time of the system.
 _T_MAX_AT_MOON = 1e2
 
+# Starts on (x, y) with the velocity at a right angle to the radius, clockwise.
 _RETROGRADE = Slice(Coordinate.X, Coordinate.Y, fixed=((Coordinate.BETA, -0.5 * np.pi),))
 
 # Four overlapping discs, far from the hills where V < 0.001, stand for the four directions between the hills.

@@ -158,7 +158,7 @@ def _describe_windows(row: Comparison) -> str:
 
 
 def _explain(row: Comparison) -> str:
-    """Return the reasons for a difference, also for the fitted windows."""
+    """Return the reasons for a difference, and the difference that is left in the fitted windows."""
     reasons = [row.reason] if row.reason else []
     if any(fitted.window.x_high != fitted.half_side for fitted in row.windows):
         reasons.append(f"No square centred on the origin is within {POINTS:g} points.")

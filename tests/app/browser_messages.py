@@ -1,4 +1,4 @@
-"""Messages of the page to the server, without a browser."""
+"""Send messages of the page to the server, without a browser."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from panel.models.esm import DataEvent
 
 
 def send(component: JSComponent, *messages: Any) -> list[Any]:
-    """Deliver messages to a component, as those that its browser side has sent; returns what it sends back."""
+    """Deliver messages to a component as if its browser side had sent them, and return what the component sends back."""
     document, answers = Document(), []
     model = component.get_root(document)
     document.add_root(model)

@@ -12,6 +12,6 @@ from app.runtime.settings import Settings
 
 @pytest.fixture
 def start_state() -> Iterator[Callable[..., ProcessState]]:
-    """Starts the state of this process with some settings, and after the test a state without settings."""
+    """Yield a function that starts the state of this process with settings. After the test, start a state without settings."""
     yield lambda **settings: start_process_state(Settings(**settings))
     start_process_state(Settings())

@@ -1,4 +1,4 @@
-"""Maps without a page."""
+"""Make the view of maps without a page."""
 
 from __future__ import annotations
 

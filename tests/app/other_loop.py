@@ -1,4 +1,4 @@
-"""Run coroutines on an event loop of their own, because the browser tests leave one running in the main thread."""
+"""Run coroutines on a new event loop in a thread, because browser tests leave an event loop running in the main thread."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The hooks of Bokeh's server."""
+"""The hooks of Bokeh's server install the handlers of the page."""
 
 from __future__ import annotations
 

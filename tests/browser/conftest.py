@@ -1,4 +1,4 @@
-"""The app, served on loopback, and pages in Chromium that record errors and external requests."""
+"""Fixtures: the app, served on loopback, and pages in Chromium whose errors and external requests are recorded."""
 
 from __future__ import annotations
 
@@ -35,14 +35,14 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 @pytest.fixture(scope="session")
 def host() -> Iterator[str]:
-    """The origin whose pages may contain the page in a frame."""
+    """Yield the origin whose pages may contain the page in a frame."""
     with host_server() as origin:
         yield origin
 
 
 @pytest.fixture(scope="session")
 def server(tmp_path_factory: pytest.TempPathFactory, host: str) -> Iterator[str]:
-    """The address of the app; its log must not have a traceback."""
+    """Yield the address of the app, whose log must not have a traceback."""
     log = tmp_path_factory.mktemp("server") / "log"
     with pytest.MonkeyPatch.context() as patch, ExitStack() as stack:
         patch.setenv("ESCAPE_EXPLORER_FRAME_ANCESTORS", host)
@@ -53,8 +53,8 @@ def server(tmp_path_factory: pytest.TempPathFactory, host: str) -> Iterator[str]
     assert "Traceback" not in text, text
 
 
-# The driver of Chromium without a graphics card reports its own pace. Bokeh rebuilds the label of a button without waiting for
-# the rebuild before it (`AbstractButtonView._rebuild_label`), and warns that it removes the old one twice; the last one is shown.
+# Messages that are no problems. Without a graphics card, the driver of Chromium reports that it is slow. Bokeh rebuilds the label
+# of a button before the previous rebuild ends (`AbstractButtonView._rebuild_label`), and warns that it removes a label twice.
 _HARMLESS = re.compile(r"GL Driver Message|bokeh\.models\.dom\.TextView\(\w+\)\.remove\(\): view was already destroyed")
 
 
@@ -83,14 +83,14 @@ class Watch:
 
 @pytest.fixture
 def open_explorer(chromium: Browser, server: str) -> Iterator[Callable[..., ExplorerPage]]:
-    """Opens the page, or a link to a view, in a new browser context, at a given size of the window."""
+    """Yield a function that opens the page, or a link to a view, in a new browser context with a window of a given size."""
     with _opening(chromium, server) as open_page:
         yield open_page
 
 
 @pytest.fixture(scope="module")
 def open_for_all(chromium: Browser, server: str) -> Iterator[Callable[..., ExplorerPage]]:
-    """The same for a page that the tests of a file share, because none changes what the page shows."""
+    """Yield the function of `open_explorer` for pages that the tests of a module share, and leave as they were."""
     with _opening(chromium, server) as open_page:
         yield open_page
 
@@ -130,14 +130,14 @@ def _opening(chromium: Browser, server: str) -> Iterator[Callable[..., ExplorerP
 
 @pytest.fixture(scope="session")
 def opened(chromium: Browser, server: str) -> Iterator[ExplorerPage]:
-    """The page behind `explorer`, with a map that takes little time. A file may open another page."""
+    """Yield the page behind `explorer`, with a map that takes little time. A module may override this fixture."""
     with _opening(chromium, server) as open_page:
         yield open_page(link=QUICK)
 
 
 @pytest.fixture
 def explorer(opened: ExplorerPage, request: pytest.FixtureRequest) -> Iterator[ExplorerPage]:
-    """A page that a test may change. Many tests share it, and it returns to its first view after each."""
+    """Yield a page that many tests share. A test may change the page, which returns to its first view after each test."""
     failed = request.session.testsfailed
     yield opened
     if request.session.testsfailed > failed:

@@ -10,7 +10,9 @@ import numpy as np
 from playwright.sync_api import Locator, Page, expect
 
 _DOCUMENT = "Bokeh.documents[0]"
+# Bokeh's tool for each choice of what a drag does.
 _DRAG_TOOLS = {"Move": "PanTool", "Zoom": "BoxZoomTool", "Count": "BoxSelectTool"}
+# Screen position of a point of a picture.
 _POINT = """([name, x, y]) => {
     for (const view of Bokeh.index.all_views()) {
         if (view.model.name !== name) continue
@@ -18,11 +20,13 @@ _POINT = """([name, x, y]) => {
         return [box.left + view.frame.x_scale.compute(x), box.top + view.frame.y_scale.compute(y)]
     }
 }"""
+# A column of the maps' source. Images are objects with shape and values.
 _COLUMN = """name => {
     const value = Bokeh.documents[0].get_model_by_name('maps').data[name][0]
     return typeof value == 'object' ? {shape: [...value.shape], values: [...value]} : value
 }"""
 
+# All columns of a source as plain lists.
 _DATA = """name => {
     const plain = value => ArrayBuffer.isView(value) ? [...value] : Array.isArray(value) ? value.map(plain) : value
     const {data} = Bokeh.documents[0].get_model_by_name(name) ?? {data: {}}
@@ -34,18 +38,21 @@ _RANGES = """name => {
     return [x_range.start, x_range.end, y_range.start, y_range.end]
 }"""
 
+# Whether the window in the address is that of a picture, to rounding.
 _ADDRESSED = """name => {
     const {x_range, y_range} = Bokeh.documents[0].get_model_by_name(name)
     const edges = new URL(location.href).searchParams.get("window")?.split(",").map(Number)
     return edges && [x_range.start, x_range.end, y_range.start, y_range.end].every((end, k) => Math.abs(end - edges[k]) < 1e-9)
 }"""
 
+# Whether browser and page are at the first entry of the history.
 _RETURNED = """() => history.state.entry === 0
     && [...Bokeh.documents[0].all_models].some(model => model.data?.attributes?.address?.entry === 0)"""
 
+# Whether the pixels are those of a preview at an energy: incomplete, with at least some pixels along a side.
 _PREVIEW = "!data.complete[0] && data.fate[0].shape[0] >= {least} && Math.abs(data.energy[0] - {energy}) < 1e-9"
 
-# The thumb of Chromium is 16 pixels wide.
+# Places on the slider. The thumb of Chromium is 16 pixels wide, so its middle stays 8 pixels from both ends.
 _RAIL_AND_THUMB = """rail => {
     const {x, y, width, height} = rail.getBoundingClientRect(), reach = width - 16
     const share = (rail.value - rail.min) / (rail.max - rail.min)
@@ -54,7 +61,7 @@ _RAIL_AND_THUMB = """rail => {
 
 
 class ExplorerPage:
-    """The page of one session, with its address and a list of problems."""
+    """Acts on the page of one session, which opens at the address `home`. `problems` is a list to which others append."""
 
     def __init__(self, page: Page, home: str = "", problems: list[str] | None = None) -> None:
         self.page, self._home = page, home
@@ -77,7 +84,7 @@ class ExplorerPage:
         )
 
     def wait_for_view(self, *parts: str) -> None:
-        """Wait until the address has all of these parts, and the map of that view is complete."""
+        """Wait until the address has all of these parts, and the map of its view is complete."""
         # The server writes "Starting …" before the address.
         self.page.wait_for_url(lambda address: all(part in unquote(address) for part in parts))
         self.wait_until_done()
@@ -91,7 +98,7 @@ class ExplorerPage:
         steps = self.page.evaluate("() => history.state.entry")
         if steps:
             self.page.evaluate("steps => history.go(-steps)", steps)
-            # The page writes the address of an entry when it shows its view.
+            # The page writes the address of an entry when it shows the view of the entry.
             self.page.wait_for_function(_RETURNED)
             self.wait_until_done()
 
@@ -101,7 +108,7 @@ class ExplorerPage:
         return np.array(value["values"]).reshape(value["shape"]) if isinstance(value, dict) else value
 
     def model_data(self, name: str) -> dict[str, list[Any]]:
-        """Return the columns of a source, as lists; none while the source is not on the page."""
+        """Return the columns of a source, as lists; empty while the source is not on the page."""
         return self.page.evaluate(_DATA, name)
 
     def wait_for_data(self, name: str, condition: str) -> None:
@@ -123,7 +130,7 @@ class ExplorerPage:
         return self.page.evaluate(_RANGES, picture)
 
     def wait_for_address_of(self, picture: str) -> None:
-        """Wait until the window in the address is the one that a picture shows."""
+        """Wait until the window in the address is that of a picture."""
         self.page.wait_for_function(_ADDRESSED, arg=picture)
 
     def button(self, label: str) -> Locator:
@@ -206,7 +213,7 @@ class ExplorerPage:
         self.wait_for_data("maps", _PREVIEW.format(energy=energy, least=least))
 
     def start_engine(self) -> None:
-        """Wait until the browser has its engine, by means of a preview at h = 0.22 of case I, and go back to h = 0.19."""
+        """Wait until the browser has its engine. This requests a preview of case I at h = 0.22, and goes back to h = 0.19."""
         self.drag_energy_to(0.3, let_go=False)
         self.wait_for_preview(0.22)
         self.drag_energy_to(0.225)
@@ -221,6 +228,6 @@ class ExplorerPage:
         return self.page.get_by_role("slider", name="Energy h", exact=True).evaluate(_RAIL_AND_THUMB)
 
     def window_of_pixels(self) -> list[float]:
-        """Return the window that the pixels cover."""
+        """Return the window that the pixels cover: lowest x, highest x, lowest ordinate and highest ordinate."""
         x, y, width, height = (self.column(name) for name in ("x", "y", "dw", "dh"))
         return [x, x + width, y, y + height]

@@ -1,4 +1,4 @@
-"""A page of another origin that contains the page in a frame."""
+"""Serve pages of another origin that contain the page in a frame."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class HostHandler(http.server.BaseHTTPRequestHandler):
 
 @contextmanager
 def host_server() -> Iterator[str]:
-    """The origin of a server of pages that contain frames. Chromium lets no page of an intercepted address embed a local one."""
+    """Yield the origin of a server of pages with frames. Chromium embeds no local page in a page that Playwright intercepts."""
     server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), HostHandler)
     thread = threading.Thread(target=server.serve_forever)
     thread.start()

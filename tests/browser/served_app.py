@@ -1,4 +1,4 @@
-"""The app, served on loopback as described in the README."""
+"""Serve the app on loopback, as described in the README."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ from tests.waiting import SECONDS
 
 ROOT = Path(__file__).parents[2]
 START_SECONDS = 600
-"""Enough to compile all kernels on a busy machine."""
+"""Longest time until the app is ready: enough to compile all kernels on a busy machine."""
 PANEL = ("panel", "serve", "app")
 READY = ": ready\n"
-"""What the server writes when its kernels are there."""
+"""Text that the server writes when its kernels are compiled."""
 NO_VARIABLES: Mapping[str, str] = {}
 
 
 class Output:
-    """What a process writes, which is copied to a file and can be waited for."""
+    """Copies what a process writes to a file, and waits for texts in it."""
 
     def __init__(self, stream: IO[str], log: Path) -> None:
         self._stream, self._log = stream, log
@@ -35,14 +35,14 @@ class Output:
         self._copier.start()
 
     def wait_for(self, text: str) -> None:
-        """Wait until the process has written a text; RuntimeError if it ends or fails before."""
+        """Wait until the process has written a text. RuntimeError if the process ends or fails before."""
         with self._changed:
             self._changed.wait_for(lambda: text in self._text or self._has_failed(), START_SECONDS)
             if text not in self._text:
                 raise RuntimeError(f"the server did not write {text!r}: {self._text}")
 
     def close(self) -> None:
-        """Wait until all is copied, after the end of the process."""
+        """Wait until everything is copied. Call this after the end of the process."""
         self._copier.join()
         self._stream.close()
 
@@ -72,7 +72,7 @@ def free_port() -> int:
 
 @dataclass(frozen=True)
 class RunningApp:
-    """A server process, its address and what it writes; `root` ends without a slash."""
+    """A server process, its origin and its output. `root` is the origin, without a slash at the end."""
 
     root: str
     process: subprocess.Popen[str]
@@ -84,7 +84,7 @@ class RunningApp:
         return f"{self.root}/app"
 
     def figure(self, name: str) -> float:
-        """Return one of the figures that the server counts."""
+        """Return the number of a metric of the server."""
         with urllib.request.urlopen(f"{self.root}/metrics", timeout=SECONDS) as answer:
             lines = answer.read().decode().splitlines()
         return float(dict(line.rsplit(" ", 1) for line in lines if not line.startswith("#"))[f"escape_explorer_{name}"])
@@ -99,7 +99,7 @@ def served_app(log: Path) -> Iterator[str]:
 
 @contextmanager
 def running_app(log: Path, *options: str) -> Iterator[RunningApp]:
-    """Run the app with more options of `panel serve`; yield when its kernels are compiled."""
+    """Run the app with additional options of `panel serve`. Yield when its kernels are compiled."""
     with started_app(log, *PANEL, *options) as running:
         running.output.wait_for(READY)
         yield running
@@ -109,7 +109,7 @@ def running_app(log: Path, *options: str) -> Iterator[RunningApp]:
 def started_app(
     log: Path, *command: str, port: int | None = None, variables: Mapping[str, str] = NO_VARIABLES
 ) -> Iterator[RunningApp]:
-    """Run a module that serves the app, with options, a port and environment variables; yield when the server answers."""
+    """Run a module that serves the app, with options, a port and environment variables. Yield when the server listens."""
     port = free_port() if port is None else port
     options = ["--address", "127.0.0.1", "--port", str(port), "--allow-websocket-origin", f"127.0.0.1:{port}"]
     process = subprocess.Popen(
@@ -123,7 +123,7 @@ def started_app(
     assert process.stdout is not None
     output = Output(process.stdout, log)
     try:
-        # The server writes this when it already listens.
+        # The server already listens when it writes this.
         output.wait_for("preparing ")
         yield RunningApp(f"http://127.0.0.1:{port}", process, output)
     finally:

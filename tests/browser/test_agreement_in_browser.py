@@ -12,7 +12,7 @@ from plots.layers.table import LAYERS
 from tests.browser.explorer_page import ExplorerPage
 
 LAYERS_ON = "?case=I&plane=x_px&h=0.19&t_max=100&resolution=112&trust=yes&judge=yes&origins=yes"
-# Two messages as the server sends them, the second one when the button has been drawn and before it can answer.
+# Disable and enable a button with two messages as of the server: the second when the button is drawn, before the browser answers.
 _ENABLE_AGAIN = """async label => {
     const model = [...Bokeh.documents[0].all_models].find(model => model.label === label)
     const set = value => Bokeh.documents[0].apply_json_patch(
@@ -22,7 +22,7 @@ _ENABLE_AGAIN = """async label => {
     set(false)
 }"""
 
-# A case is chosen while an older choice of the server is on its way.
+# Choose a case while a message of the server with an older choice is on its way.
 _CHOOSE_BEFORE_AN_OLDER_CHOICE = """radio => {
     const model = [...Bokeh.documents[0].all_models].find(model => `${model.labels}` === "I,II,III")
     radio.click()
@@ -47,7 +47,7 @@ def expect_switches(explorer: ExplorerPage, on: set[str]) -> None:
 
 def test_a_widget_keeps_the_last_state_that_the_server_sets(explorer: ExplorerPage) -> None:
     explorer.page.evaluate(_ENABLE_AGAIN, "▶ Play")
-    # The server would have answered an echo of the browser before this.
+    # If the browser had echoed a message, the server would have answered the echo before this choice.
     explorer.pick("II")
     explorer.wait_for_view("case=II&")
     expect(explorer.button("▶ Play")).to_be_enabled()

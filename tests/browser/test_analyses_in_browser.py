@@ -1,4 +1,4 @@
-"""Analyses on the page: doubtful pixels, manifolds, origins, measures, curves against energy and verdicts."""
+"""Analyses are shown on the page: measures, curves against energy, and the verdict on an orbit."""
 
 from __future__ import annotations
 

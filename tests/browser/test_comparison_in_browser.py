@@ -1,4 +1,4 @@
-"""Two views side by side in the browser: linked in window and cursor, with the pixels that differ."""
+"""Two views are compared in the browser, and the pixels that differ are shown."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from plots.pictures.palette import DIFFERENCES, rgba
 from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 
-# Whether a canvas of the preview shows both equal and other ends; its pixels are opaque where the ends are other ones.
+# Whether a canvas of the preview has more than 1000 pixels in the colour of different outcomes.
 _DIFFERENCE_IN_PREVIEW = """colour => {
     const inside = root => [...root.querySelectorAll("*")].flatMap(one => [one, ...within(one.shadowRoot)])
     const within = root => root ? inside(root) : []

@@ -16,6 +16,7 @@ from tests.browser.explorer_page import ExplorerPage
 DEEP = next(preset for preset in PRESETS if preset.key == "closer")
 
 
+# Width and height of the frame of the basins, in pixels.
 _FRAME = """() => {
     const {width, height} = [...Bokeh.index.all_views()].find(view => view.model.name == "basins").frame.bbox
     return [width, height]
@@ -59,6 +60,6 @@ def test_zooming_beyond_double_precision_gives_a_message_and_the_picture_stays(e
         explorer.wait_for_data("maps", "data.complete[0]")
     expect(limit).to_be_visible()
     assert explorer.page.url == address
-    # The last window that could be computed.
+    # The picture is that of the last window that could be computed.
     explorer.wait_for_data("maps", f"data.complete[0] && 0 < data.dw[0] && data.dw[0] < {0.1 * (window.x_high - window.x_low)}")
     assert explorer.column("fate").size > 1

@@ -1,4 +1,4 @@
-"""Downloads can be opened elsewhere: the link, pictures, maps, orbits and the script."""
+"""Downloads can be opened in other programs: figures, maps, the link and an image."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from tests.browser.explorer_page import ExplorerPage
 
 SMALL = "?case=III&plane=x_px&h=0.45&t_max=1000&resolution=112&orbits=0.1,0.2;0.1,-0.3"
 
+# Size in bytes of the image in the clipboard, awaited for at most 3000 animation frames.
 _SIZE_OF_COPIED_IMAGE = """async () => {
   for (let frames = 0; frames < 3000; frames++) {
     const [item] = await navigator.clipboard.read()

@@ -28,7 +28,7 @@ def expect_open(explorer: ExplorerPage, drawer: str | None) -> None:
 
 
 def close(explorer: ExplorerPage, drawer: str) -> None:
-    """Close a drawer, and wait until it is off the page, because earlier clicks in it are lost."""
+    """Close a drawer, and wait until it is off the page. Clicks at its place would be lost before."""
     explorer.press(drawer)
     expect_open(explorer, None)
 
@@ -99,6 +99,7 @@ def test_the_energy_and_the_maps_stay_in_view_beside_a_drawer(open_explorer: Cal
         assert_beside_a_drawer(explorer)
 
 
+# Adds up the layout shifts from now on, in `window.shifts`.
 _SHIFTS = """() => {
     window.shifts = 0
     const add = list => list.getEntries().forEach(entry => (window.shifts += entry.value))

@@ -1,4 +1,4 @@
-"""A frame in another page shows one picture."""
+"""A frame in a page of another origin shows one picture of the page."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def frame_code(server: str) -> str:
 
 
 def embed(page: Page, origin: str, code: str) -> Frame:
-    """Open a page of another origin that contains the code of a frame."""
+    """Open a page of another origin that contains the code of a frame, and return the frame."""
     page.goto(f"{origin}/?{quote(code)}")
     return page.frames[1]
 

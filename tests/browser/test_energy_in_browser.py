@@ -1,4 +1,4 @@
-"""While the energy is dragged or played, the browser's pixels are shown; where it ends, the server's map."""
+"""While the energy is dragged or played, the browser computes the pixels. At the final energy, the server's map is shown."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from engine import CASES, Fate, MapSpec, Plane, compute_map
 from plots.pictures.palette import OUTCOMES
 from tests.browser.explorer_page import ExplorerPage
 
-# Counts messages to the server.
+# Counts messages to the server in `window.sent`.
 WATCH = """() => {
     window.sent = 0
     const send = WebSocket.prototype.send
@@ -20,7 +20,7 @@ WATCH = """() => {
 
 
 def assert_same_fates(explorer: ExplorerPage, expected: np.ndarray) -> None:
-    """Compare escaping orbits."""
+    """Compare the exits of escaping orbits."""
     shown, escaped = explorer.column("fate"), expected >= 1
     assert shown.shape == expected.shape
     np.testing.assert_array_equal(shown[escaped] - list(OUTCOMES).index(Fate.BOUNDED), expected[escaped])

@@ -26,7 +26,7 @@ def quick_map(energy: float, **options: object) -> EscapeMap:
 
 
 def assert_same_crossings(explorer: ExplorerPage, expected: EscapeMap) -> None:
-    """Compare crossings of escaping orbits only, because bounded orbits are followed only until evidence is found."""
+    """Compare crossings of escaping orbits only, because a bounded orbit is integrated only until there is evidence."""
     escaped = expected.fate >= 1
     np.testing.assert_array_equal(explorer.column("crossings")[escaped], expected.crossings[escaped])
     np.testing.assert_array_equal(np.isfinite(explorer.column("escape_time")), escaped)
@@ -34,13 +34,13 @@ def assert_same_crossings(explorer: ExplorerPage, expected: EscapeMap) -> None:
 
 @pytest.fixture(scope="module")
 def shared(open_for_all: Callable[..., ExplorerPage]) -> ExplorerPage:
-    """The page as it opens by default, for tests that leave it unchanged."""
+    """Return the page as it opens by default, for tests that leave it unchanged."""
     return open_for_all()
 
 
 @pytest.fixture(scope="module")
 def first_map() -> EscapeMap:
-    """The map that the page opens with."""
+    """Return the map with which the page opens."""
     return compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19, t_max=1e5))
 
 

@@ -1,4 +1,4 @@
-"""The page is accessible: it has themes, names of widgets, keys, and a first view with invitations."""
+"""The page has themes, accessible names of widgets, keys, and a first view that invites to other views."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from app.views.panels.browser_events import KEYS
 from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 
+# Whether all zero-velocity curves are light: red, the highest byte, is above 200.
 LIGHT_LINES = """() => [...Bokeh.index.all_views()]
     .filter(view => view.model.data_source?.name == 'zero_velocity_curve')
     .every(view => view.glyph.line_color.value >>> 24 > 200)"""
@@ -32,7 +33,7 @@ def luminance(explorer: ExplorerPage) -> float:
 def test_the_dark_theme_has_light_lines_and_titles_and_is_stored(open_explorer: Callable[..., ExplorerPage]) -> None:
     explorer = open_explorer(link=QUICK)
     assert luminance(explorer) > 200
-    # The colours need no answer of the server, which can take seconds.
+    # The colours change without an answer of the server, which can take seconds.
     assert explorer.page.evaluate(f"""async () => {{
         document.getElementById('theme').click()
         await new Promise(requestAnimationFrame)
@@ -111,7 +112,7 @@ def test_keys_in_a_number_box_are_no_shortcuts(explorer: ExplorerPage) -> None:
 
 def test_enter_sets_an_orbit_in_the_middle_of_the_maps(explorer: ExplorerPage) -> None:
     x_low, x_high, low, high = explorer.ranges("basins")
-    # A button that has the focus would be pressed.
+    # Take the focus from any button, which Enter would press.
     explorer.page.get_by_role("heading", level=1).click()
     explorer.page.keyboard.press("Enter")
     explorer.wait_for_data("starts", "data.x.length == 1")

@@ -1,4 +1,4 @@
-"""Each action is an entry of the browser's history; keys also move through the entries."""
+"""Each action is an entry of the browser's history. The browser and keys of the page move through the entries."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ HOME = "h=0.19&t_max=100&resolution=112"
 
 
 def zoom(explorer: ExplorerPage) -> float:
-    """Zoom in with the keyboard; the width of the window."""
+    """Zoom in with the keyboard, and return the new width of the window."""
     width = explorer.column("dw")
     explorer.page.keyboard.press("+")
     explorer.wait_for_data("maps", f"data.complete[0] && data.dw[0] < 0.6 * {width}")
@@ -66,7 +66,7 @@ def test_all_steps_of_the_wheel_are_one_entry(explorer: ExplorerPage) -> None:
 def test_a_move_at_the_moment_of_going_back_does_not_part_the_pictures_from_their_map(explorer: ExplorerPage) -> None:
     home, width = explorer.ranges("basins"), explorer.column("dw")
     zoom(explorer)
-    # The handler runs after the page's own, which tells the server, and before the server can answer.
+    # This handler moves the picture after the page's own handler has told the server, and before the server can answer.
     explorer.page.evaluate("""() => addEventListener("popstate", () => {
         const range = Bokeh.documents[0].get_model_by_name("basins").x_range
         range.setv({start: 0.1 * range.start, end: 0.1 * range.end})

@@ -23,7 +23,7 @@ MAPS = ("basins", "times", "crossings")
 PICTURES = ("well", *MAPS)
 Box = tuple[float, float, float, float]
 
-# Of all figures in view: left, top, right and bottom on the screen, width and height of the frame. Parts scroll.
+# Left, top, right and bottom of each visible figure on the screen, clipped by parts that scroll; width and height of its frame.
 _FIGURES = """() => {
     const clipped = element => {
         let {left, top, right, bottom} = element.getBoundingClientRect()
@@ -38,6 +38,7 @@ _FIGURES = """() => {
     return Object.fromEntries([...Bokeh.index.all_views()].filter(view => view.model.type == "Figure" && view.el.offsetWidth > 0)
         .map(view => [view.model.name, [...clipped(view.el), view.frame.bbox.width, view.frame.bbox.height]]))
 }"""
+# Number of elements of the page, also in shadow roots.
 _ELEMENTS = """() => {
     let count = 0
     const walk = root => {
@@ -51,6 +52,7 @@ _ELEMENTS = """() => {
 }"""
 _LEGEND = """foot => [...foot.querySelectorAll(".patch")]
     .map(patch => [patch.textContent.trim(), patch.getAttribute("style").replace("--colour:", "")])"""
+# Labels of buttons that have no use when the page opens.
 _IDLE = ("Whole plane", "Stop", "Continue", "Clear all", "Remove", "Find divergent start", "Count the whole view")
 
 
@@ -113,6 +115,7 @@ def test_two_by_two_pictures_fill_the_height_beside_the_orbits(
     assert hint["y"] < places[2][1]
 
 
+# Class names of titles, legends and names that cover the frame of a picture, for each large picture.
 _COVERED = """() => {
     const shown = [...Bokeh.index.all_views()].filter(view => view.model.type == "Figure" && view.canvas_view.el.clientWidth
         && ["picked", "equal"].includes(view.model.css_classes[1]))
@@ -153,6 +156,7 @@ def test_on_a_phone_the_map_comes_first_with_the_energy_below_it(phone: Explorer
     assert play["y"] <= slider["y"] <= play["y"] + play["height"]
 
 
+# Sum of the layout shifts since the page was opened.
 _SHIFTS = """() => new Promise(done => {
     let sum = 0
     new PerformanceObserver(list => list.getEntries().forEach(entry => sum += entry.value)).observe({
@@ -164,7 +168,7 @@ _SHIFTS = """() => new Promise(done => {
 
 @pytest.mark.parametrize(("width", "touch"), [(420, True), (1280, False)])
 def test_the_parts_of_the_page_stay_in_their_places_while_it_opens(open_explorer: OpenExplorer, width: int, touch: bool) -> None:
-    # Below this, browsers call the layout of a page stable.
+    # Below this sum, browsers call the layout of a page stable.
     assert open_explorer(width, 900, QUICK, touch=touch).page.evaluate(_SHIFTS) < 0.1
 
 
@@ -258,7 +262,7 @@ def assert_apart(explorer: ExplorerPage, names: set[str], width: int) -> None:
 
 
 def legend(explorer: ExplorerPage, picture: str) -> dict[str, str]:
-    """Colour of each item of the legend in a picture, by its label."""
+    """Return the colour of each item of the legend of a picture, by label."""
     return dict(explorer.page.locator(f".foot[data-picture={picture}]").evaluate(_LEGEND))
 
 
@@ -275,7 +279,7 @@ def test_the_legends_have_the_colours_of_the_palette(explorer: ExplorerPage) -> 
 
 
 def test_an_item_of_a_legend_lights_its_pixels(explorer: ExplorerPage) -> None:
-    # Layers have renderers of their own.
+    # The renderers of layers have other sources.
     renderers = "Bokeh.documents[0].get_model_by_name('basins').renderers"
     palette = f"() => {renderers}.find(each => each.data_source.name == 'maps').glyph.color_mapper.palette"
     explorer.start_engine()

@@ -12,7 +12,7 @@ from playwright.sync_api import expect
 from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 
-# Elements that move on the screen from now on.
+# Records the elements that move on the screen from now on, with the time and the upper edge of each move.
 _WATCH_SHIFTS = """() => {
     window.shifts = []
     const place = ({x, y, width, height}) => [x, y, width, height].map(Math.round).join(" ")
@@ -26,6 +26,7 @@ _WATCH_SHIFTS = """() => {
 }"""
 _PAINTED = "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(performance.now()))))"
 _SHIFTS = "([since, bottom]) => window.shifts.filter(({time, top}) => time > since && top < bottom).map(({text}) => text)"
+# Classes of the parts of the inspector.
 PARTS = ("orbit-list", "verdict", "player", "sali", "exponent", "r2")
 
 STARTS = [(0.1, 0.05), (0.2, 0.1), (-0.2, 0.1), (0.1, -0.2), (0.0, 0.3)]
@@ -77,7 +78,7 @@ def test_nothing_moves_with_further_orbits_messages_and_the_player(open_explorer
     explorer.wait_for_data("r2_histories", "data.xs.length == 1")
     begin = explorer.page.evaluate(_PAINTED)
     before = places(explorer)
-    # The chart of the distance of two orbits opens below the histories, and moves what follows it.
+    # The chart of the distance of two orbits opens below the histories, so only what is below them may move.
     end_of_histories = before["r2"]["y"] + before["r2"]["height"]
     explorer.page.evaluate(_WATCH_SHIFTS)
     explorer.page.get_by_role("slider", name="Time along the orbits").press("ArrowRight")
@@ -88,7 +89,7 @@ def test_nothing_moves_with_further_orbits_messages_and_the_player(open_explorer
     explorer.page.evaluate(_PAINTED)
     assert explorer.page.evaluate(_SHIFTS, [begin, end_of_histories]) == []
     explorer.press("Find divergent start")
-    # The line of the message opens with the button, and keeps its height when the search ends.
+    # The line of the message opens when the button is pressed, and keeps its height when the search ends.
     expect(explorer.page.locator(".note").first).to_contain_text(re.compile("divergent start is|start that escapes elsewhere"))
     begin = explorer.page.evaluate(_PAINTED)
     expect(explorer.text("The divergent start is")).to_be_visible()

@@ -1,4 +1,4 @@
-"""In a system with two exits and a collision, every place that names fates names the collision."""
+"""In a system with two exits and a body, every part of the page that names fates names the collision with the body."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ pytestmark = pytest.mark.browser
 
 # A well of negative energies with a root, a function and a parameter.
 PLUMMER = "−1/√(r² + c²) − 0.1 x²y exp(−y²) − 0.05 y³"
-# A coefficient that no other test uses; the kernels are those of the same terms.
+# A coefficient that no other test uses. The kernels are shared with potentials of the same terms.
 WEAKER = "½(x² + y²) − 0.5xy²"
 
 

@@ -33,7 +33,7 @@ LINKS = (
     "?case=III&plane=x_px&h=0.5&t_max=100&resolution=112&manifolds=yes&analysis=statistics",
     "?case=I&plane=x_h&t_max=100&resolution=112&palette=safe&lock_times=50",
 )
-# Only entries of the gallery whose maps take moments.
+# Entries of the gallery whose maps are computed in moments.
 QUICK = [
     preset
     for preset in PRESETS
@@ -41,7 +41,7 @@ QUICK = [
 ]
 ACTIONS, SEEDS = 50, range(200, 206)
 ROUNDS = 20
-"""Most states that follow each other after an action."""
+"""Largest number of states through which the page passes after an action."""
 
 POLL_MS = 100
 PLANES = (Plane.X_Y, Plane.X_PX, Plane.X_H)
@@ -85,13 +85,13 @@ _DIFFERENCE = """expected => {
     return null
 }"""
 
-# Waits for a step through the history. Further steps are counted from its entry, and a new entry ends the wait.
+# Goes some steps through the history of the page, and waits until the entry is reached or another entry replaces it.
 _GO = """steps => {
     const target = navigation.entries()[navigation.currentEntry.index + steps]
     if (target?.sameDocument) return navigation.traverseTo(target.key).finished.then(() => null, () => null)
 }"""
 
-# The wait ends when the page agrees, or its address changes.
+# True for `wait_for_function` when the page agrees with the expected content, or its address has changed.
 _AGREEMENT = f"""expected => {{
     const difference = ({_DIFFERENCE})(expected)
     return [null, "another address"].includes(difference) && {{agrees: difference === null}}
@@ -138,7 +138,7 @@ def expected_page(address: str) -> dict[str, Any]:
     planes = {plane.title: state.plane is plane for plane in PLANES}
     energy = {} if state.plane.energy_axis is not None else {"Exact h": state.energy}
     jobs = [job for start in state.starts if (job := state.orbit_job(start)) is not None]
-    # The picture of the well has the orbits in the well of the chosen one.
+    # The picture of the well shows orbits only if their potential is that of the chosen orbit.
     well = None if shown.orbit is None else shown.orbit.potential
     return {
         "address": f"?{query}",
@@ -151,7 +151,7 @@ def expected_page(address: str) -> dict[str, Any]:
 
 
 def expected_picture(frame: EscapeMap) -> dict[str, Any]:
-    """Return pixels and place of the map."""
+    """Return the pixels and the window of the map."""
     columns = map_columns(frame)
     place = {name: columns[name][0] for name in ("x", "y", "dw", "dh")}
     return {"fate": columns["fate"][0].ravel().tolist(), "place": place}
@@ -205,7 +205,7 @@ def actions(explorer: ExplorerPage, chance: random.Random) -> Mapping[str, Calla
         explorer.press("Gallery")
         page.locator(".gallery:not(.few)").get_by_role("button", name=preset.title).first.click()
         explorer.press("Close")
-        # Pressed while the drawer is still open, its button would close it again.
+        # If the next action pressed the button of the drawer while the drawer is still open, it would only close it.
         expect(explorer.button("Close")).to_be_hidden()
 
     def type_energy() -> None:
@@ -247,7 +247,7 @@ def test_the_page_shows_the_state_of_its_address(open_explorer: Callable[..., Ex
     done: list[str] = []
     while len(done) < ACTIONS:
         possible = actions(explorer, chance)
-        # Some actions follow at once on others, some when the page is at rest.
+        # Up to three actions follow at once on one another. The next begin when the page is at rest.
         for name in chance.choices(list(possible), k=chance.randint(1, 3)):
             done.append(name)
             possible[name]()

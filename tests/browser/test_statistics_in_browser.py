@@ -9,6 +9,7 @@ from engine import CASES, EscapeMap, MapSpec, Plane, Window, compute_map, comput
 from engine.foundations.wording import format_share
 from tests.browser.explorer_page import ExplorerPage
 
+# Screen position of the foot of the highest bar of a chart.
 _BAR = """name => {
     for (const view of Bokeh.index.all_views()) {
         if (view.model.type !== 'Figure' || !view.model.elements.some(one => one.html?.includes(`help-${name}`))) continue

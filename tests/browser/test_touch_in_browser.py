@@ -11,6 +11,7 @@ from playwright.sync_api import expect
 from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 
+# Number of moves between the beginning and the end of a touch.
 STEPS = 12
 
 Path = tuple[tuple[float, float], tuple[float, float]]
@@ -46,13 +47,13 @@ def move_fingers(explorer: ExplorerPage, *paths: Path) -> None:
 
 
 def middle_of(explorer: ExplorerPage) -> np.ndarray:
-    """Return the middle of the picture on the screen."""
+    """Return the middle of the picture of the basins on the screen."""
     (x, _), (ordinate, _) = window(explorer)
     return np.array(explorer.point("basins", x, ordinate))
 
 
 def window(explorer: ExplorerPage) -> np.ndarray:
-    """Return the middle and side of the window on each axis, shape (2, 2)."""
+    """Return the middle and the length of the window on each axis, of shape (2, 2)."""
     x_low, x_high, low, high = explorer.ranges("basins")
     return np.array([[0.5 * (x_low + x_high), x_high - x_low], [0.5 * (low + high), high - low]])
 

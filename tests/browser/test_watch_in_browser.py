@@ -1,4 +1,4 @@
-"""Many orbits leave the well in the browser. They are played, moved in time, and brought back by the link."""
+"""Many orbits leave the well in the browser. They can be played forward and backward, and moved to a time."""
 
 from __future__ import annotations
 
@@ -28,6 +28,7 @@ def move_time_to(explorer: ExplorerPage, share: float) -> None:
     explorer.page.get_by_label("Time of the orbits").fill(str(round(1000 * share)))
 
 
+# Whether the browser has loaded a module.
 _LOADED = "module => performance.getEntriesByType('resource').some(entry => entry.name.endsWith(`/${module}`))"
 
 
@@ -87,6 +88,7 @@ def test_the_time_runs_backwards_until_all_are_inside_again(open_explorer: OpenE
     assert inside(explorer) == 1000
 
 
+# Whether a canvas lies exactly over the frame of the well.
 _OVER_THE_WELL = """() => {
     const well = [...Bokeh.index.all_views()].find(view => view.model.name == 'well')
     const [canvas, {left, top, width, height}] = [well.canvas_view.el.getBoundingClientRect(), well.frame.bbox]

@@ -12,12 +12,12 @@ import pytest
 from cli.main import main
 
 Run = Callable[..., tuple[int, str, str]]
-"""Runs a command; its exit code, stdout and stderr."""
+"""Runs a command, and returns its exit code, stdout and stderr."""
 
 
 @pytest.fixture(autouse=True)
 def default_sigint() -> Iterator[None]:
-    """Python's own handler of Ctrl-C; processes started in the background inherit an ignored SIGINT."""
+    """Restore Python's handler of Ctrl-C, because processes started in the background ignore SIGINT."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, before)
@@ -25,7 +25,7 @@ def default_sigint() -> Iterator[None]:
 
 @pytest.fixture
 def run(capsys: pytest.CaptureFixture[str]) -> Run:
-    """Function that runs a command and returns its exit code, stdout and stderr."""
+    """Return a function that runs a command and returns exit code, stdout and stderr."""
 
     def run_command(*arguments: object) -> tuple[int, str, str]:
         code = main([str(argument) for argument in arguments])
@@ -55,7 +55,10 @@ class Terminal(StringIO):
 
 @pytest.fixture
 def run_in_terminal(run: Run, monkeypatch: pytest.MonkeyPatch) -> Callable[..., tuple[int, str, str]]:
-    """Function that runs a command in a terminal, with an action at a word; returns exit code, stdout, last line of stderr."""
+    """Return a function that runs a command in a terminal, with an action when a word is first written.
+
+    The function returns exit code, stdout and the last line of stderr.
+    """
     monkeypatch.setenv("TERM", "xterm")
 
     def run_command(word: str, action: Callable[[], None], *arguments: object) -> tuple[int, str, str]:

@@ -1,4 +1,4 @@
-"""Options ``--scheduler`` and ``--local-cluster``: same results, and an error message without Dask."""
+"""Options ``--scheduler`` and ``--local-cluster`` give the same results as threads."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ ANALYSES = ("--judge", "--trust", "--origins")
 
 @pytest.fixture
 def scheduler() -> Iterator[str]:
-    """The address of a cluster whose workers are threads."""
+    """Yield the address of the scheduler of a cluster whose workers are threads."""
     with distributed.LocalCluster(
         n_workers=1, processes=False, protocol="tcp", host="127.0.0.1", dashboard_address="127.0.0.1:0"
     ) as cluster:

@@ -1,4 +1,4 @@
-"""Program ``escape-explorer``: help, version, exit codes and error messages."""
+"""The program ``escape-explorer`` has the right help, version, exit codes and error messages."""
 
 from __future__ import annotations
 
@@ -120,7 +120,7 @@ def test_missing_dask_is_reported_with_the_install_command(run: Run, tmp_path: P
     assert not any(tmp_path.iterdir())
 
 
-# A map that takes minutes, whose stage has begun when the signals come.
+# A map that takes minutes, so its stage has begun and not ended when the signals come.
 LONG = ("map", "III", "--energy", 0.26, "--resolution", 300, "--t-max", 1e7)
 
 

@@ -1,4 +1,4 @@
-"""Commands ``lyapunov``, ``measures`` and ``curves``: results of the engine as tables, text and JSON."""
+"""Commands ``lyapunov``, ``measures`` and ``curves`` print and write the results of the engine."""
 
 from __future__ import annotations
 

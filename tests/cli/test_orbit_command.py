@@ -1,4 +1,4 @@
-"""Command ``orbit``: verdicts, table and picture."""
+"""Command ``orbit`` prints verdicts, and writes table and picture of the engine's orbit."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Output files: the ending of a name is the format, and each file is written as a whole."""
+"""The ending of the name of an output file is its format, and each file is written as a whole."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Command ``potential``: critical points as a table and as JSON."""
+"""Command ``potential`` prints critical points as a table and as JSON."""
 
 from __future__ import annotations
 

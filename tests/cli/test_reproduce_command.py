@@ -1,4 +1,4 @@
-"""Command ``reproduce``: selection, files and interruption."""
+"""Command ``reproduce`` writes the selected figures, and keeps finished figures when it is interrupted."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Command ``serve``: the command line and environment of the server."""
+"""Command ``serve`` becomes the server, with the right command line and environment."""
 
 from __future__ import annotations
 

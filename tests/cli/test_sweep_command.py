@@ -1,4 +1,4 @@
-"""Command ``sweep``: contents of the store, interruption and resumption."""
+"""Command ``sweep`` writes the engine's results to a store, and resumes after an interruption."""
 
 from __future__ import annotations
 

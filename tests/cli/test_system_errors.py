@@ -1,4 +1,4 @@
-"""Errors of the operating system: one sentence with the path and what to do."""
+"""Errors of the operating system are told in a sentence with the path and what to do."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The potentials of the contract tests: the catalogue, and random potentials."""
+"""List the potentials of the contract tests: wells of the catalogue, and random potentials."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from engine.systems.forms.polynomial_form import PolynomialForm
 from engine.systems.formulas.formula_parser import parse_formula
 from engine.systems.known_potentials import POTENTIALS
 
-# Compiling kernels takes long, so normal runs do it for the cases of the paper, and exhaustive runs for all.
+# Compiling kernels takes long, so normal runs compile those of the cases of the paper, and exhaustive runs those of all.
 MARKS = {"I": (), "II": (), "III": (), "C5": (pytest.mark.slow,), "C8": (pytest.mark.slow,)}
 
 
@@ -21,7 +21,7 @@ RANDOM = tuple(
         "0.432x² + 0.339y² − 2.441x²y + 1.8y³ + 1.144xy³",
     )
 )
-# Systems in rotating frames, and with bodies, have contracts of their own.
+# Systems in rotating frames, and with bodies, have other tests.
 WELLS = {name: potential for name, potential in POTENTIALS.items() if isinstance(potential.form, PolynomialForm)}
 ALL = (*WELLS.values(), *RANDOM)
 

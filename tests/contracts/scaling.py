@@ -1,4 +1,4 @@
-"""Other units of length and energy, and another mass."""
+"""Convert potentials, windows and states to other units of length and energy, and to another mass."""
 
 from __future__ import annotations
 

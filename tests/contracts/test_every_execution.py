@@ -68,7 +68,7 @@ WHOLE: dict[str, Compute] = {
     "sweep": lambda execution: compute_sweep(SWEEP, execution=execution),
     "plan": lambda execution: plan_sweep(SWEEP, execution=execution),
 }
-# Results, of which a cancelled computation returns a part, with the values of what is not computed.
+# Computations that return a partial result when they are cancelled, with the value of what is not computed.
 PARTIAL: dict[str, tuple[Compute, str, float]] = {
     "map": (lambda execution: compute_map(SPEC, execution=execution), "fate", Fate.NOT_COMPUTED),
     "outcomes": (lambda execution: classify_orbits(III, 0.3, starts(), 300.0, execution=execution), "fate", Fate.NOT_COMPUTED),

@@ -14,7 +14,7 @@ from tests.contracts.potentials import each_compiled
 from tests.peers import taylor_heyoka
 from tests.peers.exit_lines import exit_lines
 
-# Energies are counted from the bottom, in depths of the well.
+# Energy above the bottom in units of the depth of the well, end time, number of starts, and shift of starts.
 ENERGY_FACTOR, T_MAX, STARTS, SHIFT = 1.4, 60.0, 20, 1e-11
 
 

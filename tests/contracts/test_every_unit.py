@@ -43,7 +43,7 @@ from tests.contracts.scaling import Scaling
 
 EXACT = (Scaling(8.0, 4.0**-3), Scaling(1.0, 1.0, 16.0), Scaling(2.0**-6, 1.0), Scaling(1.0, 4.0**8))
 INEXACT = (Scaling(3.0, 0.7), Scaling(1.0, 1.0, 8.0))
-# Factors from the smallest to the largest supported, not powers of 2.
+# Factors near the smallest and largest that are supported. They are not powers of 2.
 FAR = (Scaling(1e-6, 1e6), Scaling(7e4, 5e5), Scaling(1.0, 1.0, 8.0))
 
 

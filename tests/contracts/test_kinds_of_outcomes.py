@@ -19,7 +19,7 @@ DOCK = (0.2, 0.3, 0.05, "the dock")
 
 @pytest.fixture
 def station(monkeypatch: pytest.MonkeyPatch) -> type[outcomes.End]:
-    """The kind of the example, with some colours."""
+    """Return the kind of outcome of the example, with colours in each palette."""
     kind: type[outcomes.End] = run_example("Example: add a kind of outcome", vars(outcomes))["Station"]
     monkeypatch.setitem(KINDS, kind.key, kind)
     for palette in PALETTES.values():

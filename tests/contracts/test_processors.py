@@ -1,4 +1,4 @@
-"""Maps are equal to the bit with and without AVX-512, except for escape times where other libraries fit the exits."""
+"""Maps are equal to the bit with and without AVX-512. If NumPy and OpenBLAS also do without, escape times differ slightly."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def compute_maps(path: str) -> None:
 
 @pytest.fixture(scope="module")
 def compute(tmp_path_factory: pytest.TempPathFactory) -> Callable[[Mapping[str, str]], dict[str, np.ndarray]]:
-    """Return the maps of a process with these environment variables."""
+    """Return a function that computes the maps in a process with some environment variables."""
     folder = tmp_path_factory.mktemp("processors")
 
     def compute(variables: Mapping[str, str]) -> dict[str, np.ndarray]:

@@ -1,4 +1,4 @@
-"""Run nginx with deploy/nginx.conf on the loopback interface; only names, paths and ports are replaced.
+"""Run nginx with deploy/nginx.conf on the loopback interface. Only names, paths and ports are replaced.
 
 Visitors of one machine can have addresses of their own, in the header `ADDRESS_HEADER`.
 """

@@ -1,4 +1,4 @@
-"""The explorer behind nginx with TLS and a password, configured by `deploy/nginx.conf`."""
+"""The explorer works behind nginx with TLS and a password, configured by `deploy/nginx.conf`."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from tests.deploy.proxy import ADDRESS_HEADER, Proxy, authorization, nginx, prox
 from tests.waiting import SECONDS
 
 pytestmark = pytest.mark.skipif(nginx() is None, reason="nginx is not installed")
-# Starts the explorer; the other tests use servers that answer with their port.
+# Marks tests that start the explorer. The other tests use servers that answer with their port.
 with_explorer = pytest.mark.slow
 FORGED = (
     "X-Forwarded-For",
@@ -36,7 +36,7 @@ FORGED = (
 
 @pytest.fixture(scope="module")
 def proxy(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Proxy]:
-    """A proxy in front of the explorer."""
+    """Yield a proxy in front of the explorer."""
     folder, port, backend = tmp_path_factory.mktemp("nginx"), free_port(), free_port()
     with (
         explorer(folder / "log", backend, f"127.0.0.1:{port}"),
@@ -47,7 +47,7 @@ def proxy(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Proxy]:
 
 @pytest.fixture(scope="module")
 def proxy_before_two(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Proxy]:
-    """A proxy in front of two servers that answer with their port."""
+    """Yield a proxy in front of two servers that answer with their port."""
     with ExitStack() as stack:
         backends = stack.enter_context(port_server()), stack.enter_context(port_server())
         yield stack.enter_context(proxied(nginx() or "", tmp_path_factory.mktemp("two"), free_port(), backends))
@@ -102,7 +102,7 @@ def ask(proxy: Proxy, path: str, headers: dict[str, str]) -> tuple[int, http.cli
 
 
 def open_page(proxy: Proxy) -> tuple[str, str]:
-    """Open the page; return its session token and the cookie."""
+    """Open the page, and return its session token and its cookie."""
     status, headers, page = ask(proxy, "/app", authorization())
     assert status == 200
     token = re.search(rb'"token":"([^"]+)"', page)
@@ -111,7 +111,7 @@ def open_page(proxy: Proxy) -> tuple[str, str]:
 
 
 async def first_message_header(proxy: Proxy, origin: str, password: dict[str, str]) -> dict[str, str]:
-    """Open the page and its WebSocket; return the header of the first message."""
+    """Open the page and its WebSocket, and return the header of the first message."""
     token, cookie = await asyncio.to_thread(open_page, proxy)
     request = HTTPRequest(
         f"wss://127.0.0.1:{proxy.port}/app/ws",
@@ -188,7 +188,7 @@ def test_sessions_are_sticky_and_distributed(proxy_before_two: Proxy) -> None:
         answers = [ask(proxy_before_two, path, {**authorization(), **cookie}) for path in ("/app/ws", "/static/a.js")]
         assert {answer for _, _, answer in answers} == {first}
         backends.append(first)
-    # All sixteen on the same backend: once in 33 000 runs.
+    # All sixteen sessions are on the same backend once in 33 000 runs.
     assert len(set(backends)) == 2
 
 

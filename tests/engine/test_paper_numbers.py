@@ -45,7 +45,7 @@ def test_case_2_on_x_px_at_05_is_70_20_10_with_outside_starts() -> None:
 
 
 def test_case_3_on_x_y_at_06_has_no_bounded_orbits() -> None:
-    # Except for orbits that stay on x = 0 by symmetry, a line on which default maps have no pixel.
+    # Orbits that stay on x = 0 by symmetry do not count, because default maps have no pixel on this line.
     assert compute_map(MapSpec(CASES["III"], Plane.X_Y, 0.6)).fractions()[Fate.BOUNDED] == 0.0
 
 

@@ -9,7 +9,7 @@ import pytest
 import engine
 
 OPTIONS = {"t_max", "execution", "executor", "cancel", "on_frame", "on_progress"}
-# Their parameters may be given by position, as in earlier releases.
+# Functions whose parameters may be given by position, as in earlier releases.
 STABLE = {"classify_orbits", "compute_map", "integrate_orbit"}
 
 

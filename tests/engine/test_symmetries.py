@@ -1,4 +1,4 @@
-"""Consequences of the symmetries of the potentials for orbits and maps."""
+"""Orbits and maps have the symmetries of their potentials."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def outcomes_of(name: str, energy: float, states: np.ndarray) -> tuple[np.ndarra
 
 @pytest.fixture(params=[("I", 0.2), ("II", 0.5), ("III", 0.5)], ids=str)
 def random_starts(request: pytest.FixtureRequest) -> tuple[str, float, np.ndarray]:
-    """Random starts in the interior with random directions."""
+    """Return case, energy, and random starts in the interior with random directions."""
     name, energy = request.param
     x, y, angle = np.random.default_rng(8).uniform([-0.4, -0.4, 0], [0.4, 0.4, 2 * np.pi], (200, 3)).T
     speed = np.sqrt(2 * (energy - CASES[name].value(x, y)))

@@ -1,6 +1,6 @@
-"""Symmetries of rotating systems: reflection with time reversal, and rotation by π.
+"""Rotating systems are symmetric under reflection with time reversal, and under rotation by π.
 
-For Φ even in y the orbits of (x, y, ẋ, ẏ, t) → (x, −y, −ẋ, ẏ, −t) are orbits; where Φ is even in x, too, so are those of
+If Φ is even in y, (x, y, ẋ, ẏ, t) → (x, −y, −ẋ, ẏ, −t) maps orbits to orbits. If Φ is also even in x, so does
 (x, y, ẋ, ẏ, t) → (−x, −y, −ẋ, −ẏ, t).
 """
 
@@ -44,7 +44,7 @@ def test_orbits_backward_are_reflected_orbits_forward(name: str) -> None:
     potential, energy = System(name).potential, ENERGIES[name]
     t_max = DURATION * potential.well.exact_time_unit
     starts = sample_starts(potential, energy, STARTS, seed=5)
-    # Backward in time an orbit is one of the reversed system with the opposite velocity.
+    # Backward in time, an orbit is an orbit of the reversed system with the opposite velocity.
     backward = classify_orbits(potential.reversed_in_time, energy, starts * [1.0, 1.0, -1.0, -1.0], t_max)
     forward = classify_orbits(potential, energy, starts * REFLECTED, t_max)
     assert np.count_nonzero(forward.fate) > 0

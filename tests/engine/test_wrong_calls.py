@@ -1,4 +1,4 @@
-"""Calls that a user may get wrong: each is answered with one sentence that names the parameter and what is legal."""
+"""Wrong calls are answered with one sentence that names the parameter and says what is legal."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def names() -> dict[str, Any]:
     }  # fmt: skip
 
 
-# The call, and the beginning of its sentence; … stands for the value.
+# Each call with the beginning of the sentence. … stands for the value.
 WRONG_CALLS = (
     ('CASES["IV"]', "case 'IV': did you mean 'I'? The names are I, II, III"),
     ('POTENTIALS["Henon-Heiles"]', "potential 'Henon-Heiles': did you mean 'HH'? The names are I, II, III, C3, C4, C5, C6, C7,"),

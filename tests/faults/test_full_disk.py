@@ -21,7 +21,7 @@ from tests.forked import Finished, run
 
 
 def limited_command(limit: int, folder: Path, arguments: tuple[str, ...]) -> None:
-    # Kernels that cannot be stored give a warning.
+    # Compile the kernels before the limit, because kernels that cannot be stored give a warning.
     prepare_for_maps(CASES["I"])
     prepare_for_evidence(CASES["I"])
     signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
@@ -34,7 +34,7 @@ def limited_command(limit: int, folder: Path, arguments: tuple[str, ...]) -> Non
 
 @pytest.fixture
 def run_limited(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Finished]:
-    """Run a command in a folder, in a child process that cannot write files longer than `limit` bytes."""
+    """Return a function that runs a command in a folder, in a child process that cannot write files above a limit of bytes."""
     output = tmp_path_factory.mktemp("output")
     return lambda limit, folder, *arguments: run(output, limited_command, limit, folder, arguments)
 
@@ -62,7 +62,7 @@ def _arrays(store: Path) -> dict[str, bytes]:
 
 @pytest.fixture
 def small_disk(tmp_path: Path) -> Iterator[Path]:
-    """A file system of 64 kB; skips where mounting is not permitted."""
+    """Yield a file system of 64 kB. Skip the test where mounting is not permitted."""
     disk = tmp_path / "disk"
     disk.mkdir()
     if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=64k", "none", str(disk)], capture_output=True, check=False).returncode:

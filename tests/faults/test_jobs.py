@@ -23,7 +23,7 @@ OTHER = MapSpec(CASES["I"], Plane.X_PX, 0.31, (48, 48), t_max=100.0)
 
 
 class FaultyPool(ThreadPoolExecutor):
-    """A thread pool in which one call fails, after a number of successful ones."""
+    """A thread pool in which one call fails, after a number of successful calls."""
 
     def __init__(self, error: BaseException, good_calls: int) -> None:
         super().__init__(2)

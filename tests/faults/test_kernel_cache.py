@@ -1,4 +1,4 @@
-"""Compiled kernels on disk: damaged files and unusable folders change no result."""
+"""Damaged files and unusable folders of compiled kernels change no result."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from tests.forked import Finished, fork_context, run
 
 
 def fresh_kernel() -> Callable[[float], float]:
-    """Return the same function, as a new process would see it."""
+    """Return a new object of the same kernel, as a new process would have."""
 
     @kernel
     def scaled(x: float) -> float:

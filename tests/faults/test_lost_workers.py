@@ -1,4 +1,4 @@
-"""Clusters that lose workers or their scheduler: a sweep goes on, or ends with a sentence and resumes with the same bytes."""
+"""When a cluster loses workers or its scheduler, a sweep goes on, or ends with a sentence and resumes with the same bytes."""
 
 from __future__ import annotations
 
@@ -37,13 +37,13 @@ def files_of(store: Path) -> dict[str, bytes]:
 
 @pytest.fixture(scope="module")
 def straight(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
-    """The files of a sweep that loses nothing."""
+    """Return the files of a sweep without losses."""
     folder = tmp_path_factory.mktemp("straight")
     compute_sweep(SPEC, folder / "store")
     return files_of(folder / "store")
 
 
-# The calls of a map: first its tiles, then the tests for evidence.
+# The calls of a map are first those of its tiles, then the tests for evidence.
 @pytest.mark.parametrize("good_calls", [0, 20])
 def test_dropped_call_ends_a_sweep_that_resumes_with_the_same_bytes(
     good_calls: int, tmp_path: Path, straight: dict[str, bytes]

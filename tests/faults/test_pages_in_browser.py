@@ -1,4 +1,4 @@
-"""Faults of pages and connections, in a browser: they affect one page only, and are shown as a sentence."""
+"""Faults of pages and connections affect one page only, and are shown as a sentence in the browser."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 # A map of bounded orbits, whose integration takes longer than any test.
 LONG_MAP = "?case=III&h=0.26&resolution=900&t_max=1e%2B06&plane=x_y"
 HOSTILE = '<img src=x onerror="window.hit=1">'
-# Longer than it takes to connect, and short enough for a test to wait for the end of the session.
+# Lifetime of unused sessions in ms: longer than it takes to connect, and short enough to wait for the end of a session.
 LIFETIME = ("--unused-session-lifetime", "6000", "--check-unused-sessions", "500")
 
 # Sends a value that the control itself would not send.
@@ -39,7 +39,7 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningApp]:
 
 @pytest.fixture
 def open_page(chromium: Browser, served: RunningApp) -> Iterator[Callable[..., Page]]:
-    """Open the page, or a link to a view, in a browser context of its own, which is closed after the test."""
+    """Yield a function that opens the page, or a link to a view, in a new browser context. Close the contexts after the test."""
     contexts = []
 
     def open_link(link: str = "") -> Page:

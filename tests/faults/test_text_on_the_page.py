@@ -60,7 +60,7 @@ def _page() -> pn.viewable.Viewable:
 
 @pytest.fixture
 def address() -> Iterator[str]:
-    """Address of a page that shows only a warning."""
+    """Yield the address of a page that shows only a warning."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]

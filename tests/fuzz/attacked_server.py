@@ -1,4 +1,4 @@
-"""A server for random input, with small caches and short sessions, and checks of its memory and log."""
+"""Open pages of a server for random input, which has small caches, and check its memory and log."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tests.page_channel import Channel
 from tests.waiting import SECONDS, wait_until
 
 LINK = "?case=I&h=0.3&resolution=48&t_max=100"
-"""A map that takes little time."""
+"""Link to a map that takes little time."""
 
 SETTINGS = {"CACHE_BYTES": str(32 * 2**20), "PAGES_PER_ADDRESS": "10", "COMPILED_OPERATIONS": "50000"}
 
@@ -36,12 +36,12 @@ async def open_page(address: str) -> None:
 
 
 def resting_memory(app: RunningApp) -> float:
-    """Return the resident memory in bytes, without pages and running jobs."""
+    """Return the resident memory in bytes, when there are no pages and no running jobs."""
     wait_until(lambda: app.figure("sessions_open") + app.figure("jobs_in_flight") == 0, SECONDS)
     return app.figure("resident_memory_bytes")
 
 
 def tracebacks(log: Path) -> list[str]:
-    """Return lines of tracebacks with their neighbours."""
+    """Return the tracebacks of a log with the lines around them."""
     lines = log.read_text().splitlines()
     return ["\n".join(lines[max(n - 1, 0) : n + 60]) for n, line in enumerate(lines) if "Traceback" in line]

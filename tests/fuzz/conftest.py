@@ -1,4 +1,4 @@
-"""Hypothesis profile for long runs, 14 000 inputs instead of 500: ``pytest tests/fuzz --hypothesis-profile=thorough``."""
+"""Add a Hypothesis profile for long runs with 14 000 inputs instead of 500: ``--hypothesis-profile=thorough``."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ settings.register_profile(
 
 @pytest.fixture
 def served(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[RunningApp, Path]]:
-    """A server with small limits, and its log."""
+    """Yield a server with small limits, and its log."""
     for name, value in SETTINGS.items():
         monkeypatch.setenv(f"ESCAPE_EXPLORER_{name}", value)
     log = tmp_path / "log"

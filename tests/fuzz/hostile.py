@@ -1,4 +1,4 @@
-"""Strategies for invalid and extreme input, and the limits that every response must keep."""
+"""Make invalid and extreme input, and check the limits that every response must keep."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ import numpy as np
 from hypothesis import strategies as st
 
 MOST_SECONDS = 20.0
-"""Longest processor time for any request; the valid ones are small."""
+"""Longest processor time of any request, in seconds. Valid requests in these tests are small."""
 
 MOST_BYTES = 1.0e9
-"""Most memory that any request takes in addition, at any moment of it."""
+"""Largest additional memory at any moment of a request."""
 
 LONGEST_MESSAGE = 2000
-"""Most characters of an error message: long input must not be repeated in full."""
+"""Largest number of characters of an error message, which must not repeat long input in full."""
 
 EXTREMES = (
     float("nan"), float("inf"), float("-inf"), 0.0, -0.0, 5e-324, -5e-324, 2.2e-308, 1e-300, 1e-30, 1e-16, 1.7e308, -1.7e308,
@@ -63,7 +63,7 @@ def mostly[Value](valid: st.SearchStrategy[Value], invalid: st.SearchStrategy[An
 
 @contextmanager
 def limited_resources() -> Iterator[None]:
-    """Assert that what is done here takes little processor time and memory, whatever earlier tests left in this process."""
+    """Assert that the body takes little processor time and memory, whatever earlier tests left in this process."""
     begun, before = time.process_time(), _resident_bytes("VmRSS")
     # The peak begins anew, see proc(5).
     Path("/proc/self/clear_refs").write_text("5")

@@ -36,7 +36,7 @@ def _monomial(choice: random.Random, highest: int = 6) -> str:
 
 
 def _wrapped(choice: random.Random, depth: int, inner: str, functions: tuple[str, ...] = _FUNCTIONS) -> str:
-    """Return a function of a function … of `inner`, each with an addend."""
+    """Return `depth` nested functions around `inner`, some of them with an addend."""
     for _ in range(depth):
         added = f"{_number(choice)}+" if choice.random() < 0.5 else ""
         inner = f"{choice.choice(functions)}({added}{inner})"
@@ -134,7 +134,7 @@ def _any_characters(choice: random.Random) -> Link:
 
 
 def _damaged(choice: random.Random) -> Link:
-    """Return a formula of another kind with characters exchanged, left out or added."""
+    """Return a formula of another kind in which some characters are exchanged, left out or added."""
     link = choice.choice([_polynomial, _with_letters, _moved_to_a_well, _with_bodies])(choice)
     text = list(link["V"])
     for _ in range(choice.randint(1, 4)):
@@ -145,7 +145,7 @@ def _damaged(choice: random.Random) -> Link:
 
 
 def _functions_of_all(choice: random.Random) -> Link:
-    """Return few characters with many products and derivatives."""
+    """Return a short formula whose products and derivatives are many."""
     inner = choice.choice(["x^2*y", "x*y", "1+x^2+y^2", "x+2y"])
     terms = [f"{choice.choice(_FUNCTIONS)}({_number(choice)}+{_number(choice)}*{inner})" for _ in range(choice.randint(2, 30))]
     return {"V": f"{_well(choice)} {choice.choice('+−')} " + choice.choice("+*").join(terms)}

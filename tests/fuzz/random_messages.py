@@ -1,4 +1,4 @@
-"""Make random messages of Bokeh's protocol for all models of a page, most as a page sends them."""
+"""Make random messages of Bokeh's protocol for all models of a page. Most are such as a page sends."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ CHEAP = ("start", "end", "inner_width", "running", "step", "direction")
 
 
 def find_models(part: Any) -> Iterator[dict[str, Any]]:
-    """Yield the models of a serialized document or patch: id, name of the class, attributes."""
+    """Yield the models of a serialized document or patch, with id, class name and attributes."""
     if isinstance(part, dict):
         if "id" in part and isinstance(part.get("attributes"), dict):
             yield part
@@ -40,12 +40,12 @@ def find_models(part: Any) -> Iterator[dict[str, Any]]:
 
 
 class RandomMessages:
-    """Makes messages.
+    """Makes random messages to a server from the models that the server has sent.
 
     Parameters
     ----------
     seed
-        Of the random numbers.
+        Seed of the random numbers.
     """
 
     def __init__(self, seed: int) -> None:
@@ -53,7 +53,7 @@ class RandomMessages:
         self.models: dict[str, dict[str, Any]] = {}
 
     def learn(self, content: Any) -> None:
-        """Remember the models in a message of the server, and its changes of their attributes."""
+        """Remember the models in a message of the server, and changes of attributes in the message."""
         for model in find_models(content):
             self.models[model["id"]] = model
         for event in content.get("events", ()) if isinstance(content, dict) else ():
@@ -61,14 +61,14 @@ class RandomMessages:
                 self.models[event["model"]["id"]]["attributes"][event["attr"]] = event["new"]
 
     def patch(self) -> dict[str, Any]:
-        """Return the content of a PATCH-DOC message; nine in ten are what a page sends."""
+        """Return the content of a PATCH-DOC message. Nine in ten are such as a page sends."""
         plausible = self.random.random() < 0.9
         makers = (self._plausible_change, self._plausible_event) if plausible else (self._hostile_change, self._hostile_event)
         count = 1 if plausible else self.random.randint(0, 3)
         return {"events": [self.random.choice(makers)() for _ in range(count)]}
 
     def wrong_parts(self) -> list[str | bytes]:
-        """Return the parts of a message of another kind, cut off or no message at all."""
+        """Return the parts of a message of another kind, of a message that is cut off, or of no message at all."""
         kind = self.random.choice(["PUSH-DOC", "PULL-DOC-REQ", "PULL-DOC-REPLY", "OK", "ERROR", "ACK", "", "x" * 300])
         usual = {"msgid": "1", "msgtype": kind}
         header: Any = self.random.choice([usual] * 8 + [None, {}, {"msgtype": kind}, {**usual, "num_buffers": 2}])

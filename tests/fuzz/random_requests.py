@@ -1,4 +1,4 @@
-"""Make random HTTP requests for the routes of a server, as browsers send them or never do."""
+"""Make random HTTP requests for the routes of a server, usual ones and ones that no browser sends."""
 
 from __future__ import annotations
 
@@ -52,14 +52,14 @@ BODIES = (
 
 
 class RandomRequests:
-    """Makes requests.
+    """Makes random requests.
 
     Parameters
     ----------
     routes
         Patterns of paths.
     seed
-        Of the random numbers.
+        Seed of the random numbers.
     """
 
     def __init__(self, routes: Sequence[str], seed: int) -> None:
@@ -78,7 +78,7 @@ class RandomRequests:
         return b"\r\n".join([*lines, b"", self._random.choice(BODIES)])
 
     def _some(self, choices: Sequence[str], probability: float) -> list[str]:
-        """Return a random number of choices: with `probability` one more each time."""
+        """Return a random number of choices. After each choice, there is another one with `probability`."""
         chosen = []
         while self._random.random() < probability:
             chosen.append(self._random.choice(choices))
@@ -97,7 +97,7 @@ class RandomRequests:
         return (path + ("?" + "&".join(pairs) if pairs else "")).encode()
 
     def _offer(self) -> str:
-        """Return the subprotocols of a WebSocket, with a token that the server has not issued, or none."""
+        """Return the subprotocols of a WebSocket: with a token that the server has not issued, or without a token."""
         payload = {"session_id": self._random.choice(("", "x" * 44, 5)), "session_expiry": self._random.choice((0, 2**40, "x"))}
         bomb = zlib.compress(b"0" * self._random.choice((0, 2**12, 2**22)), 9)
         token = base64.urlsafe_b64encode(json.dumps({**payload, "__bk__zlib_": base64.urlsafe_b64encode(bomb).decode()}).encode())

@@ -33,7 +33,7 @@ CHEAP_NUMBERS = [repr(number) for number in EXTREMES if not 20.0 < number < 1e30
 
 
 def as_argument(text: str) -> str:
-    """Replace a surrogate by the one that Python uses for undecodable bytes of an argument; shorten long text."""
+    """Replace a surrogate by that which Python uses for undecodable bytes of an argument, and shorten long text."""
     return text[:200].replace("\ud800", "\udcff")
 
 

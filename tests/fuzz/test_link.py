@@ -1,4 +1,4 @@
-"""Any link gives a valid view state; invalid values are reported in messages that are safe to display."""
+"""Any link gives a valid view state. Invalid values are reported in messages that are safe to display."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ LEGAL = {
 }  # fmt: skip
 SAFE = re.compile(r"[A-Za-z0-9_ .,;:+()=?…-]*")
 LONGEST_READING = 0.1
-"""Most processor time to read a link, in seconds: it happens on the event loop."""
+"""Longest processor time to read a link, in seconds. Links are read on the event loop."""
 POTENTIAL_PROBLEM = "Ignored the potential in the link: "
 
 numbers = floats.map(repr) | st.sampled_from(["1e999", "-inf", "1_0", "0x10", "١", " 1", "1e-400", "9" * 400])
@@ -47,14 +47,14 @@ def check(parameters: dict[str, str]) -> None:
     assert set(read_link(parameters)[0]) <= set(LINKED)
     state, problems = open_link(parameters)
     for problem in problems:
-        # A message about a formula quotes it; the page escapes it.
+        # A message about a formula quotes the formula, which the page escapes.
         if not problem.startswith(POTENTIAL_PROBLEM):
             assert SAFE.fullmatch(problem), problem
         assert len(problem) <= LONGEST_MESSAGE
     assert len(problems) <= len(parameters) + 1
     assert state.potential.channels
     assert state.energies.low < state.energies.first < state.energies.high
-    # Other systems would have to be compiled first.
+    # The kernels of other systems would have to be compiled first.
     if state.system.case in CASES and not state.system.parameters:
         result_or_error(state.map_spec, ["energy", "window", "plane", "t_max", "resolution"])
     assert len(link_sentence(linked_view(read_link(parameters)[0]))) <= LONGEST_MESSAGE

@@ -1,4 +1,4 @@
-"""Any potential can be reviewed, and every accepted one can be displayed."""
+"""Any potential can be reviewed, and every accepted potential can be displayed."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from tests.fuzz.hostile import LONGEST_MESSAGE, formulas, mostly, result_or_erro
 from tests.fuzz.random_formulas import random_link
 
 LONGEST_REVIEW = 3.0
-"""Processor time in seconds; the page waits for the review of a formula in its link."""
+"""Longest processor time of a review, in seconds. The page waits for the review of a formula in its link."""
 
 exponents = st.integers(0, 6)
 sizes = st.floats(1e-6, 1e6) | st.floats(0.1, 3.0)

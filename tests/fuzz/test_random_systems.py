@@ -1,4 +1,4 @@
-"""Random systems compared with heyoka: wells in random units, wells with functions, and systems that rotate or have bodies."""
+"""Random systems agree with heyoka: wells in random units, wells with functions, and systems that rotate or have bodies."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from tests.peers.random_systems import FACTORS, HIGHEST_DEGREE, random_formula, 
 from tests.peers.well_comparison import Comparison, compare_with_heyoka
 
 CHUNK = 5
-# Refusals of wells that are not open, as no orbit escapes or the escape energy is not defined, and of energies of merged exits.
+# Expected refusals: the well is not open, because no orbit escapes or the escape energy is undefined, or exits merge.
 EXPECTED = ("No saddle leads out", "The well is open without a saddle", "are one exit above V")
 # Largest number of other refusals in a chunk.
 MOST_REFUSED = 2
-# Starts in a rotating system, and exact units of time for which they are followed.
+# Number of starts in a rotating system, and duration of their orbits in exact units of time.
 STARTS, DURATION = 40, 40.0
-# Smallest share of robust orbits in a system. Rounding errors decide the ends or crossings of other orbits. For one system
-# at its high energy, this is true of all orbits.
+# Smallest share of robust orbits in a system. Rounding errors decide the ends or crossings of other orbits. In the system of
+# `CHAOTIC_SEEDS`, at its high energy, no orbit is robust.
 LEAST_ROBUST = 0.5
 CHAOTIC_SEEDS = {39}
 # Numbers of slow tests: wells of all forms with most functions, and systems with exits, bodies or an escape radius.
@@ -32,7 +32,7 @@ WITH_FUNCTIONS, ROTATING = range(3, 10), range(1, 5)
 
 
 def slow_for(numbers: Collection[int]) -> pytest.MarkDecorator:
-    """Return a mark that repeats a test for 40 numbers: these ones are slow, the others exhaustive."""
+    """Return a mark that repeats a test for the numbers 0 to 39. Tests of `numbers` are slow, the others exhaustive."""
     marks = (pytest.mark.slow if number in numbers else pytest.mark.exhaustive for number in range(40))
     return pytest.mark.parametrize("number", [pytest.param(number, marks=mark) for number, mark in enumerate(marks)])
 
@@ -50,7 +50,7 @@ def random_energies(potential: Potential, seed: int) -> list[float]:
 
 
 def check_well(seed: int) -> tuple[list[Comparison], list[str]]:
-    """Compare a well with heyoka at random energies in random units; return the comparisons and the reasons for refusals."""
+    """Compare a well with heyoka at random energies in random units. Return the comparisons and the reasons for refusals."""
     potential, scaling = random_well(seed, HIGHEST_DEGREE), random_scaling(seed)
     usual, review = review_potential(potential), review_potential(scaling.potential(potential))
     assert (review.refusal is None, review.channels) == (usual.refusal is None, usual.channels)
@@ -69,7 +69,7 @@ def check_well(seed: int) -> tuple[list[Comparison], list[str]]:
 @chunks
 def test_random_wells_agree_with_heyoka_in_random_units(chunk: int) -> None:
     seeds = range(CHUNK * chunk, CHUNK * (chunk + 1))
-    # In a separate process, because compiled code stays in memory until the end of its process.
+    # The wells are compared in a separate process, because compiled code stays in memory until the end of its process.
     with ProcessPoolExecutor(1, mp_context=fork_context()) as process:
         found = dict(zip(seeds, process.map(check_well, seeds), strict=True))
     assert not {seed: wrong for seed, (comparisons, _) in found.items() if (wrong := [w for c in comparisons for w in c.wrong])}
@@ -93,7 +93,7 @@ def test_exits_of_several_channels_agree_with_heyoka(seed: int) -> None:
 
 @cache
 def open_well(number: int) -> tuple[int, Potential]:
-    """Of the wells with exits, in the order of their seeds: the seed and the potential."""
+    """Return the seed and the potential of the well with this number, among the wells with exits in the order of seeds."""
     first = open_well(number - 1)[0] + 1 if number else 0
     for seed in itertools.count(first):
         text, values = random_formula(seed)
@@ -127,7 +127,7 @@ def test_the_energy_is_constant_in_wells_with_functions(number: int) -> None:
 
 @cache
 def accepted_system(number: int) -> tuple[int, Potential, float, np.ndarray]:
-    """Of the systems that are accepted, in the order of their seeds: the seed, an energy and starts."""
+    """Return seed, potential, energy and starts of the system with this number, among accepted systems in the order of seeds."""
     first = accepted_system(number - 1)[0] + 1 if number else 0
     for seed in itertools.count(first):
         try:

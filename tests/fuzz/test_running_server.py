@@ -1,4 +1,4 @@
-"""Random messages and requests to the running server: no traceback, no hang, no memory kept, and other pages open as before."""
+"""Random messages and requests cause no traceback and no hang in a server, leave no memory behind, and other pages still open."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from tests.waiting import SECONDS
 
 log = logging.getLogger(__name__)
 
-# Messages of one connection before it is cut and the next one begins; every third one has a page of its own.
+# Number of messages of a connection before it is cut and the next connection begins. Every third connection has a new page.
 LIFE = 600
 CONNECTIONS_PER_PAGE = 3
 BETWEEN_SYNCHRONIZATIONS = 25
@@ -32,7 +32,7 @@ LARGEST_GROWTH_BY_MESSAGES, LARGEST_GROWTH_BY_REQUESTS = 1.3, 1.15
 
 
 class Visitor:
-    """Connections of one visitor, one after the other."""
+    """Opens the connections of one visitor, one after another."""
 
     def __init__(self, address: str, seed: int) -> None:
         self._address, self._messages = address, RandomMessages(seed)
@@ -66,7 +66,7 @@ class Visitor:
                 parts = self._messages.wrong_parts()
                 channel.write(*parts)
                 if len(parts) != PARTS:
-                    # The rest of the connection would be one message shifted by these parts.
+                    # These parts shift the parts of all later messages, so the connection is of no further use.
                     return
             else:
                 channel.send("PATCH-DOC", self._messages.patch())
@@ -76,7 +76,7 @@ class Visitor:
                 await self._wait(self._answered, reader)
 
     async def _wait(self, event: asyncio.Event, reader: asyncio.Task[None]) -> None:
-        """Wait for an event or the end of the connection; TimeoutError if the server hangs."""
+        """Wait for an event or the end of the connection. TimeoutError if the server hangs."""
         waiting = asyncio.create_task(event.wait())
         done, _ = await asyncio.wait([waiting, reader], timeout=SECONDS, return_when=asyncio.FIRST_COMPLETED)
         waiting.cancel()
@@ -93,7 +93,7 @@ class Visitor:
             elif kind == "SERVER-INFO-REPLY":
                 self._answered.set()
             elif kind == "PULL-DOC-REPLY":
-                # Models of earlier pages would be refused.
+                # Forget the models of earlier pages, which the server would refuse.
                 self._messages.models.clear()
                 self._messages.learn(parsed)
                 channel.emit("document_ready")
@@ -113,11 +113,11 @@ def send_messages(app: RunningApp, count: int, seed: int) -> int:
 
 
 async def send(port: int, request: bytes) -> bytes:
-    """Return the first line of the answer; empty if the server closes the connection."""
+    """Send a request, and return the first line of the answer; empty if the server closes the connection."""
     reader, writer = await asyncio.open_connection("127.0.0.1", port)
     try:
         writer.write(request)
-        # Otherwise the server waits for the rest of an incomplete request.
+        # Without an end, the server would wait for the rest of an incomplete request.
         writer.write_eof()
         first = (await asyncio.wait_for(reader.read(), SECONDS)).partition(b"\r\n")[0]
         await asyncio.wait_for(writer.drain(), SECONDS)
@@ -129,7 +129,7 @@ async def send(port: int, request: bytes) -> bytes:
 
 
 def send_requests(app: RunningApp, requests: RandomRequests, count: int) -> dict[bytes, int]:
-    """Send requests, some at a time, and return how often each status was answered."""
+    """Send requests, some at the same time, and return how often each status was answered."""
     port, answers = int(app.root.rpartition(":")[2]), dict[bytes, int]()
 
     async def client() -> None:

@@ -1,6 +1,6 @@
-"""Compare the examples of all docstrings, and those of the pages given as arguments, with what the installed library prints.
+"""Compare the examples of docstrings and of the pages given as arguments with what the installed library prints.
 
-Run it in a folder from which the repository cannot be imported: python -W error run_examples.py README.md
+Run this in a folder from which the repository cannot be imported: python -W error run_examples.py README.md
 """
 
 from __future__ import annotations

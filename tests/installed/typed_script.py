@@ -1,4 +1,4 @@
-"""A user's script: it runs with the wheel, and `mypy --strict` finds the types of what it calls."""
+"""A user's script, which runs with the wheel, and in which `mypy --strict` finds the types of all calls."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def measure(potential: Potential, energy: float) -> tuple[BasinEntropy, WadaTest
 
 
 def follow(potential: Potential, energy: float) -> Orbit:
-    """Return the first of ten random starts, followed to its escape."""
+    """Return the orbit of the first of ten random starts."""
     starts = sample_starts(potential, energy, 10, plane=Plane.X_Y, window=EDGES, seed=1)
     assert_type(classify_orbits(potential, energy, starts, t_max=1e3, execution=Execution()), Outcomes)
     orbit = integrate_orbit(potential, starts[0], t_max=1e3)

@@ -1,4 +1,4 @@
-"""The library without any extra: it computes and draws, and names the extra of what is missing."""
+"""Check that the library without extras computes and draws, and names the extra of what is missing."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Equations of motion for SciPy's DOP853; from the engine only the terms and the Hessian of the potential are used."""
+"""Make equations of motion for SciPy's DOP853. From the engine, they use only the terms and the Hessian of the potential."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def equations(potential: Potential):
 
 
 def variational_equations(potential: Potential):
-    """Return the equations of (12,) variables: x, y, px, py of an orbit, and δx, δy, δpx, δpy of two deviation vectors."""
+    """Return the equations of 12 variables: x, y, px, py of an orbit, and δx, δy, δpx, δpy of two deviation vectors."""
 
     def derivative(_t: float, flat: np.ndarray) -> np.ndarray:
         x, y, px, py = flat[:4]

@@ -1,7 +1,7 @@
-"""An independent description of the exits, from the sampled paths of the Lyapunov orbits.
+"""Describe the exits independently, from the sampled paths of the Lyapunov orbits.
 
-A Lyapunov orbit is at rest at both ends, so its path is an even function of time about each end, and a cosine series through its
-evenly spaced samples is accurate to rounding errors. In axes along and across the chord between the ends the path is a graph.
+A Lyapunov orbit is at rest at both ends, so its path is an even function of time about each end. A cosine series through evenly
+spaced samples is therefore accurate to rounding errors. In axes along and across the chord between the ends, the path is a graph.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class ExitLine:
         return np.where(np.abs(q) <= self.q[-1], u - np.interp(q, self.q, self.u), -1.0)
 
     def past(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """Return the distance beyond the exit and its straight extension, which interiors of the paper's cases do not cross."""
+        """Return the distance beyond the exit or its straight extension, which no interior of the paper's cases crosses."""
         u, q = self.in_chord_axes(x, y)
         return u - np.interp(q, self.q, self.u)
 
@@ -51,7 +51,7 @@ def exit_line(orbit: LyapunovOrbit) -> ExitLine:
     across = np.array([x[-1] - x[0], y[-1] - y[0]])
     across /= np.hypot(*across)
     outward = np.array([across[1], -across[0]])
-    # Outward is away from the origin, where the well is.
+    # The normal points away from the well, which is at the origin.
     outward = outward if outward @ middle > 0 else -outward
     line = ExitLine(orbit.channel, middle, outward, np.empty(0), np.empty(0))
     u, q = line.in_chord_axes(x, y)

@@ -1,6 +1,6 @@
-"""Orbits to their exits of any shape by heyoka's own event detection: lines, discs of centres, the escape circle.
+"""Follow orbits to exits of any shape with heyoka's own event detection: lines, discs of centres, the escape circle.
 
-All in the units of the potential. The lines are those of `find_lyapunov_orbits`.
+All numbers are in the units of the potential. The lines are those of `find_lyapunov_orbits`.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from tests.peers.taylor_heyoka import START_TIME, coordinates, equations
 
 TOLERANCES = (1e-18, 1e-16)
 SHIFT = 1e-11
-# Share of the unit of time by which the end times of a robust orbit may differ, and what rounding adds to the spread.
+# Largest spread of the end times of a robust orbit, and rounding of end times that is added to the spread, in units of time.
 LARGEST_SPREAD, ROUNDING = 1e-4, 1e-10
 
 
 class Ends(NamedTuple):
-    """(n,) each: fates, end times (t_max for 0), upward crossings of y = 0."""
+    """Fates, end times (t_max for fate 0) and upward crossings of y = 0, each of shape (n,)."""
 
     fate: np.ndarray
     time: np.ndarray
@@ -32,7 +32,7 @@ class Ends(NamedTuple):
 
 @dataclass(frozen=True)
 class Exit:
-    """An exit: a function of heyoka's x and y that rises through 0 where an orbit leaves, and a test whether a point counts."""
+    """An exit: a function of heyoka's x and y that rises through 0 where orbits leave, and a test whether points count."""
 
     fate: int
     height: Any
@@ -43,7 +43,7 @@ def exits_of(potential: Potential, energy: float) -> list[Exit]:
     x, y, *_ = coordinates()
     exits = [_line(orbit.channel, orbit.curve, x, y) for orbit in find_lyapunov_orbits(potential, energy)]
     for fate, centre in enumerate(potential.centres, potential.channels + 1):
-        # Division by the radius gives all exits the same scale.
+        # The division by the radius gives the functions of all exits the same scale.
         height = 1.0 - ((x - centre.x) ** 2.0 + (y - centre.y) ** 2.0) * (1.0 / centre.radius**2)
         exits.append(Exit(fate, height, lambda _x, _y: True))
     if potential.escape_radius is not None:
@@ -58,7 +58,7 @@ def _line(channel: int, curve: np.ndarray, x: Any, y: Any) -> Exit:
         curve[[geometry.ORIGIN_X, geometry.ORIGIN_Y]],
         curve[[geometry.OUTWARD_X, geometry.OUTWARD_Y]],
     )
-    # Beyond the walls the parabola leads through other allowed regions.
+    # Points beyond the walls do not count, because the parabola continues through other allowed regions.
     middle, reach = curve[geometry.MIDDLE], (1.0 + 1e-9) * curve[geometry.HALF_WIDTH]
     constant, linear, square = curve[geometry.COEFFICIENTS : geometry.COEFFICIENTS + 3]
     s = (ox * (y - place[1]) - oy * (x - place[0]) - middle) * (1.0 / curve[geometry.HALF_WIDTH])
@@ -78,7 +78,7 @@ class Peer:
         self.integrator = hy.taylor_adaptive(equations(potential), [0.0] * 4, tol=tolerance, t_events=leave, nt_events=[upward])
 
     def __deepcopy__(self, _memo: object) -> Peer:
-        # heyoka copies its callbacks; all copies must update this object.
+        # heyoka copies its callbacks, and all copies must update this object.
         return self
 
     def _left(self, each: Exit) -> Callable[[Any, int], bool]:
@@ -107,7 +107,7 @@ class Peer:
 
 
 class Comparison(NamedTuple):
-    """Numbers of orbits: compared, robust, wrong; and the largest deviation of an end time of a robust one."""
+    """Numbers of compared, robust and wrong orbits, and the largest deviation of the end time of a robust orbit."""
 
     orbits: int
     robust: int
@@ -116,7 +116,7 @@ class Comparison(NamedTuple):
 
 
 def compare(potential: Potential, energy: float, states: np.ndarray, t_max: float) -> Comparison:
-    """Compare the engine's outcomes with heyoka's where these survive a shift of the start and another tolerance."""
+    """Compare the engine's outcomes with heyoka's, where heyoka's do not change with a shift of the start and the tolerance."""
     ours = classify_orbits(potential, energy, states, t_max)
     shift = SHIFT * potential.units.state * np.array([1.0, -1.0, 0.0, 0.0])
     peers = [Peer(potential, energy, tolerance) for tolerance in TOLERANCES]

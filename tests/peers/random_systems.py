@@ -1,6 +1,6 @@
-"""Random wells: polynomials, wells with functions, and these in rotating frames, with bodies and escape radii.
+"""Make random wells: polynomials, wells with functions, and wells with functions in rotating frames, with bodies or escape radii.
 
-A well with functions is a harmonic, Plummer, logarithmic or cosine one, with two terms of degree 3 or 4 times a random function.
+A well with functions is a harmonic, Plummer, logarithmic or cosine well plus two terms of degree 3 or 4 times a random function.
 """
 
 from __future__ import annotations
@@ -14,7 +14,8 @@ from tests.contracts.scaling import Scaling
 HIGHEST_DEGREE = 10
 # Energies of wells with functions, as multiples of their depth.
 FACTORS = (1.02, 1.5)
-# Largest rotation, as a share of the slowest frequency of the well, above which Φ has none; one in eight does not rotate.
+# Largest rotation, as a share of the slowest frequency of the well. With a rotation above this frequency, Φ has no well. One in
+# `AT_REST` systems does not rotate.
 FASTEST, AT_REST = 0.9, 8
 
 _WELLS = (
@@ -51,7 +52,7 @@ def random_well(seed: int, highest_degree: int = 8) -> Potential:
 
 
 def random_scaling(seed: int) -> Scaling:
-    """Return units from the least to the largest that are supported, no powers of 2."""
+    """Return random units between the smallest and the largest that are supported. They are no powers of 2."""
     length, energy = 10.0 ** np.random.default_rng([20, seed]).uniform(-6.0, 6.0, 2)
     return Scaling(float(length), float(energy))
 
@@ -93,5 +94,5 @@ def random_system(seed: int) -> tuple[Potential, float]:
         lambda: well.with_outcomes(escape_radius=radius),
         lambda: parse_formula(body, parameters=values).in_rotating_frame(well.rotation).with_outcomes([centre], radius),
     )
-    # The exits of a well at rest are not straight lines; `well_comparison` compares them.
+    # `well_comparison` compares the exits of wells at rest, which are not straight lines.
     return builders[int(random.integers(0 if well.rotation else 2, len(builders)))](), energy

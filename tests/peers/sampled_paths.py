@@ -1,4 +1,4 @@
-"""Escapes by heyoka in any potential: an orbit leaves where its finely sampled path crosses that of a Lyapunov orbit."""
+"""Find escapes with heyoka in any potential: an orbit leaves where its finely sampled path crosses that of a Lyapunov orbit."""
 
 from __future__ import annotations
 
@@ -10,19 +10,23 @@ import numpy as np
 from engine import Potential
 from tests.peers import taylor_heyoka
 
-# Points of a path in each step, repeated divisions of the interval of a crossing into that many parts, and points of an exit.
+# Number of points of a path in each step, number of times that the interval of a crossing is sampled anew, number of points of an
+# exit.
 _SAMPLES, _ZOOMS, _EXIT_POINTS = 16, 5, 2001
 
 
 @dataclass(frozen=True)
 class Exits:
-    """The exits of one energy: (n, 2) paths and their channels."""
+    """The exits of one energy: their channels, and their paths of shape (n, 2)."""
 
     channels: list[int]
     paths: list[np.ndarray]
 
     def first_crossed(self, path: np.ndarray) -> tuple[int, int]:
-        """Return the first segment of a path (m, 2) that crosses an exit, and the channel of this exit, 0 if there is none."""
+        """Return the index of the first segment of a path that crosses an exit, and the channel of the exit; 0 without one.
+
+        The path has the shape (m, 2).
+        """
         crossings = [(int(np.argmax(hits)), channel) for channel, hits in self._hits(path) if hits.any()]
         return min(crossings, default=(0, 0))
 
@@ -39,7 +43,7 @@ class Exits:
 
 @dataclass(frozen=True)
 class End:
-    """The place (2,) and time of the end of an orbit, its channel (0 for none), and its upward crossings of y = 0."""
+    """The end of an orbit: channel (0 for none), time, place of shape (2,), and number of upward crossings of y = 0 before."""
 
     channel: int
     time: float
@@ -48,12 +52,12 @@ class End:
 
     @property
     def outcome(self) -> tuple[int, int]:
-        """Channel and crossings."""
+        """The channel and the number of crossings."""
         return self.channel, self.crossings
 
 
 class Peer:
-    """Orbits of a potential by heyoka, with one tolerance."""
+    """Integrates orbits of a potential with heyoka, with one tolerance."""
 
     def __init__(self, potential: Potential, tolerance: float) -> None:
         self.upward: list[float] = []
@@ -88,7 +92,7 @@ class Peer:
         return End(0, self.integrator.time, len(self.upward), self.integrator.state[:2].copy())
 
     def _first_crossing(self, exits: Exits, begin: float, end: float) -> tuple[float, int]:
-        """When an orbit crosses an exit first between two times of the last step, and its channel; 0 if it crosses none."""
+        """Return when an orbit first crosses an exit between two times of the last step, and the channel; 0 without crossing."""
         crossed = 0
         for _ in range(_ZOOMS):
             times = np.linspace(begin, end, _SAMPLES)

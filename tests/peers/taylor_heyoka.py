@@ -1,4 +1,4 @@
-"""Escapes by heyoka, a Taylor integrator with an independent implementation of recurrences, step control and event detection."""
+"""Find escapes with heyoka, a Taylor integrator with independent recurrences, step control and event detection."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from engine.systems.forms.polynomial_form import PolynomialForm
 from tests.peers.exit_lines import ExitLine
 
 _DEGREE = 12
-# Crossings up to this time are the start itself and are not counted.
+# Crossings up to this time are the start, which does not count.
 START_TIME = 1e-9
 
 
 @dataclass(frozen=True)
 class PeerOutcomes:
-    """Channel (0 if bounded), escape time (NaN if bounded) and number of upward crossings of y = 0 of n orbits."""
+    """Channel (0 if bounded), escape time (NaN if bounded) and number of upward crossings of y = 0 of each orbit."""
 
     fate: np.ndarray
     escape_time: np.ndarray
@@ -140,7 +140,7 @@ class Classifier:
             self.integrator.pars[18 * k : 18 * k + len(numbers)] = numbers
 
     def __deepcopy__(self, _memo: object) -> Classifier:
-        # heyoka copies its callbacks; all copies must update the counters of this object.
+        # heyoka copies its callbacks, and all copies must update the counters of this object.
         return self
 
     def classify(self, states: np.ndarray, t_max: float) -> PeerOutcomes:

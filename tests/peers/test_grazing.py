@@ -1,7 +1,7 @@
-"""Orbits that graze y = 0: two crossings, or none, within a small part of one step.
+"""Orbits that graze y = 0 have two crossings, or none, within a small part of one step.
 
-In the cases of the paper an orbit with y = ẏ = 0 stays on y = 0; in a potential that is not even in y an orbit can turn there.
-Each start is computed backward in time by heyoka, from a turning point at a small depth beyond or before y = 0.
+In the cases of the paper, an orbit with y = ẏ = 0 stays on y = 0. In a potential that is not even in y, an orbit can turn at
+y = 0. Each start is computed backward in time by heyoka, from a turning point at a small depth beyond or before y = 0.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ DEPTHS = [1e-3, 1e-9]
 def grazing_starts(y_at_turn: float) -> np.ndarray:
     x, px = np.random.default_rng(14).uniform(-0.45, 0.45, (2, 60))
     turning = np.column_stack([x, np.full(60, y_at_turn), px, np.zeros(60)])
-    # ÿ = −V_y must not be close to 0, so that the orbit turns.
+    # An orbit turns only if ÿ = −V_y is not close to 0.
     turning = turning[np.abs(ODD.gradient(x, 0 * x)[1]) > 0.01]
     return taylor_heyoka.propagated(ODD, turning, -TIME_TO_TURN)
 

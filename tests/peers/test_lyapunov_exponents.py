@@ -1,4 +1,4 @@
-"""SALI compared with the largest Lyapunov exponent, computed with heyoka from two neighbouring orbits (Benettin's method)."""
+"""SALI agrees with the largest Lyapunov exponent, computed with heyoka from two neighbouring orbits (Benettin's method)."""
 
 from __future__ import annotations
 

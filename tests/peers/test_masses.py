@@ -28,7 +28,7 @@ from engine import (
 )
 from tests.peers.random_systems import random_well
 
-# Seeds of a well at rest and of one in a rotating frame, and others, which take long to compile.
+# Seeds of a well at rest and of a well in a rotating frame, and slow seeds, whose kernels take long to compile.
 SEEDS = [0, 2, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (3, 4, 5))]
 
 
@@ -37,7 +37,7 @@ def random_mass(seed: int) -> float:
 
 
 def heavy_system(seed: int) -> tuple[Potential, float]:
-    """Return a well with a mass, in two of three cases in a rotating frame, and an energy above its escape energy."""
+    """Return a well with a mass, and an energy above the escape energy. Two of three seeds give a rotating frame."""
     mass = random_mass(seed)
     well = parse_formula(f"{write_formula(random_well(seed))}; masses (m, m)", parameters={"m": mass})
     rotating = well.in_rotating_frame((0.0, 0.15, -0.1)[seed % 3] / mass**0.5)

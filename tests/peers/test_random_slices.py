@@ -1,6 +1,6 @@
-"""Random slices of each kind, compared with heyoka on their robust pixels.
+"""The robust pixels of random slices of each kind agree with heyoka.
 
-heyoka starts from states that are put together here from the axes.
+heyoka starts from states that this module computes from the definitions of the axes.
 """
 
 from __future__ import annotations
@@ -35,13 +35,13 @@ SYSTEMS = (
     System(TYPED, "½(x² + y²) − x²y² − a x³", {"a": 0.25}),
     System(TYPED, "½(x² + k1 y²) − b x y²", {"b": 0.9, "k1": 1.2}),
 )
-# Kinds of slices, pixels along a side, robust pixels compared on each, and values of a parameter at which they lie.
+# Numbers of kinds of slices, of pixels along a side, of robust pixels compared on each slice, and of their values of a parameter.
 KINDS, SIDE, COMPARED, LINES = 11, 24, 10, 3
 T_MAX, TOLERANCE = 60.0, 1e-15
 
 
 def random_slice(random: np.random.Generator, system: System, kind: int) -> Slice:
-    """Return a slice of a kind, with any two axes, oblique ones included."""
+    """Return a random slice of a kind. Kinds cover any two axes, including oblique axes."""
     held = round(float(random.uniform(-0.15, 0.15)), 3)
     momentum, other = random.permutation([C.PX, C.PY]).tolist()
     angle = random.choice([C.THETA, C.BETA])
@@ -68,7 +68,7 @@ def random_slice(random: np.random.Generator, system: System, kind: int) -> Slic
 
 
 def state_of(plane: Slice, potential: Potential, energy: float, point: tuple[float, float]) -> np.ndarray:
-    """x, y, px, py of a point of a slice, from the definition of its axes."""
+    """Return x, y, px, py of a point of a slice, from the definition of the axes."""
     start = dict.fromkeys(("x", "y", "px", "py"), 0.0) | {coordinate.key: value for coordinate, value in plane.fixed}
     for axis, along in zip(plane.axes, point, strict=True):
         moved = {name: getattr(axis, name) for name in ("x", "y", "px", "py")} if isinstance(axis, Direction) else {axis.key: 1.0}

@@ -20,7 +20,7 @@ STEEPEST = 0.9
 
 
 def find_ridges(values: np.ndarray) -> np.ndarray:
-    """Return columns and rows, (n, 2), of pixels whose gradient is among the steepest, and steepest along its direction."""
+    """Return columns and rows, of shape (n, 2), of pixels of ridges: their gradients are steep, and maxima along the gradient."""
     slope, along = np.gradient(values)
     steepness = np.hypot(along, slope)
     known = np.isfinite(steepness) & (steepness > 0.0)
@@ -42,7 +42,7 @@ def escapes() -> EscapeMap:
 
 
 def manifold_points(images: int, sign: float) -> np.ndarray:
-    """Return columns and rows, (n, 2), of points of the stable manifolds, or, with the opposite px, of the unstable ones."""
+    """Return columns and rows, of shape (n, 2), of points of the stable manifolds; with `sign` −1, of the unstable manifolds."""
     window, (columns, rows) = SPEC.find_window(), SPEC.resolution
     points = []
     for arc in stable_manifolds(images).arcs:

@@ -16,7 +16,7 @@ from tests.peers.exits_by_heyoka import compare
 
 NAMES = [entry.name for entry in ROTATING_ENTRIES]
 STARTS, ENERGIES, DURATION = 60, 3, 40.0
-# Shares of a radius, or of the distance of a saddle, by which the nearest point of an orbit lies beyond an exit.
+# Distances beyond an exit of the nearest points of orbits, as shares of a radius or of the distance of a saddle.
 DEPTHS = (1e-9, -1e-9)
 # Times from the start of a grazing orbit to its nearest point, and from there to the end, in exact units of time.
 TIME_TO_TURN, AFTER = 1.0, 0.1
@@ -55,7 +55,7 @@ def acceleration(potential: Potential, states: np.ndarray) -> np.ndarray:
 
 
 def with_speeds(potential: Potential, energy: float, places: np.ndarray, directions: np.ndarray) -> np.ndarray:
-    """Return states (n, 4) of an energy with velocities in given directions; those that are allowed."""
+    """Return the allowed states at some places with an energy and with velocities in given directions, of shape (n, 4)."""
     square = 2.0 * (energy - potential.value(*places.T))
     allowed = square > 0.0
     return np.column_stack([places, np.sqrt(square.clip(0.0))[:, None] * directions])[allowed]
@@ -64,7 +64,7 @@ def with_speeds(potential: Potential, energy: float, places: np.ndarray, directi
 def at_circle(
     potential: Potential, energy: float, centre: tuple[float, float], radius: float, sign: float, depth: float
 ) -> np.ndarray:
-    """Return states at extrema of the distance from a centre, beyond the radius by a share; `sign` is 1 for the escape circle."""
+    """Return states at extrema of the distance from a centre, a share beyond the radius. `sign` is 1 for the escape circle."""
     angle = np.repeat(np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False) + 0.1, 2)
     radial = np.column_stack([np.cos(angle), np.sin(angle)])
     tangent = np.column_stack([-radial[:, 1], radial[:, 0]]) * np.tile([1.0, -1.0], 24)[:, None]
@@ -76,7 +76,7 @@ def at_circle(
 
 
 def at_line(potential: Potential, curve: np.ndarray, energy: float, depth: float) -> np.ndarray:
-    """Return states on a line beside that of an exit, parallel to it, that turn back inward."""
+    """Return states of orbits that turn back inward on a line parallel to that of an exit."""
     place, outward = (
         curve[[geometry.ORIGIN_X, geometry.ORIGIN_Y]],
         curve[[geometry.OUTWARD_X, geometry.OUTWARD_Y]],
@@ -95,7 +95,7 @@ def at_line(potential: Potential, curve: np.ndarray, energy: float, depth: float
 
 
 def grazing_states(potential: Potential, energy: float, depth: float) -> list[tuple[int, np.ndarray]]:
-    """Return fates, and states at the nearest points to their exits."""
+    """Return each fate with states at the nearest points of orbits to the exit of the fate."""
     discs = enumerate(potential.centres, potential.channels + 1)
     states = [(fate, at_circle(potential, energy, (each.x, each.y), each.radius, -1.0, depth)) for fate, each in discs]
     states += [
@@ -131,7 +131,7 @@ def test_an_orbit_that_grazes_an_exit_ends_there_only_beyond_it(name: str, energ
         # Backward in time some orbits pass close to the other body, where heyoka's steps do not conserve the energy.
         starts = starts[np.abs(potential.energy(starts) - energy) < 1e-10 * potential.units.energy]
         starts = starts[are_inside(starts)]
-        # Orbits that have passed an exit before are not counted.
+        # Orbits that pass an exit before their nearest point do not count.
         fresh = classify_orbits(potential, energy, starts, 0.9 * before).fate == 0
         ended = classify_orbits(potential, energy, starts[fresh], after).fate
         assert set(ended.tolist()) <= {fate if depth > 0.0 else 0}

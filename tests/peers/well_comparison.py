@@ -1,9 +1,9 @@
-"""Outcomes of a well at rest compared with heyoka.
+"""Compare the outcomes of a well at rest with heyoka.
 
-heyoka integrates in the units in which the well was drawn, the engine in others. The Lyapunov orbits are integrated anew:
-their paths are the exits, a flood fill on a grid with these exits gives the interior, and an orbit escapes where a finely sampled
-path crosses an exit. A fate is robust if a shift of the start by 1e-11 and a coarser tolerance leave channel and crossings as
-they are and move the end of the orbit by less than 1e-3.
+heyoka integrates in the units of the random well, the engine in other units. The Lyapunov orbits are integrated anew, and their
+paths are the exits. A flood fill on a grid with these exits gives the interior, and an orbit escapes where its finely sampled
+path crosses an exit. A fate is robust if a shift of the start by 1e-11 and a coarser tolerance do not change channel and
+crossings, and move the end of the orbit by less than 1e-3.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from engine.exits.interior import find_outside_channels
 from tests.contracts.scaling import Scaling
 from tests.peers.sampled_paths import Exits, Peer
 
-# Times and lengths are in units of the well.
+# End time, number of starts, shift of starts, and largest distance of ends of a robust orbit. Units are those of the well.
 T_MAX, STARTS, SHIFT, APART = 60.0, 20, 1e-11, 1e-3
 TOLERANCE, COARSER, ROUNDING = 1e-16, 1e-13, 1e-15
-# Largest difference of the escape times of an orbit whose time is steady: it changes by less with the start and the tolerance.
+# Largest difference of a steady escape time from heyoka's, and largest change with start and tolerance of a steady escape time.
 LARGEST_DELAY, STEADY = 1e-4, 1e-6
 # Points along a side of the flood fill.
 GRID = 400
@@ -32,9 +32,12 @@ DRAWN = Scaling(1.0, 1.0)
 
 
 def flood_fill(potential: Potential, energy: float, exits: Exits) -> tuple[np.ndarray, ...]:
-    """x, y (GRID, GRID), whether inside, and whether known: below the energy and three pixels from all exits and walls."""
+    """Return x, y, whether inside, and whether this is known, each of shape (GRID, GRID).
+
+    Known are points below the energy and three pixels from all exits and walls.
+    """
     corner, inside = np.full(2, SMALLEST * potential.units.length), np.ones((GRID, GRID), bool)
-    # The grid grows until it contains the whole interior, which may be slender.
+    # The grid grows along each axis until it contains the whole interior, which may be slender.
     while (at_edges := [inside[:, [0, -1]].any(), inside[[0, -1]].any()]) != [False, False]:
         corner *= np.where(at_edges, 1.3, 1.0)
         x, y = np.meshgrid(*(np.linspace(-far, far, GRID) for far in corner))
@@ -74,7 +77,7 @@ class Setting:
 
 @dataclass
 class Comparison:
-    """Descriptions of differing exits, regions, robust fates and crossings, and steady escape times, and numbers of orbits."""
+    """Descriptions of exits, regions, robust fates and crossings, and steady escape times that differ, and numbers of orbits."""
 
     wrong: list[str] = field(default_factory=list)
     robust: int = 0
@@ -83,7 +86,7 @@ class Comparison:
 
 
 def compare_with_heyoka(potential: Potential, energy: float, seed: int, scaling: Scaling = DRAWN) -> Comparison:
-    """Return the exits, the interior and the outcomes of random orbits of a well at an energy."""
+    """Compare the exits, the interior and the outcomes of random orbits of a well at an energy."""
     setting, random, found = Setting(potential, energy, scaling), np.random.default_rng(seed), Comparison()
     peers = Peer(potential, TOLERANCE), Peer(potential, COARSER)
     exits = integrated_exits(setting, peers[0], found)
@@ -92,14 +95,14 @@ def compare_with_heyoka(potential: Potential, energy: float, seed: int, scaling:
 
 
 def integrated_exits(setting: Setting, peer: Peer, found: Comparison) -> Exits:
-    """Return the Lyapunov orbits over half a period, integrated from rest; they must end at rest on the zero-velocity curve."""
+    """Return the Lyapunov orbits, integrated from rest for half a period. They must end at rest on the zero-velocity curve."""
     channels, paths = [], []
     potential, units = setting.potential, setting.potential.units
     for orbit in find_lyapunov_orbits(*setting.scaled):
         place = np.array([orbit.x[0], orbit.y[0]]) / setting.scaling.length
         path = peer.path_from_rest(place, 0.5 * orbit.period / setting.scaling.time)
         moved = peer.path_from_rest(place + SHIFT * units.length, 0.5 * orbit.period / setting.scaling.time)[-1] - path[-1]
-        # The rounding error of the start grows as a shift of it does.
+        # The rounding error of the start grows in proportion to a shift of the start.
         rest = 1e-7 * units.momentum + ROUNDING / SHIFT * np.abs(moved[2:]).max()
         error = abs(potential.energy(path[-1]) - setting.energy)
         if np.abs(path[-1, 2:]).max() > rest or error > 1e-9 * units.energy:
@@ -110,7 +113,7 @@ def integrated_exits(setting: Setting, peer: Peer, found: Comparison) -> Exits:
 
 
 def random_starts(setting: Setting, exits: Exits, random: np.random.Generator, found: Comparison) -> np.ndarray:
-    """Return the starts in the interior, which must be that of a flood fill, of shape (n, 4)."""
+    """Return starts in the interior, of shape (n, 4). The interior of the engine must be that of a flood fill."""
     x, y, inside, known = flood_fill(setting.potential, setting.energy, exits)
     sample = random.permutation(np.flatnonzero(known))[:2000]
     x, y, inside = (grid.ravel()[sample] for grid in (x, y, inside))
@@ -122,7 +125,7 @@ def random_starts(setting: Setting, exits: Exits, random: np.random.Generator, f
 
 
 def compare_orbits(setting: Setting, peers: tuple[Peer, Peer], exits: Exits, states: np.ndarray, found: Comparison) -> None:
-    """Compare the outcomes of orbits that are robust; the second integrator has the coarser tolerance."""
+    """Compare the outcomes of robust orbits. The second peer has the coarser tolerance."""
     units, scaling = setting.potential.units, setting.scaling
     farthest = 3.0 * np.abs(np.concatenate([*exits.paths, setting.potential.saddles])).max()
     ours = classify_orbits(*setting.scaled, scaling.states(states), scaling.time * setting.t_max)

@@ -1,4 +1,4 @@
-"""Compute differences of colours as people see them, also with a colour-vision deficiency."""
+"""Compute differences of colours as people with and without a colour-vision deficiency see them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The browser's pixels agree with the server's map at the same time: all robust pixels, and nearly all others."""
+"""All robust pixels of the browser, and nearly all others, agree with the server's map up to the same time."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ SLICES = (
     Slice(Direction("u", x=1.0, y=0.5), Coordinate.PX),
     Slice(Direction("u", y=1.0, py=-0.5), Direction("w", x=0.5, py=1.0)),
 )
-# Powers of ten.
+# Numbers of zooms by a factor of ten.
 ZOOMS = (0, 0, 2, 2, 5, 9)
 SIDE, COARSE, HORIZON = 30, 10, 30.0
 # Smallest share of equal pixels, including sensitive pixels.
@@ -53,7 +53,7 @@ LEAST_SHARE = 0.995
 
 
 def random_specs(system: System, chance: np.random.Generator, all_zooms: Sequence[int]) -> Iterator[MapSpec]:
-    """Yield views of a system, one for each zoom, on boundaries between basins: plane, energy and place are random."""
+    """Yield a view of a system for each number of zooms. Plane and energy are random, and zooms lead to basin boundaries."""
     potential, energies = system.potential, review_system(system).energies
     low, high = max(potential.escape_energy, energies.low), energies.high
     ends = low + 0.05 * (high - low), low + 0.9 * (high - low)
@@ -68,7 +68,7 @@ def random_specs(system: System, chance: np.random.Generator, all_zooms: Sequenc
 
 
 def zoom_on_boundary(spec: MapSpec, chance: np.random.Generator) -> MapSpec:
-    """Return the view ten times smaller around a random pixel that escapes elsewhere than its neighbour, or around the middle."""
+    """Return a view ten times smaller, around a random pixel whose neighbour has another exit, or else around the middle."""
     coarse = compute_map(replace(spec, resolution=(COARSE, COARSE)))
     left, right = coarse.fate[:, :-1], coarse.fate[:, 1:]
     places = np.argwhere((left != right) & (left >= 1) & (right >= 1))

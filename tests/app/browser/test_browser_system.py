@@ -1,4 +1,4 @@
-"""A system for the browser: distinguishable, small, with the default windows."""
+"""A system for the browser has an individual key, and windows close to the default windows."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ NEVER = [None, 7, "x", [], {}, {"other": 1}]
 
 @dataclass(frozen=True)
 class Example:
-    """A component, legal messages with their reports, and messages that are ignored."""
+    """A component, legal messages with what they report, and messages that are ignored."""
 
     make: Callable[[Report], JSComponent]
     legal: list[tuple[Any, tuple[Any, ...]]]
@@ -59,7 +59,7 @@ def make_player(report: Report) -> JSComponent:
 
 
 def given(value: Any, count: Any = 1, *, done: bool = True) -> dict[str, Any]:
-    """Return the message of a value that the visitor gives."""
+    """Return the message of an input to which the visitor gives a value."""
     return {"value": value, "count": count, "done": done}
 
 

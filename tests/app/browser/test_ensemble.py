@@ -1,4 +1,4 @@
-"""Orbits in the browser are where heyoka has them, leave through the server's exits, and start evenly spread."""
+"""Orbits in the browser agree with heyoka, leave through the server's exits, and start evenly spread."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ COUNT, FRAMES, LONGEST = 200, 50, 40.0
 SYSTEMS = [("II", 0.22), ("III", 0.45)]
 FALSE_ALARM = 1e-7
 """Probability that a comparison of two random samples fails though both have the same distribution."""
-# The browser paints places to a thousandth of a pixel; the steps are those of the server.
+# Tolerance of positions. The browser needs a thousandth of a pixel, but its steps are those of the server.
 PLACE_ERROR = 1e-8
 
 
@@ -204,7 +204,7 @@ def test_starts_of_a_box_fill_it_evenly(drawn: dict[str, np.ndarray]) -> None:
 @needs_node
 def test_entering_orbits_stay_as_long_as_entering_orbits_of_the_library(drawn: dict[str, np.ndarray]) -> None:
     potential, t_max = System("III").potential, 100.0
-    # Orbits that are still inside at t_max have no escape time; t_max stands for it.
+    # For orbits that are still inside at t_max and have no escape time, t_max stands for the time.
     found, wanted = (
         np.fmin(classify_orbits(potential, 0.45, states, t_max).escape_time, t_max)
         for states in (drawn["exits"], sample_entrances(potential, 0.45, 4000, seed=8))
@@ -225,5 +225,5 @@ def test_half_of_the_orbits_at_the_tubes_leaves_where_the_other_half_turns_back(
     path = sample_orbits(potential, states[~leave], [BEFORE_EXIT])
     exits = np.concatenate([orbit.half_path for orbit in find_lyapunov_orbits(potential, 0.45)])
     gaps = np.hypot(path.x - exits[:, 0], path.y - exits[:, 1]).min(axis=1)
-    # The other orbits are close to an exit at that time; some have left through another exit before.
+    # The other half is close to an exit at that time, except for orbits that have left through another exit before.
     assert (gaps < 0.05).mean() > 0.9

@@ -1,4 +1,4 @@
-"""Exits on the page have lines, and orbits enter through them."""
+"""Exits on the page are lines or circles, and orbits enter over saddles only."""
 
 from __future__ import annotations
 

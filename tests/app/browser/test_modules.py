@@ -1,4 +1,4 @@
-"""The JavaScript of the page: its own tests, run by Node.js."""
+"""The JavaScript of the page passes its own tests, which Node.js runs."""
 
 from __future__ import annotations
 

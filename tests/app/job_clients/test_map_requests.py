@@ -1,4 +1,4 @@
-"""Map requests: submission, stale results and errors, without a server."""
+"""Maps are requested from jobs, and late results and errors are handled, without a server."""
 
 from __future__ import annotations
 
@@ -111,7 +111,7 @@ def test_no_frame_of_the_old_energy_follows_a_frame_of_the_new(session: Session)
 
 
 class LatestCalls:
-    """Runs callbacks later, each with its latest arguments only."""
+    """Collects calls, and runs each callback later with the latest of its arguments."""
 
     def __init__(self) -> None:
         self.pending: dict[Callable[..., None], tuple[Any, ...]] = {}
@@ -193,7 +193,7 @@ def test_a_crowded_server_shows_the_first_frame_of_each_request_alone_before_the
 
 def test_a_request_that_is_replaced_while_its_integrator_is_compiled_starts_no_map() -> None:
     state, jobs, session = ViewState(), ManualJobs(), LatestCalls()
-    # No other test compiles its integrator.
+    # No other test compiles the integrator of this formula.
     state.show_system(review_system(System(TYPED, "½(x² + y²) + x²y − y³/3 + 0.0013x^6")))
     requests = MapRequests(state, jobs, Recorder(), session.locked)
     requests.request_map()

@@ -1,4 +1,4 @@
-"""Requests for orbits, their digits, divergent starts and separations."""
+"""Orbits, their digits, divergent starts and separations are requested, and late results are dropped."""
 
 from __future__ import annotations
 

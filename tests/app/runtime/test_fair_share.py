@@ -54,7 +54,7 @@ def test_only_the_steps_of_a_coroutine_count() -> None:
         clock.now += 1.0
         other.set()
         assert await task == "done"
-        # In two seconds the page may use its share of them; it has used one second.
+        # The page has used one second in all, and may use its share of two seconds.
         assert share.wait_seconds() == 0.0
         share.charge(2.0 * SHARE - 1.0)
         assert share.wait_seconds() == 0.0

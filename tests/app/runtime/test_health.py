@@ -1,4 +1,4 @@
-"""A server tells why it is not ready, and whom it refuses."""
+"""A server says why it is not ready, and whom it refuses."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def crowd(state: ProcessState) -> None:
 
 def crowd_alone(state: ProcessState) -> None:
     state.capacity.cores = 0.01
-    # The connection of the page before a reload, for example.
+    # A single connection, such as that of a page before its reload.
     state.sockets[HERE] += 1
 
 
@@ -55,7 +55,7 @@ def compile_potentials(state: ProcessState) -> None:
         (crowd_alone, "The server is busy", ""),
         (crowd_with_several_pages, "The server is busy", "The server is busy"),
         (lambda state: state.stopping.set(), "The server is stopping.", "The server is stopping."),
-        # The catalogue is served as before.
+        # Nobody is refused, because the catalogue is served as before.
         (compile_potentials, "ESCAPE_EXPLORER_COMPILED_OPERATIONS=250000. Restart the server.", ""),
     ],
     ids=["ready", "compiling", "failed", "full", "busy", "busy with this page", "busy with this visitor", "stopping", "code"],

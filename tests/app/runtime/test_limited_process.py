@@ -42,7 +42,7 @@ def fill_memory() -> None:
 
 
 def read_pipe(pipe: Path) -> str:
-    """Wait for the text that the other process writes."""
+    """Return the text that another process writes, when it is written."""
     return pipe.read_text()
 
 

@@ -20,7 +20,7 @@ def test_load_is_high_after_a_late_tick_and_decays() -> None:
     for _ in range(29):
         tick(monitor, clock, TICK_SECONDS)
         high.append(monitor.is_high())
-    # The delay falls from 0.2 s by a factor 0.7 in 0.1 s, and below 0.05 s after 0.39 s.
+    # The delay of 0.2 s falls by a factor of 0.7 in each 0.1 s, and is below 0.05 s after 0.39 s.
     assert high == [True] * 20 + [False] * 10
 
 

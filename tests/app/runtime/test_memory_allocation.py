@@ -62,7 +62,7 @@ def test_environment_variables_have_precedence(tmp_path: Path) -> None:
 
 
 def count_kilobytes(results: Connection) -> None:
-    """Send the resident memory before and after free memory between allocations is returned."""
+    """Send the resident memory before and after the return of free memory that lies between allocations."""
     library = ctypes.CDLL(None)
     library.malloc.restype = ctypes.c_void_p
     pieces = [library.malloc(60_000) for _ in range(1000)]

@@ -22,7 +22,7 @@ from tests.waiting import SECONDS
 
 
 async def new_session() -> tuple[ServerSession, ApplicationContext]:
-    """Return a session, and the server's context, which owns it."""
+    """Return a session, and the server's context that owns the session."""
     context = ApplicationContext(Application())
     return await context.create_session_if_needed("session"), context  # type: ignore[arg-type]
 
@@ -89,7 +89,7 @@ def test_only_the_latest_of_the_calls_that_wait_for_the_lock_runs() -> None:
 
 
 def test_a_call_of_a_thread_while_changes_are_held_is_not_lost() -> None:
-    """Held events are copied and then replaced, as Panel and Bokeh do: ``Document.locked_callback`` loses such a call."""
+    """Panel and Bokeh copy and then replace held events. ``Document.locked_callback`` loses a call that comes between."""
 
     async def scenario() -> None:
         (session, _owner), calls = await new_session(), Calls()
@@ -131,7 +131,7 @@ def test_calls_after_the_session_are_dropped() -> None:
         document = weakref.ref(session.document)
         session.destroy()
         call(1)
-        # Tasks that the call has started end first.
+        # Let the tasks end that the call has started.
         begun = asyncio.Event()
         asyncio.get_running_loop().call_soon(begun.set)
         await begun.wait()

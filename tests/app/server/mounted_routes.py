@@ -35,7 +35,7 @@ class ListRoutes(Serve):
 
 
 def patterns(router: RuleRouter) -> Iterator[str]:
-    """Yield the patterns of paths in a router and its inner ones."""
+    """Yield the patterns of paths in a router and in its inner routers."""
     for rule in router.rules:
         if isinstance(rule.target, RuleRouter):
             yield from patterns(rule.target)

@@ -29,7 +29,7 @@ APPLICATION = BokehTornado({"/app": Application()})
 
 @pytest.fixture
 def state(start_state: Callable[..., ProcessState]) -> ProcessState:
-    """A server with three places, two of them for one address."""
+    """Return the state of a server with three places, at most two of them for one address."""
     return start_state(most_sessions=3, pages_per_address=2)
 
 

@@ -60,7 +60,7 @@ NAN = {"type": "number", "value": "nan"}
         (lambda: figure(), "inner_width", [300], [-1, "300", 0.5]),
         (lambda: Player(start=0, end=9, value=0), "value", [0, 9], [-1, 10, 0.5, NAN]),
         (lambda: Player(start=0, end=9, value=0), "direction", [-1, 0, 1], [2, "x"]),
-        # Not properties that a browser changes.
+        # These are not properties that a browser changes.
         (lambda: Slider(start=0, end=1, value=0.5), "end", [], [1e9]),
         (lambda: Slider(start=0, end=1, value=0.5), "nothing", [], [1]),
         (lambda: Select(options=["I"]), "options", [], [["II"]]),
@@ -110,7 +110,7 @@ def plotted() -> tuple[Document, Any, Any]:
 
 
 def test_a_model_may_be_sent_with_its_attributes(plotted: tuple[Document, Any, Any]) -> None:
-    """As a browser does with models that the server has added."""
+    """A browser sends the attributes of models that the server has added."""
     document, _, button = plotted
     whole = {"type": "object", "name": "Button", "attributes": {"label": {"type": "bytes", "data": "H4sI"}}}
     with pytest.warns(UserWarning, match="already known"):

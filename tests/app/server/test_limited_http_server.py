@@ -28,7 +28,7 @@ class Answer(RequestHandler):
 
 
 class Origin(RequestHandler):
-    """Answers with the address and scheme that the server sees of the client."""
+    """Answers with the scheme and address of the client, as the server sees them."""
 
     def get(self) -> None:
         self.write(f"{self.request.protocol} {self.request.remote_ip}")

@@ -32,13 +32,13 @@ from tests.app.other_loop import run_on_new_loop
 from tests.page_channel import Channel
 from tests.waiting import SECONDS
 
-# More than the buffers of a connection hold.
+# A text that is longer than the buffers of a connection.
 LONG = "x" * 8 * 2**20
 
 
 @pytest.fixture
 def state(start_state: Callable[..., ProcessState]) -> ProcessState:
-    """The state of a process."""
+    """Install the handlers of the page, and return the state of a new server process."""
     install_handlers(urls.per_app_patterns, urls.toplevel_patterns)
     return start_state()
 
@@ -50,7 +50,7 @@ def build(document: Document) -> None:
 
 @asynccontextmanager
 async def pages(count: int, make: Callable[[Document], None] = build) -> AsyncIterator[tuple[Channel, Document]]:
-    """Open pages; return the channel and the document of the last page."""
+    """Open pages, and yield the channel and the document of the last page."""
     server = Server({"/app": Application(FunctionHandler(make))}, port=0, io_loop=IOLoop.current(), address="127.0.0.1")
     server.start()
     address, channels = f"http://127.0.0.1:{server.port}/app", []
@@ -102,7 +102,7 @@ async def move_slider(channel: Channel, document: Document) -> None:
 
 def test_messages_of_a_page_beyond_its_share_wait(state: ProcessState) -> None:
     async def scenario(channel: Channel, document: Document) -> None:
-        # The excess that must be waited for is half a second.
+        # The page has used more than its share, so its next message waits for half a second.
         state.fair_share(document).charge(BURST_SECONDS + 0.5 * SHARE)
         channel.set(slider_of(document).id, value=5)
         assert DELAYED_NOTICE in await receive(channel, "PATCH-DOC")
@@ -142,7 +142,7 @@ def test_websockets_beyond_the_limits_are_closed(limit: str, state: ProcessState
 
 def test_changes_made_while_others_are_being_sent_reach_the_page(state: ProcessState, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(bokeh_session, "_run_in_executor", call_inline)
-    # Restored after the test.
+    # `monkeypatch` restores the method after the test.
     monkeypatch.setattr(ServerSession, "_send_pending_patches", ServerSession._send_pending_patches)
     batch_patches()
     pane = pn.pane.HTML()
@@ -169,7 +169,7 @@ def test_changes_made_while_others_are_being_sent_reach_the_page(state: ProcessS
             with set_curdoc(document):
                 pane.object = f"{next(texts)}{LONG}"
         assert "title" in await receive(channel, "PATCH-DOC")
-        # The first part of the three changes. Their end is still in transit.
+        # This is the first part of the message of three changes. The end of the message is still in transit.
         await channel.part()
         tasks.append(await lengthen_title())
         with set_curdoc(document):

@@ -15,13 +15,13 @@ from tests.app.server.mounted_routes import ROOT, mounted_routes
 
 @pytest.fixture(scope="module")
 def mounted() -> list[str]:
-    """Patterns of the routes of the real application, in order."""
+    """Return the patterns of the routes of the real application, in order."""
     return mounted_routes()
 
 
 @pytest.fixture
 def application() -> BokehTornado:
-    """An application at /app below the prefix /maps."""
+    """Return an application at /app below the prefix /maps."""
     return BokehTornado({"/app": Application()}, prefix="/maps")
 
 

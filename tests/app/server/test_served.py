@@ -1,4 +1,4 @@
-"""A real server from start to stop; the tests depend on their order."""
+"""A real server answers and refuses requests from its start to its stop. The tests depend on their order."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class Served:
 
 @contextmanager
 def serving(log: Path, *command: str) -> Iterator[Served]:
-    """Run a command that serves the page."""
+    """Run a command that serves the page, and yield the server."""
     variables = {"ESCAPE_EXPLORER_LOG": "json", "ESCAPE_EXPLORER_MOST_SESSIONS": "2"}
     with started_app(log, *command, variables=variables) as running:
         yield Served(running, log)
@@ -67,7 +67,7 @@ def serving(log: Path, *command: str) -> Iterator[Served]:
 
 @pytest.fixture(scope="module")
 def _default_sigint() -> Iterator[None]:
-    """Processes started in the background ignore SIGINT, and so would the server."""
+    """Restore Python's handler of SIGINT. Processes started in the background ignore SIGINT, and so would the server."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, before)
@@ -133,7 +133,7 @@ def test_scripts_are_compressed_on_request(served: Served) -> None:
             contents.append(gzip.decompress(content) if is_compressed else content)
             tags.setdefault(is_compressed, set()).add(answer.headers["ETag"])
         assert contents == [contents[0]] * len(contents)
-        # A cache that has one representation must not take it for the other.
+        # The tags of both representations differ, so a cache does not take one for the other.
         assert [len(tags[is_compressed]) for is_compressed in (False, True)] == [1, 1]
         assert tags[False] != tags[True]
         [tag] = tags[True]
@@ -199,7 +199,7 @@ def test_full_server_refuses_pages_with_a_sentence(served: Served) -> None:
     status, text, headers = served.get("/app")
     assert status == 503
     assert "All 2 places are taken." in text
-    # The page asks again by itself.
+    # The refused page asks again by itself.
     assert f"http-equiv=refresh content={headers['Retry-After']}>" in text
     assert served.get("/readiness")[0] == 503
     assert "<p>All 2 places are taken.</p>" in served.get("/status")[1]
@@ -220,7 +220,7 @@ def test_websocket_of_another_origin_is_refused(served: Served) -> None:
 
 
 def check_stop(served: Served, number: signal.Signals) -> None:
-    """Check that a signal ends the server within seconds, during a map that takes minutes, with a whole log."""
+    """Check that a signal ends the server within seconds, although a map that takes minutes is being computed."""
     run_on_new_loop(lambda: stop_during_a_map(served, number))
     assert served.running.process.wait(SECONDS) == 0
     assert time.monotonic() - served.stopped_at < 30.0

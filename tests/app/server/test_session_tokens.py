@@ -102,7 +102,7 @@ def test_a_token_may_begin_a_session_for_a_limited_time_of_the_monotonic_clock(
     age: float, fresh: bool, application: BokehTornado, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     token = issue_token(application, request(), {}, clock=lambda: 50.0)
-    # The wall clock does not matter.
+    # The wall clock has no effect.
     monkeypatch.setattr(time, "time", lambda: 2.0**33)
     assert may_begin_session(application, token, clock=lambda: 50.0 + age) == fresh
 
@@ -119,9 +119,9 @@ def test_the_longest_link_fits_into_the_headers_of_the_websocket(application: Bo
     # Random digits compress badly.
     uri = ("/app?V=" + base64.urlsafe_b64encode(random.Random(1).randbytes(LONGEST_LINK)).decode())[:LONGEST_LINK]
     token = issue_token(application, request(uri), {})
-    # The other headers of a browser, with cookies.
+    # The other headers of a browser, with cookies, have up to 8 kB.
     assert len(uri) + len(token) + 8192 < LIMITS["max_header_size"]
-    # The buffer of deploy/nginx.conf for one header.
+    # deploy/nginx.conf has a buffer of 16 kB for one header.
     assert len(token) < 16_000
 
 

@@ -1,4 +1,4 @@
-"""Pages of a server's sessions, without a browser."""
+"""Open pages of a server's sessions without a browser."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from tests.waiting import SECONDS
 NO_LINK: Mapping[str, str] = {}
 
 
-# Bokeh calls other handlers in a thread.
+# The base class matters: Bokeh calls other handlers in a thread.
 class PageBuilder(DocumentLifecycleHandler):
     """Calls `prepare`, and then builds the page of a session on the event loop."""
 
@@ -66,7 +66,7 @@ async def opened_page(
 async def on_loop(session: ServerSession, function: Callable[[], object]) -> None:
     """Call a function with the session's lock."""
 
-    # Unlike a function, a coroutine is not run in a thread.
+    # The call is a coroutine, because the session would run a function in a thread.
     async def call() -> None:
         function()
 
@@ -90,7 +90,7 @@ async def wait_for(watched: param.Parameterized, name: str, condition: Callable[
 
 
 async def run_callbacks(session: ServerSession) -> None:
-    """Run the callbacks that wait for the session's lock, and the callbacks that these begin."""
+    """Run the callbacks that wait for the session's lock, and the callbacks that those begin."""
     for _ in range(2):
         await process_state().next_turn()
         await session.with_document_locked(lambda: None)

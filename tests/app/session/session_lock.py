@@ -1,4 +1,4 @@
-"""A session without a page, whose lock tells waiting tests when a callback has run."""
+"""Make a session without a page, whose lock notifies waiting tests when a callback has run."""
 
 from __future__ import annotations
 
@@ -36,6 +36,6 @@ def context_of(
     changed: threading.Condition,
     open_view: Callable[[System, dict[str, Any]], None] = lambda system, values: None,
 ) -> SessionContext:
-    """Return the context that presenters share in a session with this lock, without copying on the page."""
+    """Return the context that presenters share in a session with this lock. It copies nothing to the clipboard."""
     locked = locked_by(changed)
     return SessionContext(state, ShownResults(), JobClient(jobs), Notice(), locked, locked, lambda text: None, open_view)

@@ -80,7 +80,7 @@ def open_sessions() -> Iterator[list[Session]]:
 
 @pytest.fixture(scope="module")
 def jobs() -> Jobs:
-    """Jobs that keep their results for all sessions."""
+    """Return jobs whose results all sessions share."""
     return Jobs()
 
 
@@ -133,7 +133,7 @@ def test_all_images_of_manifolds_or_one_are_drawn_over_their_section(begin: Call
 
 def test_a_picture_says_that_its_layer_is_being_computed_until_it_is(begin: Callable[..., Session]) -> None:
     session = begin(layers=frozenset({"origins", "trust"}))
-    # No other test has the results of this map.
+    # No other test computes layers of this map, so no result is cached.
     frame = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.25, (48, 48), t_max=1e3))
     session.maps.show(frame, {**session.maps.source.data})
 
@@ -141,7 +141,7 @@ def test_a_picture_says_that_its_layer_is_being_computed_until_it_is(begin: Call
         return [session.maps.figures[name].elements[0].html.partition("role='status'>")[2].partition("<")[0] for name in shown]
 
     shown = ("origins", "basins", "times")
-    # Results arrive under the lock.
+    # No result can arrive while the test holds the lock.
     with session.changed:
         session.show(frame)
         assert notes() == ["computing …", "computing pixels to trust …", ""]

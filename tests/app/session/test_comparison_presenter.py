@@ -1,4 +1,4 @@
-"""A second view is compared with that in the controls: its map is requested, drawn, counted and removed."""
+"""A second view is compared with the view of the controls: its map is requested, drawn, counted and removed."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ def test_a_view_of_other_axes_is_shown_but_not_compared(session: Session, frame:
 
 
 def test_a_view_of_a_refused_system_ends_the_comparison(session: Session) -> None:
-    # Before there is a map to compare it with.
+    # The view is refused before there is a map with which it could be compared.
     session.state.compared = View(System(TYPED, "x² + y²"), Plane.X_PX, 0.2)
     session.wait_for_refusal("No saddle")
     assert session.state.compared is None
@@ -100,7 +100,7 @@ def test_a_view_of_a_refused_system_ends_the_comparison(session: Session) -> Non
 
 def test_potentials_along_a_parameter_of_a_typed_formula_are_found_within_limits(frame: EscapeMap) -> None:
     def limit(call: Callable[[], Any], cancel: threading.Event) -> Any:
-        # The review passes.
+        # Only the search along the parameter takes too long.
         if call.func is find_members:  # type: ignore[attr-defined]
             raise ValueError("it takes too long.")
         return call()

@@ -33,9 +33,9 @@ STARTED, TOOL = sys.monitoring.events.PY_START, 4
 
 @pytest.fixture
 def called() -> Iterator[list[str]]:
-    """The slow functions that are called in this process."""
+    """Yield the names of the slow functions that are called in this process."""
     called: list[str] = []
-    # The state is that at the start of a server.
+    # At the start of a server, the cases have been reviewed.
     for case in CASES:
         review_catalogue_entry(case)
     sys.monitoring.use_tool_id(TOOL, "slow functions")
@@ -49,7 +49,7 @@ def called() -> Iterator[list[str]]:
 
 
 def with_page(parameters: dict[str, str], check: Callable[[Explorer], Coroutine[Any, Any, None]]) -> None:
-    """Open a page with a link on a new event loop, as a browser does that is ready, and check it."""
+    """Open a page with a link on a new event loop, tell the server that the page is shown, and check the page."""
 
     async def run() -> None:
         async with opened_page(parameters) as (explorer, session):
@@ -149,7 +149,7 @@ def test_entries_of_the_browsers_history_are_reviewed_in_another_process(called:
 def test_a_choice_made_during_a_review_is_kept() -> None:
     async def check(explorer: Explorer) -> None:
         explorer.controls.case.value = "III"
-        # Reviewed after the link.
+        # This entry of the history is reviewed after the link.
         explorer.links.navigate("?" + urlencode({"case": TYPED, "V": "x +"}), 0, 0)
         await wait_until_said(explorer, "Ignored the potential in the link")
         assert explorer.state.system == System("III")

@@ -33,7 +33,7 @@ def explorer() -> Iterator[Explorer]:
 def test_frame_in_the_cell_opens_the_page_at_the_map(explorer: Explorer) -> None:
     frame = explorer._repr_html_()
     assert "height:500px" in frame
-    # The text that a browser shows if it cannot reach the page.
+    # The content of the object, which a browser shows if it cannot reach the page, is a picture.
     assert re.search(r"'>.*data:image/png;base64,.*</object>$", frame, re.DOTALL)
     (address,) = re.findall(r"<object [^>]*data='([^']*)'", frame)
     assert unescape(address) == explorer.address

@@ -38,7 +38,7 @@ def test_a_closed_page_is_freed() -> None:
 
 
 def test_a_page_is_valid() -> None:
-    """The server does not validate the page of each session."""
+    """Validate a page here, because the server does not validate the pages of sessions."""
     document = Document()
     with set_curdoc(document):
         explorer = Explorer()
@@ -47,5 +47,5 @@ def test_a_page_is_valid() -> None:
         issues = check_integrity(document.models)
         explorer.close()
     assert issues.error == []
-    # Sections that are closed.
+    # The empty layouts are closed sections.
     assert {warning.name for warning in issues.warning} == {"EMPTY_LAYOUT"}

@@ -85,7 +85,7 @@ def test_all_texts_are_used_in_turn_and_are_one_entry_of_the_history_until_enter
     used, entries = list[str](), list[int]()
     session.state.param.watch(lambda event: (used.append(event.new.formula), entries.append(session.history.record())), "system")
     session.type(STRONGER, enter=False)
-    # During the review.
+    # Type further during the review.
     session.type(WEAKER, enter=False)
     session.wait_for(lambda: session.state.system.formula == WEAKER)
     session.type(WEAKER)
@@ -97,11 +97,11 @@ def test_all_texts_are_used_in_turn_and_are_one_entry_of_the_history_until_enter
 @pytest.mark.parametrize(
     ("energy", "text", "expected", "starts"),
     [
-        # At the same ratio to the escape energy, where the starts are other orbits.
+        # The energy keeps its ratio to the escape energy. The starts would be other orbits, so they are removed.
         (0.25, WEAKER, 1.0, 0),
-        # The same potential.
+        # The potential is the same, so energy and starts stay.
         (0.25, "½(x² + y²) − x y y", 0.25, 1),
-        # Beyond the highest energy, the first one.
+        # The ratio leads beyond the highest energy, so the system has its initial energy.
         (5.0, CHANNELS_THAT_MERGE, None, 0),
     ],
 )

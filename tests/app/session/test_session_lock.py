@@ -1,7 +1,7 @@
 """Bokeh models are changed under the session's lock, or while changes are held.
 
-Panel applies widget changes without the lock when a click follows within its debounce time. Bokeh then raises an error
-for every change of a bare model that is not held, and the click is lost.
+Panel applies changes of widgets without the lock when a click follows within Panel's debounce time. If such a change leads to a
+change of a bare model that is not held, Bokeh raises an error, and the click is lost.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from tests.app.session.opened_page import opened_page, run_callbacks
 
 
 def update(**values: Any) -> Callable[[Explorer], None]:
-    """Return a change of the view state as lists and tabs make it."""
+    """Return a function that changes the view state as lists and tabs do."""
 
     def change(explorer: Explorer) -> None:
         with pn.io.hold():
@@ -33,7 +33,7 @@ def update(**values: Any) -> Callable[[Explorer], None]:
 
 
 CHANGES: list[Callable[[Explorer], Any]] = [
-    # Moves the markers of the orbit plots.
+    # This moves the markers of the orbit plots.
     lambda explorer: send(explorer.orbits.player, {"step": 10, "begin": 0, "end": 10}),
     lambda explorer: send(explorer.controls.exact_energy, {"value": 0.3, "count": 1, "done": True}),
     lambda explorer: explorer.controls.case.param.update(value="II"),
@@ -53,7 +53,7 @@ CHANGES: list[Callable[[Explorer], Any]] = [
 
 
 def with_page(change: Callable[[Explorer], Any]) -> None:
-    """Call a function with the explorer of a page that shows orbits, without its lock."""
+    """Call a function with the explorer of a page that shows orbits, without the session's lock."""
 
     def show_orbits(explorer: Explorer) -> None:
         explorer.orbits.inspector.follow(2, 2)

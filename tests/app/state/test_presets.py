@@ -47,7 +47,7 @@ COMPILED_LONG = ("bar",)
 
 
 def marked(key: str, value: Any) -> Any:
-    """Return a parameter of a test that integrates orbits."""
+    """Return a parameter of a test that integrates orbits, marked as slow if its kernels take long to compile."""
     return pytest.param(value, id=key, marks=pytest.mark.slow if key in COMPILED_LONG else ())
 
 
@@ -165,7 +165,7 @@ def test_shares_agree_with_the_caption() -> None:
     assert shares[Fate.BOUNDED] < 0.001
     assert round(shares[1], 2) == 0.55
     assert round(shares[2], 2) == 0.45
-    # The pixels are a grid, not a random sample; the caption says "three quarters".
+    # The caption says "three quarters". The tolerance is not statistical, because the pixels are a grid.
     assert direct == pytest.approx(0.75, abs=0.02)
 
 
@@ -181,7 +181,7 @@ def test_the_limit_of_stability_agrees_with_the_caption() -> None:
 def test_the_sticky_orbit_looks_regular_and_escapes_late() -> None:
     orbit = integrate(view_of("super-sticky"))
     assert orbit.fate >= 1
-    # Rounding differs between processors, and chaos amplifies it: the escape time varies.
+    # The escape time varies, because rounding differs between processors, and chaos amplifies the differences.
     assert 22_000 < orbit.escape_time < 60_000
     early = orbit.t < 20_000
     assert orbit.sali[early].min() > 1e-4

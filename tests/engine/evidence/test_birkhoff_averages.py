@@ -17,7 +17,7 @@ def test_all_orbits_of_a_separable_potential_are_quasi_periodic() -> None:
 
 
 def test_chaotic_orbits_agree_to_few_digits() -> None:
-    # Case II is the Hénon-Heiles potential; just below the escape energy nearly all of its orbits are chaotic.
+    # Just below the escape energy, nearly all orbits of case II, the Hénon-Heiles potential, are chaotic.
     x, px = np.random.default_rng(2).uniform(-0.15, 0.15, (2, 40))
     states = start_states(CASES["II"], Plane.X_PX, 0.1666, x, px)
     digits = count_agreeing_digits(CASES["II"], states, 4000.0)
@@ -26,7 +26,7 @@ def test_chaotic_orbits_agree_to_few_digits() -> None:
 
 
 def test_two_averages_that_agree_by_chance_are_not_enough() -> None:
-    # The orbit escapes at t = 55 000; two consecutive averages agree to 8.03 digits.
+    # The orbit escapes at t = 55 000, although two consecutive averages agree to 8.03 digits.
     state = np.array([[-0.7565352939370201, -0.357878414590201, -0.0256990807857555, -0.21336712097303748]])
     assert count_agreeing_digits(CASES["III"], state, 4000.0) < TORUS_DIGITS - 1.0
 

@@ -11,7 +11,7 @@ import pytest
 from engine import CASES, EscapeMap, Evidence, Fate, MapSpec, Plane, compute_map
 
 EARLY = (Evidence.CLOSED, Evidence.QUASI_PERIODIC, Evidence.ENCLOSED, Evidence.MIRRORED)
-# Mostly regular; sticky, with slow escapes; on a plane where starts are not on the section; many energies.
+# Maps whose orbits are mostly regular; are sticky and escape slowly; do not start on the section; have many energies.
 MAPS = [
     ("III", 0.26, Plane.X_PX),
     ("I", 0.13, Plane.X_PX),

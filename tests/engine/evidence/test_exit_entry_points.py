@@ -13,7 +13,7 @@ ENERGIES = [("I", 0.13), ("I", 0.4), ("II", 0.17), ("II", 0.4), ("III", 0.26), (
 
 @pytest.mark.parametrize(("name", "energy"), ENERGIES)
 def test_orbits_through_entry_points_entered_through_their_exit(name: str, energy: float) -> None:
-    """H is even in the momenta: backward in time equals forward with reversed momenta."""
+    """H is even in the momenta, so orbits backward in time are orbits forward with reversed momenta."""
     for channel, points in enumerate(find_entry_points(CASES[name], energy), start=1):
         states = start_states(CASES[name], Plane.X_PX, energy, *points.T)
         states = states[np.isfinite(states).all(axis=1)]

@@ -1,4 +1,4 @@
-"""Analyses that need time reversal, tori as evidence or fixed steps are refused or off where these do not hold."""
+"""Time reversal, tori as evidence and fixed steps are used only for potentials that permit them."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ def ellipse(phase: np.ndarray) -> np.ndarray:
 
 
 def boomerang(phase: np.ndarray) -> np.ndarray:
-    """Return a thin, strongly bent closed curve whose centroid lies outside it."""
+    """Return a thin, strongly bent closed curve that does not enclose its centroid."""
     angle, radius = 1.9 * np.cos(phase), 0.5 + 0.05 * np.sin(phase)
     return np.column_stack([radius * np.cos(angle), radius * np.sin(angle)])
 
@@ -81,7 +81,7 @@ def test_later_points_stay_within_the_margin(start: tuple[float, float]) -> None
 
 @pytest.mark.parametrize(("start", "escaping"), list(zip(BUNCHED, ESCAPING, strict=True)))
 def test_escaping_orbit_is_not_outside_the_curve(start: tuple[float, float], escaping: tuple[float, float]) -> None:
-    """The exits lie inside these curves, so that no orbit outside them can escape."""
+    """The exits lie inside these curves, so no orbit that starts outside the curves can escape."""
     found = find_invariant_curve(section_points(start, 800))
     assert found is None or found.find_side(section_points(escaping, 200)).max() <= 0
 

@@ -19,7 +19,7 @@ def hill() -> Potential:
 
 
 def three_body(mu: float) -> Potential:
-    """Return the restricted three-body problem of the catalogue, with the body of mass μ at the origin, the other at x = −1."""
+    """Return the restricted three-body problem of the catalogue: the body of mass μ is at the origin, the other is at x = −1."""
     return System("Earth-Moon", parameters={"m": mu}).potential
 
 
@@ -29,7 +29,7 @@ def at_jacobi_constant(constant: float, mu: float = EARTH_MOON) -> float:
 
 
 def integrate(mu: float | None, start: np.ndarray, times: np.ndarray) -> np.ndarray:
-    """Return heyoka's states, (n, 4), at increasing times that begin with 0; `mu` is None for Hill's problem."""
+    """Return heyoka's states, of shape (n, 4), at increasing times from 0. `mu` None means Hill's problem."""
     integrator = _integrator(mu)
     integrator.time, integrator.state[:] = 0.0, start
     return np.asarray(integrator.propagate_grid(list(times))[-1])
@@ -37,7 +37,7 @@ def integrate(mu: float | None, start: np.ndarray, times: np.ndarray) -> np.ndar
 
 @cache
 def _integrator(mu: float | None) -> hy.taylor_adaptive:
-    """Return heyoka's integrator for equations of motion written here."""
+    """Return heyoka's integrator of equations of motion that do not come from the engine."""
     x, y, vx, vy = hy.make_vars("x", "y", "vx", "vy")
     nearby = (1.0 if mu is None else mu) * (x * x + y * y) ** -1.5
     if mu is None:

@@ -12,7 +12,7 @@ from engine.integrator.kernels.exit_geometry import exit_distance
 from engine.systems.known_potentials import POTENTIALS
 from tests.peers.dop853 import equations
 
-# The line across the saddle at the start of the search lies beyond the zero-velocity curve, which bends away.
+# The zero-velocity curve bends away from the line across the saddle, so the search starts on this line beyond the curve.
 BENT_WALL = Potential(
     "",
     (
@@ -66,7 +66,7 @@ def test_gates_of_several_energies_lie_inside_all_exits() -> None:
 
 
 def half_of(potential: Potential, orbit: LyapunovOrbit, end: int) -> np.ndarray:
-    """Return DOP853's path from one of the ends, 0 or 100, to the middle of the orbit, of shape (51, 2)."""
+    """Return DOP853's path from an end, sample 0 or 100, to the middle of the orbit, of shape (51, 2)."""
     start, times = [orbit.x[end], orbit.y[end], 0.0, 0.0], np.linspace(0.0, 0.25 * orbit.period, 51)
     path = solve_ivp(equations(potential), times[[0, -1]], start, "DOP853", rtol=1e-13, atol=1e-15, t_eval=times).y
     return path[:2].T

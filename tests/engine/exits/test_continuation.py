@@ -1,4 +1,4 @@
-"""Solutions are followed with an adaptive step. Here the solution is the list of the values reached."""
+"""Solutions are followed along a parameter with an adaptive step. Here a solution is the list of the values reached so far."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ STEPS = Steps(first=0.5, smallest=2.0**-5, most=50)
 
 
 def reached_with(longest: Callable[[float], float]) -> list[float] | None:
-    """Return the values reached from 0 up to 1, where a step from a value can be as long as `longest` of it."""
+    """Return the values reached from 0 up to 1, where a step from `value` can be at most `longest(value)` long."""
 
     def advance(values: list[float], target: float) -> list[float] | None:
         return [*values, target] if target - values[-1] <= longest(values[-1]) else None

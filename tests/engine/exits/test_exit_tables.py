@@ -23,7 +23,7 @@ def some_energies(potential: Potential, highest: float) -> list[float]:
 
 
 def distance(path: np.ndarray, points: np.ndarray) -> float:
-    """Return the largest distance of the points (m, 2) of a path from the polygonal line through many points (n, 2)."""
+    """Return the largest distance of the points of a path, of shape (m, 2), from the line through `points`, of shape (n, 2)."""
     nearest = cKDTree(points).query(path)[1]
     errors = []
     for point, k in zip(path, nearest.tolist(), strict=True):

@@ -21,7 +21,7 @@ CURLED_QUINTIC = Potential(
 
 
 def flood_filled(potential: Potential, energy: float, window: Window, side: int) -> tuple[np.ndarray, ...]:
-    """Return x, y, whether V < h, and whether connected with the origin, all (side, side), on a grid with the exits as walls."""
+    """Return x, y, where V ≤ h, and what is connected with the origin, of shape (side, side). The exits are walls of the grid."""
     x, y = np.meshgrid(*window.pixel_centres(side, side))
     allowed = potential.value(x, y) <= energy
     barrier = np.zeros_like(allowed)

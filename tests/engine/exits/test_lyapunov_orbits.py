@@ -57,7 +57,7 @@ def test_a_maximum_that_is_not_between_exits_limits_no_energy() -> None:
 
 
 def test_exits_of_a_separable_well_are_straight() -> None:
-    # On x + y = −1 only x − y changes; it oscillates between its turning points.
+    # On x + y = −1, only x − y changes, and oscillates between two turning points.
     orbit = next(o for o in find_lyapunov_orbits(POTENTIALS["Separable"], 0.12) if o.y.mean() < 0)
     np.testing.assert_allclose(orbit.x + orbit.y, -1.0, atol=1e-12)
 
@@ -71,7 +71,7 @@ def test_a_strongly_curved_exit_is_found_up_to_twice_the_escape_energy() -> None
 
 
 def test_exit_curves_of_mirror_channels_are_exact_mirror_images_also_beyond_their_ends() -> None:
-    # The exits are not symmetric, so that their two ends differ.
+    # Each exit is asymmetric, so its two ends differ.
     potential = parse_formula("½(x² + y²) − 0.3x²y − x⁴/4")
     assert potential.well.mirror_channels.tolist() == [0, 2, 1]
     one, other = exit_curves(potential, 1.2 * potential.escape_energy)

@@ -27,10 +27,10 @@ from tests.peers.random_systems import HIGHEST_DEGREE, random_well
 
 # Even in x and y. The maxima lie on the y axis, between channels 1 and 2, and between 3 and 4.
 SYMMETRIC = Potential("symmetric", ((2, 0, 0.8902), (0, 2, 0.3619), (2, 4, -0.94), (0, 6, -0.0346)))
-# A potential whose channels are no mirror images of each other under x → −x.
+# A potential whose channels are not mirror images of each other under x → −x.
 GENERAL = random_well(896, HIGHEST_DEGREE)
 MAXIMUM = SYMMETRIC.well.channel_mergers[0].energy
-# Energies in units of that of the maximum.
+# Energy in units of the energy of the maximum.
 ABOVE = 1.2
 
 
@@ -39,7 +39,7 @@ def above(potential: Potential) -> float:
 
 
 def random_states(potential: Potential, energy: float, count: int) -> np.ndarray:
-    """Return starts in the inner part of the well."""
+    """Return starts in the inner part of the well, with velocities in random directions."""
     random, reach = np.random.default_rng(1), 0.3 * np.hypot(*potential.saddles.T).min()
     place, angle = random.uniform(-reach, reach, (count, 2)), random.uniform(0.0, 2.0 * np.pi, count)
     speed = np.sqrt(2.0 * (energy - potential.value(*place.T)))
@@ -92,8 +92,8 @@ def test_orbits_that_have_crossed_do_not_come_back() -> None:
 
 
 def test_an_orbit_that_comes_back_into_the_well_returns() -> None:
-    # Left of x = −0.5 the energy of the motion along x is above the saddle at x = 1: orbits that leave to the left at
-    # x = −0.6 are thrown back by the wall, pass it inward, and go out of the well on the right.
+    # Left of x = −0.5, the energy of the motion along x is above the saddle at x = 1. So orbits that leave to the left at
+    # x = −0.6 are thrown back by the wall, pass x = −0.6 inward, and leave the well on the right.
     potential, energy, place = parse_formula("½x² − x³/3 + ½y²"), 0.5, -0.6
     across = np.sqrt(2.0 * (energy - float(potential.value(place, 0.0))))
     path = np.array([np.full(101, place), -across * np.cos(np.linspace(0.0, np.pi, 101))])[:, ::-1]
@@ -151,7 +151,7 @@ def test_an_exit_without_an_orbit_between_its_outer_walls_is_refused() -> None:
 
 
 def test_an_exit_all_around_the_well_is_refused() -> None:
-    # V is a sum of a function of x and one of y, with four saddles on the axes and a maximum between any two.
+    # V is a function of x plus a function of y, with four saddles on the axes and a maximum between neighbouring saddles.
     open_well = Potential("", ((2, 0, 0.5), (0, 2, 0.5), (4, 0, -0.25), (0, 4, -0.25)))
     with pytest.raises(ValueError, match=r"channels 1\+2\+3\+4 are one exit .* all around the well"):
         find_lyapunov_orbits(open_well, 0.6)

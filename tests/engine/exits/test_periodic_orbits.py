@@ -18,7 +18,7 @@ WELLS = [
     (random_well(9), 2.0 * random_well(9).escape_energy),
 ]
 each_well = pytest.mark.parametrize(("potential", "energy"), WELLS)
-# Channel 1 is beyond the smaller body, L2, channel 2 is L1.
+# Channels of the Lagrange points: channel 1 is beyond the smaller body.
 L1, L2 = 2, 1
 HILL_SADDLE = -0.5 * 3.0 ** (4.0 / 3.0)
 
@@ -35,13 +35,13 @@ def multipliers(potential: Potential, orbit: PeriodicOrbit) -> np.ndarray:
 
 
 def path_of(potential: Potential, energy: float, channel: int) -> tuple[float, np.ndarray]:
-    """Return the period and path (4, 201) in the units of the potential."""
+    """Return the period, and the path of shape (4, 201), in the units of the potential."""
     orbit = orbit_of(potential, energy, channel)
     return orbit.period * potential.units.time, orbit.path * potential.units.state[:, None]
 
 
 def crossings_of(mu: float | None, period: float, path: np.ndarray) -> np.ndarray:
-    """Return the states in which an orbit crosses y = 0, integrated by heyoka from the points before, of shape (4, n)."""
+    """Return the states in which an orbit crosses y = 0, of shape (4, n). heyoka integrates from the point of the path before."""
 
     def later(point: int, time: float) -> np.ndarray:
         return integrate(mu, path[:, point], np.array([0.0, time]))[-1]
@@ -75,8 +75,8 @@ def test_brake_orbits_are_also_found_by_continuation(potential: Potential, energ
 def test_orbits_of_earth_and_moon_agree_with_the_catalogue(channel: int, jacobi: float, period: float, stability: float) -> None:
     """Three-Body Periodic Orbits of NASA's Jet Propulsion Laboratory, version 1.0: Earth-Moon, planar Lyapunov orbits.
 
-    Jacobi constant, period and stability index (λ + 1/λ)/2 of some members of both families, from a published copy of what its
-    interface served in October 2026.
+    Jacobi constant, period and stability index (λ + 1/λ)/2 of some members of both families, from a published copy of the
+    catalogue of October 2026.
     """
     potential = three_body(EARTH_MOON)
     orbit = orbit_of(potential, at_jacobi_constant(jacobi), channel)
@@ -88,8 +88,8 @@ def test_orbits_of_earth_and_moon_agree_with_the_catalogue(channel: int, jacobi:
 def test_the_orbit_of_oterma_agrees_with_a_computer_assisted_proof() -> None:
     """Wilczak & Zgliczyński 2003, Commun. Math. Phys. 234, 37 (arXiv math/0201278): μ = 0.0009537, C = 3.03.
 
-    Their C includes μ(1 − μ). They enclose the points in which the Lyapunov orbits cross y = 0. The CAPD library, which they
-    wrote, has bounds of the period of the one around L1 among its examples: 3.082119126376508 to 3.082119126392904.
+    Their C includes μ(1 − μ). They enclose the points in which the Lyapunov orbits cross y = 0. An example of their library CAPD
+    bounds the period of the orbit around L1: 3.082119126376508 to 3.082119126392904.
     """
     mu = 0.0009537
     potential, energy = three_body(mu), at_jacobi_constant(3.03 - mu * (1.0 - mu), mu)

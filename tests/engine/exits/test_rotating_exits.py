@@ -51,7 +51,7 @@ def test_interpolated_lines_are_the_lines() -> None:
 
 
 def test_the_line_beyond_a_neck_that_has_opened_is_refused() -> None:
-    # At C = 3.02 the line beyond L2 does not meet the forbidden region any more.
+    # At C = 3.02 the line beyond L2 no longer meets the forbidden region.
     with pytest.raises(
         ValueError, match="the line at the outer edge of the Lyapunov orbit across channel 2 does not end on the wa"
     ):
@@ -110,7 +110,7 @@ def test_orbits_that_have_crossed_the_line_do_not_return_to_the_well(energy: flo
         assert distance[:far].min() > 0.8 * np.abs(orbit.x).min()
 
 
-# As in the table of docs/exits.md.
+# Systems and energies as in the table of docs/exits.md.
 @pytest.mark.parametrize(
     ("name", "highest"),
     [

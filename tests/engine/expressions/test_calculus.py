@@ -1,4 +1,4 @@
-"""Derivatives and parities of random formulas, compared with SymPy's."""
+"""Derivatives and parities of random formulas agree with SymPy."""
 
 from __future__ import annotations
 

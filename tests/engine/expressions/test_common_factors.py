@@ -1,4 +1,4 @@
-"""Common factors taken out of sums: fewer products, the same graph in every process."""
+"""Common factors are taken out of sums, which saves products, and the graph is the same in every process."""
 
 import os
 import subprocess

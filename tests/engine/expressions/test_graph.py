@@ -1,4 +1,4 @@
-"""Graphs of expressions need few sums over all lower orders for the series of a gradient."""
+"""Graphs of expressions have few of the nodes whose series need a sum over all lower orders."""
 
 from __future__ import annotations
 

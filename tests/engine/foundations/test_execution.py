@@ -68,7 +68,7 @@ def test_a_bar_is_shown_in_a_terminal_unless_progress_has_a_listener() -> None:
         assert callable(long_call())
         assert long_call(on_frame=print) is None
         assert long_call(execution=Execution(on_progress=print)) is print
-        # Calls of other threads write no bars between those of this one.
+        # A call on another thread shows no bar, because it would be written between the bars of this thread.
         assert thread.submit(long_call).result() is None
     assert long_call() is None
 

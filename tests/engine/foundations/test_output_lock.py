@@ -1,4 +1,4 @@
-"""Locks of output: one holder, named to all others, released by the end of its process."""
+"""A lock of output has one holder, is refused to other processes with the name of its holder, and ends with its process."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def test_a_link_to_the_same_place_has_the_same_lock(tmp_path: Path) -> None:
 
 
 def append_alone(path: Path, turns: int) -> None:
-    """Hold the lock for a number of turns; in each, create a file that must not exist."""
+    """Hold the lock for a number of turns. In each turn, create a file that must not exist, and remove it."""
     marker = path.with_name("marker")
     while turns:
         with contextlib.suppress(BlockingIOError), hold_lock(path):
@@ -72,7 +72,7 @@ def append_alone(path: Path, turns: int) -> None:
 
 
 def test_processes_that_take_turns_never_hold_the_lock_together(tmp_path: Path) -> None:
-    """Each holder deletes the file of the lock, which others may have opened."""
+    """Each holder deletes the file of the lock, which waiting processes may have opened."""
     processes = [start(append_alone, tmp_path / "out", 50) for _ in range(3)]
     for process in processes:
         process.join(SECONDS)

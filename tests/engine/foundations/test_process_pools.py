@@ -22,7 +22,7 @@ def shares_of(spec: MapSpec) -> dict[int, float]:
 def compute_in_a_pool(method: str) -> None:
     wanted = shares_of(SPEC)
     with warnings.catch_warnings():
-        # Python 3.12 warns of forks of a process with threads.
+        # Python 3.12 warns about a fork of a process with threads.
         warnings.simplefilter("ignore", DeprecationWarning)
         with multiprocessing.get_context(method).Pool(1) as pool:
             assert pool.apply_async(shares_of, (SPEC,)).get(SECONDS) == wanted

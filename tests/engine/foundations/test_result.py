@@ -1,4 +1,4 @@
-"""Every result: a few lines of text, read-only arrays also in copies, and a dataset that NetCDF keeps."""
+"""Every result is a few lines of text, has read-only arrays even in copies, and has a dataset that NetCDF keeps unchanged."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ import xarray as xr
 
 from tests.results import ENERGY, POTENTIAL, RESULTS, result_of
 
-# Plain dataclasses of numbers, with the default text of dataclasses.
+# Results that consist of numbers only. Their text is that of dataclasses.
 PLAIN = {"potential", "verdict", "divergent start", "entropy"}
 
 
 def arrays_of(result: Any) -> Iterator[np.ndarray]:
-    """Yield the arrays of a result and of the results in it, without the states of orbits that a map keeps."""
+    """Yield the arrays of a result and of the results that it contains, without the states of orbits in a map."""
     if isinstance(result, np.ndarray):
         yield result
     elif isinstance(result, tuple):

@@ -1,4 +1,4 @@
-"""Helpers for tests of jobs."""
+"""Receive the results of jobs, and wait for jobs, in tests."""
 
 from __future__ import annotations
 

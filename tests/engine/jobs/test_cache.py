@@ -1,4 +1,4 @@
-"""Result cache: least-recently-used eviction within a memory limit."""
+"""The cache evicts the least recently used results to keep its limit of memory."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Job client: request limit, cancellation on close, and fairness between clients."""
+"""A client of jobs has a limit of requests, cancels its jobs on close, and does not delay other clients."""
 
 from __future__ import annotations
 

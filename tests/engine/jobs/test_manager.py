@@ -1,4 +1,4 @@
-"""Job manager: sharing, caching, resuming and cancelling jobs, and releasing their memory."""
+"""The manager shares, caches, resumes and cancels jobs, and releases their memory."""
 
 from __future__ import annotations
 
@@ -198,7 +198,7 @@ def test_all_pages_of_an_account_share_a_turn(queue: Queue) -> None:
 
 @pytest.fixture
 def paused() -> Iterator[Jobs]:
-    """A manager whose background is paused; a job that a failed test leaves would keep the process from ending."""
+    """Yield a manager whose background is paused, and stop it. A job left by a failed test would keep the process from ending."""
     jobs = Jobs(threads=2)
     jobs.pause_background(True)
     yield jobs
@@ -231,7 +231,7 @@ def test_cancelled_map_ends_while_background_is_paused(paused: Jobs) -> None:
 
 
 def show_two_frames(clock: Clock, shown: threading.Event, *, execution: Execution, on_frame: Callable[[Any], None]) -> str:
-    """Return a map whose second frame needs 2 s of a processor."""
+    """Show two frames, as a map does. The second needs 2 s of a processor."""
     on_frame(SimpleNamespace(complete=False, horizon=1.0))
     assert execution.executor is not None
     second = execution.executor.submit(clock.compute, 2)

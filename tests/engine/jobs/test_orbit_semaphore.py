@@ -1,4 +1,4 @@
-"""Orbit semaphore: limit, waiting, release and cancellation."""
+"""Large jobs wait for the release of others by a semaphore of orbits, until they are cancelled."""
 
 from __future__ import annotations
 

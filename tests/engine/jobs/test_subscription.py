@@ -1,4 +1,4 @@
-"""Subscriptions: order and end of the delivered results."""
+"""A subscription delivers results in order, and none after the final result or its cancellation."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from tests.waiting import SECONDS
 
 
 def ignore(_: object) -> None:
-    """Callback that does nothing."""
+    """Do nothing, as a callback."""
 
 
 def test_final_result_waits_for_a_partial_one_in_delivery() -> None:

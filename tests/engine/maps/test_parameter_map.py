@@ -42,7 +42,7 @@ def along_epsilon() -> EscapeMap:
 
 
 def ordinary_map(spec: MapSpec, axis: ParameterAxis, value: float) -> EscapeMap:
-    """Return the starts at one value of the parameter as a map of that potential, made without a parameter."""
+    """Return the map of the potential with one value of the parameter, computed without a parameter as an axis."""
     potential = axis.system.with_parameter(axis.key, value).potential
     window = spec.find_window()
     if spec.plane.parameter_axis == 1:
@@ -108,7 +108,7 @@ def test_trust_and_character_are_those_of_the_lines(along_epsilon: EscapeMap) ->
         np.testing.assert_array_equal(character.character[line.place], compute_regularity(line.extract(along_epsilon)).character)
         alone = compute_trust(line.extract(along_epsilon)).trust
         tested = alone != Trust.LIKE_NEIGHBOURS
-        # More pixels are tested because of neighbours in other lines.
+        # In the map, more pixels are tested, because neighbours in other lines have other outcomes.
         np.testing.assert_array_equal(trust.trust[line.place][tested], alone[tested])
 
 

@@ -143,7 +143,7 @@ def test_resuming_does_not_change_the_earlier_map() -> None:
 
 @pytest.fixture(scope="module")
 def starts(whole: EscapeMap) -> np.ndarray:
-    """Interior starts of the map, in pixel order."""
+    """Return the interior starts of the map, in the order of its pixels."""
     x, px = (grid.ravel() for grid in np.meshgrid(whole.x, whole.ordinate))
     inside = (whole.fate.ravel() != Fate.FORBIDDEN) & (whole.fate.ravel() != Fate.OUTSIDE)
     return start_states(SPEC.potential, SPEC.plane, 0.35, x[inside], px[inside])

@@ -52,12 +52,12 @@ def assert_same_map(one: EscapeMap, other: EscapeMap) -> None:
 
 
 def early(escape_map: EscapeMap) -> np.ndarray:
-    """Return which pixels are called bounded before t_max, (rows, columns)."""
+    """Return which pixels are called bounded before t_max, of shape (rows, columns)."""
     return ~np.isin(escape_map.evidence, (Evidence.NONE, Evidence.INTEGRATED))
 
 
 class CallCounter(SerialExecutor):
-    """Counts its calls."""
+    """Runs calls, and counts them."""
 
     calls = 0
 

@@ -1,4 +1,4 @@
-"""Requests of maps have pixel centres, windows and resolutions without starts on lines of symmetry."""
+"""Requests of maps have the right pixel centres and windows, and no starts on lines of symmetry."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def test_an_odd_number_of_pixels_has_none_on_a_line_of_symmetry(plane: Slice, en
     whole = default_window(CASES["III"], plane, energy)
     assert starts_on_a_symmetry_line(replace(spec, window=whole)) > count // 3
     assert starts_on_a_symmetry_line(spec) == 0
-    # Half a pixel along one axis.
+    # The window is shifted by half a pixel along one axis.
     shifts = [astuple(spec.find_window())[k] - astuple(whole)[k] for k in (0, 2)]
     sizes = [(whole.x_high - whole.x_low) / count, (whole.ordinate_high - whole.ordinate_low) / count]
     assert sorted(shift / size for shift, size in zip(shifts, sizes, strict=True)) == pytest.approx([0.0, 0.5])
@@ -67,6 +67,6 @@ def test_an_odd_number_of_pixels_has_none_on_a_line_of_symmetry(plane: Slice, en
     ],
 )
 def test_other_maps_have_the_default_window(case: str, plane: Slice, count: int) -> None:
-    """An even number, a line that orbits leave, a potential without the symmetry, a line of starts alone."""
+    """The number of pixels is even or 1, or no orbit stays on a line of symmetry of the slice."""
     spec = MapSpec(CASES[case], plane, 0.6, (count, count))
     assert spec.find_window() == default_window(CASES[case], plane, 0.6)

@@ -1,4 +1,4 @@
-"""The loop of stages publishes frames, reports progress and can be cancelled; here the work is counting."""
+"""The loop of stages publishes frames, reports progress and can be cancelled. In these tests, the work is counting."""
 
 from __future__ import annotations
 

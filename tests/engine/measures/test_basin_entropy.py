@@ -73,7 +73,7 @@ def test_random_images_agree_with_a_loop_over_boxes(box: int) -> None:
 
 
 def test_grebogis_map_has_the_entropies_of_attractors_jl() -> None:
-    """See test/basins/uncertainty_tests.jl in Attractors.jl: 300 × 300 starts, boxes of 6 × 6."""
+    """The bounds are those of test/basins/uncertainty_tests.jl in Attractors.jl, for 300 × 300 starts and boxes of 6 × 6."""
     result = compute_basin_entropy(grebogi_basins(300), box=6)
     assert 0.40 <= result.s_b <= 0.42
     assert 0.60 <= result.s_bb <= 0.61

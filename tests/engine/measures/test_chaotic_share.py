@@ -1,4 +1,4 @@
-"""Share of chaotic orbits among the bounded ones."""
+"""The chaotic share counts chaotic and regular bounded orbits only."""
 
 from __future__ import annotations
 

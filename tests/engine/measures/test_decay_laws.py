@@ -27,12 +27,14 @@ WINDOW = (T_LOW, T_HIGH)
 # A window that cuts off many later escapes.
 SHORT = (T_LOW, 20.0)
 SEEDS = 200
+# Tolerance of exact results.
 EPSILON = 1e-12
 FALSE_ALARM = 1e-7
 """Probability that a test of random samples fails though the fits are correct."""
+# Number of shifted grids of a map.
 GRIDS = 16
 DEVIATIONS = 5.5
-"""Standard errors by which a normal variable exceeds its mean with less than that probability."""
+"""Number of standard errors by which a normal variable exceeds its mean with a probability below `FALSE_ALARM`."""
 
 
 def statistics_of(times: np.ndarray, *, bounded: int = 0, undecided: int = 0) -> EscapeStatistics:
@@ -89,7 +91,7 @@ def power_law() -> DecayLaws:
 
 @pytest.fixture(scope="module", params=[DecayLaw.EXPONENTIAL, DecayLaw.POWER_LAW])
 def many(request: pytest.FixtureRequest) -> tuple[float, list[LawFit]]:
-    """The true rate of a law, and its fits to many samples."""
+    """Return the true rate of a law, and the fits of this law to many samples."""
     if request.param is DecayLaw.EXPONENTIAL:
         return KAPPA, [both(fit(exponential_times(200, seed, window=SHORT), SHORT))[0] for seed in range(SEEDS)]
     return GAMMA, [both(fit(power_times(200, seed)))[1] for seed in range(SEEDS)]
@@ -129,7 +131,7 @@ def test_law_and_rate_of_a_sample_are_recovered(law: DecayLaw, window: tuple[flo
 
 
 def test_rates_maximise_the_likelihood() -> None:
-    """Compared with a numerical maximisation of the explicit likelihoods."""
+    """The rates agree with a numerical maximisation of the explicit likelihoods."""
     times, (low, high) = power_times(700, window=SHORT), SHORT
 
     def exponential_loss(kappa: float) -> float:
@@ -202,7 +204,8 @@ def test_a_chosen_window_excludes_an_early_burst() -> None:
         laws = fit(np.concatenate([burst, exponential_times(2000, seed, window=(5.0, T_HIGH))]), None)
         fitted, _ = both(laws)
         held += laws.preferred is DecayLaw.EXPONENTIAL and laws.t_low > 10.0 and fitted.low <= KAPPA <= fitted.high
-    # Each trial succeeds with a probability of 0.88, which includes the 0.95 of the intervals; that of fewer than 8 is 1e-7.
+    # Each trial succeeds with a probability of 0.88, which includes the 0.95 of the intervals. The probability of fewer than 8
+    # successes is 1e-7.
     assert held >= 8
 
 
@@ -223,7 +226,7 @@ def test_there_is_no_fit_without_a_window_in_which_a_law_holds() -> None:
 
 
 def test_a_mixture_follows_neither_law() -> None:
-    """An exponential followed by a power law, which neither law fits."""
+    """The sample is a mixture of an exponential law and a power law."""
     laws = fit(np.concatenate([exponential_times(3000, kappa=0.5), power_times(1000, gamma=1.0)]))
     assert all(fitted.p_value < 0.1 for fitted in both(laws))
     assert laws.preferred is None
@@ -296,12 +299,12 @@ def test_t_max_is_that_of_the_map() -> None:
 
 @pytest.mark.parametrize(("energy", "earlier", "later"), [(0.2, 60.0, 200.0), (0.3, 12.0, 30.0)])
 def test_the_rate_of_a_map_agrees_with_random_starts(energy: float, earlier: float, later: float) -> None:
-    """The rate of a hyperbolic escape does not depend on the starts; for random ones it is the slope of ln S."""
+    """The rate of hyperbolic escapes does not depend on the starts. For random starts, it is the slope of ln S."""
     laws = fit_decay_laws(compute_statistics(compute_map(MapSpec(CASES["II"], Plane.X_PX, energy, t_max=1e4))), 1e4)
     fitted, _ = both(laws)
     states = sample_starts(CASES["II"], energy, 40_000, seed=11)
     escape_time = classify_orbits(CASES["II"], energy, states, 1e3).escape_time
-    # An orbit that stays has no escape time.
+    # The negation also counts orbits that stay, whose escape time is NaN.
     remaining = [np.count_nonzero(~(escape_time <= t)) for t in (earlier, later)]
     slope = np.log(remaining[0] / remaining[1]) / (later - earlier)
     error = np.sqrt(1.0 / remaining[1] - 1.0 / remaining[0]) / (later - earlier)
@@ -310,7 +313,7 @@ def test_the_rate_of_a_map_agrees_with_random_starts(energy: float, earlier: flo
 
 
 def test_rates_of_shifted_grids_scatter_like_independent_samples() -> None:
-    """Rates from grids that are shifted by fractions of a pixel scatter as much as the interval of one of them."""
+    """Rates from grids that are shifted by fractions of a pixel scatter as much as the interval of a single rate says."""
     whole, side, rng = MapSpec(CASES["II"], Plane.X_PX, 0.3).find_window(), 80, np.random.default_rng(7)
     pixel = (whole.x_high - whole.x_low) / side
     fits = []

@@ -33,7 +33,7 @@ SIDE = 60
 
 @pytest.fixture(scope="module")
 def whole() -> EscapeMap:
-    """A map with early escapes, late escapes and bounded orbits."""
+    """Return a map with early escapes, late escapes and bounded orbits."""
     return compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.3, (SIDE, SIDE), t_max=1e3))
 
 
@@ -44,7 +44,7 @@ def statistics(whole: EscapeMap) -> EscapeStatistics:
 
 @pytest.fixture(scope="module")
 def under_way() -> EscapeMap:
-    """The first frame with some escapes and undecided orbits."""
+    """Return the first frame that has both escapes and undecided orbits."""
     frames: list[EscapeMap] = []
     cancel = threading.Event()
 
@@ -57,7 +57,7 @@ def under_way() -> EscapeMap:
 
 
 def with_times(frame: EscapeMap, times: list[float]) -> EscapeStatistics:
-    """Return statistics of a map in which one orbit escapes at each of these times and no other."""
+    """Return statistics of a map in which one orbit escapes at each of these times, and all others are bounded."""
     fate, escape_time = np.zeros(frame.fate.size, np.int8), np.full(frame.fate.size, np.nan)
     fate[: len(times)], escape_time[: len(times)] = 1, times
     shape = frame.fate.shape

@@ -1,4 +1,4 @@
-"""Entrances and exits of orbits that enter."""
+"""Orbits that enter are counted by entrance and exit."""
 
 from __future__ import annotations
 
@@ -40,14 +40,14 @@ def test_each_orbit_has_one_entrance(entrances: list[int]) -> None:
 
 
 def test_equally_many_orbits_pass_between_two_exits_in_both_directions() -> None:
-    """Orbits are drawn by the flux, and each one passed backward in time is another one."""
+    """Orbits are drawn according to the flux, and backward in time an orbit leads from its exit to its entrance."""
     entrances, states = sample_entrances_by_exit(UNEQUAL, ENERGY, 4000, seed=5)
     counts = compute_exit_matching(entrances, classify_orbits(UNEQUAL, ENERGY, states, 1e4)).counts[:, 1:]
     assert counts.shape[0] == counts.shape[1] > 1
     assert counts.min() > 10
-    # The difference of each of a few pairs is normal; the probability of a false alarm is 4e-8.
+    # The difference for a pair of exits is normal, and the probability of a false alarm is 4e-8 for each of a few pairs.
     assert np.all(np.abs(counts - counts.T) <= 5.5 * np.sqrt(counts + counts.T))
-    # The orbits remember how they entered.
+    # The exits of orbits depend on their entrances.
     assert np.ptp(counts / counts.sum(axis=1, keepdims=True), axis=0).max() > 0.1
 
 

@@ -1,4 +1,4 @@
-"""Areas of islands, and the error of their resolution."""
+"""Areas of islands are right, within an error that follows from the resolution."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def test_the_error_is_the_scatter_of_the_area_over_shifted_grids(across: float, 
     areas, errors = np.array([(one.area, one.area_error) for one in found]).T
     # More than 6 standard errors of the mean of 1000 areas.
     assert areas.mean() == pytest.approx(np.pi * across * up, rel=2e-3)
-    # 5.5 standard errors, of 2.2 % each, and what the formula neglects: up to 16 % for circles.
+    # 5.5 standard errors of 2.2 % each, plus up to 16 % for circles, which the formula neglects.
     assert np.sqrt(np.mean((areas - np.pi * across * up) ** 2)) == pytest.approx(errors.mean(), rel=0.28)
 
 

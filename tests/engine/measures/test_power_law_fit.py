@@ -38,12 +38,12 @@ def fit_set(label: Callable[[np.ndarray], np.ndarray], pairs: int, smallest: flo
 
 
 def is_near(fit: UncertaintyExponent, exponent: float) -> bool:
-    """Return whether an exponent is within 5.5 standard errors, as correct ones are with a probability of 1 − 4e-8."""
+    """Return whether an exponent is within 5.5 standard errors. Correct fits are, with a probability of 1 − 4e-8."""
     return abs(fit.exponent - exponent) < 5.5 * (fit.high - fit.low) / 3.92
 
 
 def gap_of_cantor_set(x: np.ndarray) -> np.ndarray:
-    """Step at which the middle-thirds construction removes a point of [0, 1], or 40 if it never does, modulo 3."""
+    """Return, modulo 3, the step at which the middle-thirds construction removes each point of [0, 1], or 40 without one."""
     step = np.full(x.shape, 40)
     for number in range(40):
         x = 3.0 * x

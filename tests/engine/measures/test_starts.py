@@ -16,7 +16,7 @@ from engine.measures.starts import exit_labels, wilson_interval
 
 @pytest.fixture(scope="module")
 def whole() -> EscapeMap:
-    """A map with forbidden, outside, escaping and bounded starts."""
+    """Return a map with forbidden, outside, escaping and bounded starts."""
     frame = compute_map(MapSpec(CASES["III"], Plane.X_Y, 0.3, (40, 40), t_max=300.0))
     assert set(np.unique(frame.fate)) == {Fate.FORBIDDEN, Fate.OUTSIDE, Fate.BOUNDED, 1, 2, 3, 4}
     return frame

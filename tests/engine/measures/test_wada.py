@@ -45,7 +45,7 @@ def pixel_by_pixel(labels: np.ndarray, valid: np.ndarray) -> list[float]:
 
 
 def cantor_basins(level: int) -> np.ndarray:
-    """Return three basins that are Wada in the limit, 3**level columns: gaps of the Cantor set, labelled in turn by size.
+    """Return three basins in 3**level columns: the gaps of the Cantor set, labelled in turn by size. The limit is Wada.
 
     Every point of the set has gaps of all three labels arbitrarily close.
     """

@@ -11,11 +11,11 @@ from engine import Fate, MapSpec, Plane, System, Window, classify_orbits, comput
 from engine.propagation.classification import Outcomes
 from engine.systems.potential import Potential
 
-# T_MAX in exact units of time of the well.
+# End time in exact units of time of the well, number of starts, and a distance from a centre in units of its radius.
 T_MAX, STARTS, NEAR = 1e4, 60, 10.0
 AWAY_FROM_CENTRES, PAST_A_CENTRE = 1e-11, 1e-9
 
-# Energies at which most orbits stay.
+# Systems and energies at which most orbits stay.
 ENERGIES = [
     ("Copenhagen", -1.6),
     ("Earth-Moon", -1.12),
@@ -28,7 +28,7 @@ ENERGIES = [
 
 
 def outcomes_of(potential: Potential, energy: float) -> tuple[Outcomes, np.ndarray]:
-    """Return outcomes, and which orbits pass a centre within ten radii."""
+    """Return outcomes, and whether each orbit passes a centre within ten radii."""
     starts = sample_starts(potential, energy, STARTS, seed=3)
     wide = potential.with_outcomes([replace(c, radius=NEAR * c.radius) for c in potential.centres], potential.escape_radius)
     t_max = T_MAX * potential.well.exact_time_unit

@@ -25,7 +25,7 @@ def test_starts_have_the_energy_and_are_inside(plane: Slice | None) -> None:
 def test_the_energy_surface_is_covered_uniformly() -> None:
     potential, energy = CASES["III"], 0.4
     starts = sample_starts(potential, energy, 20_000, seed=3)
-    # Shares of the quadrants of a grid of points inside, and of the directions of the velocity.
+    # Expected shares of the quadrants, from a grid of points inside, and of the directions of the velocity.
     side = np.linspace(-1.6, 1.6, 801)
     x, y = (axis.ravel() for axis in np.meshgrid(side, side))
     inside = (potential.value(x, y) <= energy) & (find_outside_channels(potential, energy, x, y) == 0)

@@ -42,7 +42,7 @@ def test_zero_velocity_curve_has_the_required_energy(plane: Plane) -> None:
 
 
 def interior_by_path(name: str, plane: Plane, energy: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return points of the interior on a large grid: those connected to the origin without crossing a Lyapunov orbit."""
+    """Return the points of a large grid that are connected with the origin without crossing a Lyapunov orbit."""
     side = np.linspace(-2.2, 2.2, 551)
     x, ordinate = np.meshgrid(side, side)
     y = ordinate if plane is Plane.X_Y else np.zeros_like(x)
@@ -74,7 +74,7 @@ def test_default_window_shows_an_interior_far_smaller_than_the_distance_of_an_ex
     exists = np.flatnonzero(np.isfinite(states).all(axis=1))
     inside = exists[find_outside_channels(potential, energy, *states[exists, :2].T) == 0]
     rows, columns = np.divmod(inside, 60)
-    # It fills the window along one axis and does not touch its edges.
+    # The interior fills the window along one axis and does not touch the edges of the window.
     assert max(np.ptp(rows), np.ptp(columns)) > 50
     assert min(*rows, *columns) > 0
     assert max(*rows, *columns) < 59
@@ -86,7 +86,7 @@ COLUMNS = {Coordinate.X: 0, Coordinate.Y: 1, Coordinate.PX: 2, Coordinate.PY: 3}
 
 @st.composite
 def slices_of_coordinates(draw: st.DrawFn) -> Slice:
-    """Two coordinates as axes, values of the others, and the momentum that the energy decides."""
+    """Draw a slice with two coordinates as axes, values of the others, and the momentum that the energy determines."""
     solved, other = draw(st.permutations((Coordinate.PX, Coordinate.PY)))
     axes = draw(st.permutations((Coordinate.X, Coordinate.Y, other, Coordinate.H)))
     held = [c for c in (Coordinate.X, Coordinate.Y, other) if c not in axes[:2]]
@@ -96,7 +96,7 @@ def slices_of_coordinates(draw: st.DrawFn) -> Slice:
 
 @st.composite
 def slices_with_an_angle(draw: st.DrawFn) -> Slice:
-    """An angle as an axis or held; the energy determines the speed."""
+    """Draw a slice on which an angle is an axis or has a value, and the energy determines the speed."""
     angle = draw(st.sampled_from((Coordinate.THETA, Coordinate.BETA)))
     axes = draw(st.permutations((Coordinate.X, Coordinate.Y, angle, Coordinate.H)))
     fixed = tuple((c, draw(HELD)) for c in (Coordinate.X, Coordinate.Y, angle) if c not in axes[:2])
@@ -105,7 +105,7 @@ def slices_with_an_angle(draw: st.DrawFn) -> Slice:
 
 @st.composite
 def oblique_slices(draw: st.DrawFn) -> Slice:
-    """One or two oblique axes."""
+    """Draw a slice with one or two oblique axes."""
     solved, other = draw(st.permutations((Coordinate.PX, Coordinate.PY)))
     component = st.sampled_from((-1.0, 0.5, 2.0))
     first = Direction("u", **{c.key: draw(component) for c in (Coordinate.X, other)})
@@ -190,7 +190,7 @@ def test_mirror_images_of_any_slice_are_reflected_states(shape: tuple[int, int],
     if images is not None:
         np.testing.assert_array_equal(states[images], reflected)
     else:
-        # No reflection of a start is another start of the slice, but for starts that are their own images.
+        # The reflection of a start is no other start of the slice. Starts that are their own images are left out.
         exists = np.isfinite(states).all(axis=1)
         others = exists & np.any(states != reflected, axis=1)
         assert not np.any(np.all(states[exists][:, None] == reflected[others], axis=2))

@@ -17,7 +17,7 @@ LETTER = ParameterAxis("b", 0.1, 0.3, TYPED)
 
 @given(slices())
 def test_a_slice_is_read_as_it_was_written(plane: Slice) -> None:
-    # A text of a named slice is read as that slice.
+    # If a named slice has the same axes, the text is read as the named slice.
     assert read_slice(*write_slice(plane), System("I")) == checked_slice(plane)
 
 

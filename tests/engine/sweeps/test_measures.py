@@ -30,13 +30,13 @@ ROOT = Path(__file__).parents[3]
 
 @pytest.fixture(scope="module")
 def sea() -> EscapeMap:
-    """A map with regular and chaotic bounded orbits, whose pixels are mirror images."""
+    """Return a map with regular and chaotic bounded orbits. Its pixels are pairs of mirror images."""
     return compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.13, (30, 30), t_max=2e3))
 
 
 @pytest.fixture(scope="module")
 def example() -> Measure:
-    """The entry of the example in docs/extending.md."""
+    """Return the entry of the example in docs/extending.md."""
     return run_example("Example: add a measure", {"__name__": __name__})["BOUNDARY"]
 
 

@@ -74,7 +74,7 @@ SPECS = {
     "parameter": MapSpec(CASES["I"], Slice(C.X, ParameterAxis("epsilon", 0.5, 2.0, System("I"))), 0.2, (6, 6), t_max=50.0),
 }
 
-# Results of `tests.results` that are tested unchanged; the others are variants.
+# Results of `tests.results` that are tested unchanged. Variants of the others are in `RESULTS`.
 SHARED = (
     "trust", "origins", "descriptors", "separation", "divergent start", "entropy", "exponent", "Wada test",
     "Lyapunov orbit", "manifolds", "verdict", "review", "decay laws",

@@ -1,4 +1,4 @@
-"""Sweeps in a store: contents, resuming, errors of the disk, clusters."""
+"""Sweeps in a store have the right contents, are resumed, survive errors of the disk, and can be computed by clusters."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ LONG_SPEC = SweepSpec(CASES["III"], Plane.X_PX, (0.36, 0.38, 0.4, 0.42), (9, 9),
 
 
 def run_in_child(folder: Path, name: str, killed_after: float = 1.0) -> Finished:
-    """Run `LONG_SPEC` in a child process that is killed while it writes the next value after some progress, if any.
+    """Run `LONG_SPEC` in a child process. The process is killed while it writes the first value after some progress, if any.
 
     A bitwise comparison needs the same machine code in both runs: kernels that this process has compiled itself may differ in
     rounding from those that a child loads from the cache.
@@ -60,7 +60,7 @@ def interrupt_writing(number: int, interrupt: Callable[[], None]) -> None:
 
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The store of `SPEC`, not to be changed."""
+    """Return the store of `SPEC`, which tests must not change."""
     store = tmp_path_factory.mktemp("finished") / "store"
     compute_sweep(SPEC, store)
     return store
@@ -93,7 +93,7 @@ def run_until(spec: SweepSpec, store: Path, share: float) -> None:
 
 
 def test_a_store_contains_the_same_sweep_as_memory(finished: Path) -> None:
-    """It opens without a warning, which would be an error."""
+    """The store opens without a warning: warnings are errors in tests."""
     with xr.open_zarr(finished) as found:
         xr.testing.assert_equal(found, compute_sweep(SPEC).dataset)
         assert found["fate"].dtype == np.int8
@@ -159,7 +159,7 @@ def test_only_missing_values_are_computed(tmp_path: Path, finished: Path) -> Non
 def test_run_interrupted_while_writing_resumes_byte_identically(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, finished: Path, number: int, share: float
 ) -> None:
-    """Interrupted at the first value or the second one, at the n-th file."""
+    """The run is interrupted at the n-th file of the first or of the second value."""
 
     def interrupt() -> None:
         (tmp_path / "store" / "fate" / "0.123.partial").touch()

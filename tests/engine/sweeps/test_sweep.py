@@ -1,4 +1,4 @@
-"""Sweeps in memory: measures at each value, order, refinement, earlier sweeps and validation."""
+"""Sweeps in memory have the measures of each value, are ordered and refined, and continue earlier sweeps."""
 
 from __future__ import annotations
 
@@ -158,7 +158,7 @@ def test_outcomes_along_a_parameter_keep_their_numbers() -> None:
 
 
 def step_at(edge: float) -> Callable[[SweepPoint], xr.Dataset]:
-    """Return a measure of a share that falls from 1 to 0 at an energy."""
+    """Return a measure whose share falls from 1 to 0 at an energy."""
 
     def measure(point: SweepPoint) -> xr.Dataset:
         share = float(point.value < edge)

@@ -24,13 +24,13 @@ EARTH_MOON = POTENTIALS["Earth-Moon"]
 
 
 def constant_at(potential: Potential, x: float) -> float:
-    """C of the critical point on the x axis that is nearest to a place."""
+    """Return C of the critical point that is nearest to (x, 0)."""
     points = potential.critical_points
     nearest = points[np.argmin(np.hypot(points[:, 0] - x, points[:, 1]))]
     return float(potential.jacobi_constant(potential.value(*nearest)))
 
 
-# Earth and Moon: L1, L2 and L3 of the catalogue of periodic orbits of JPL; Copenhagen: Strömgren's 3.4568 at L2; Hill: 3^(4/3).
+# Earth and Moon: values of the catalogue of periodic orbits of JPL. Copenhagen: Strömgren's 3.4568 at L2. Hill: 3^(4/3).
 @pytest.mark.parametrize(
     ("name", "x", "constant"),
     [

@@ -12,7 +12,7 @@ ACCURACY = 1e-12
 
 
 def critical(name: str) -> dict[tuple[float, float], float]:
-    """Return the energies of the critical points of a system by their places."""
+    """Return the energies of the critical points of a system, by position."""
     return {(point.x, point.y): point.energy for point in review_potential(System(name).potential).critical_points}
 
 
@@ -41,7 +41,7 @@ def check(name: str, x: mpmath.mpf, y: mpmath.mpf, energy: mpmath.mpf) -> None:
 
 
 def barred_galaxy(x, y):
-    """Jung & Zotos (2016), at z = 0: nucleus, disc (h + k = 3.175), halo, bar, and the rotation."""
+    """Return Φ of Jung & Zotos (2016) at z = 0, with nucleus, disc (h + k = 3.175), halo, bar and rotation."""
     r2, rate = x**2 + y**2, mpmath.mpf("4.5")
     spheres = ((400, "0.25"), (7000, "3.175"), (20000, "20"))
     central = sum(-mass / mpmath.sqrt(r2 + mpmath.mpf(size) ** 2) for mass, size in spheres)

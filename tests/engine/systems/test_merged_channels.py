@@ -1,4 +1,4 @@
-"""Channels merge to one exit above each maximum between them."""
+"""Channels merge into one exit above each maximum between them."""
 
 from __future__ import annotations
 

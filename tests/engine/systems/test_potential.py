@@ -65,7 +65,7 @@ def test_saddles_are_ordered_counterclockwise_and_open_above_the_escape_energy(n
 
 
 def test_saddles_of_different_energies_open_separately() -> None:
-    # V_x = x − x²/2 − x³/2 vanishes at x = 1 and x = −2, each a maximum along x and a minimum along y.
+    # V_x = x − x²/2 − x³/2 vanishes at x = 1 and x = −2. Both points are maxima along x and minima along y.
     lopsided = Potential("lopsided", ((2, 0, 0.5), (0, 2, 0.5), (3, 0, -1 / 6), (4, 0, -1 / 8)))
     energies = lopsided.well.saddle_energies
     assert len(set(np.round(energies, 6))) == 2

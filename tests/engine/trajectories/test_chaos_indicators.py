@@ -1,4 +1,4 @@
-"""SALI, Lyapunov exponent and Birkhoff digits on orbits whose character is known, and on orbits that escape."""
+"""SALI, Lyapunov exponent and Birkhoff digits agree with the known character of orbits."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from engine.trajectories.birkhoff_digits import BirkhoffDigits, compute_birkhoff
 from engine.trajectories.chaos_indicators import Verdict, evaluate_indicators
 from tests.extending import run_example
 
-# Hénon & Heiles at or below E = 1/8, with their y as x: an orbit in an island and one in the chaotic sea.
+# Starts of Hénon & Heiles at or below E = 1/8, with their y as x: in an island, and in the chaotic sea.
 ISLAND, SEA = [0.5, 0.0, 0.0, 0.2334], [-0.25, 0.0, 0.0, 0.42081]
 # Two uncoupled oscillators: every bounded orbit lies on a torus. The saddle is at (1, 0), with V = 1/6.
 SEPARABLE = Potential("separable", ((2, 0, 0.5), (3, 0, -1 / 3), (0, 2, 0.8)))
@@ -32,7 +32,7 @@ def island() -> Orbit:
 
 @pytest.fixture(scope="module")
 def late_escape() -> tuple[np.ndarray, Orbit]:
-    """An orbit that escapes between t = 2000 and 8000."""
+    """Return the start and the orbit of an escape between t = 2000 and 8000."""
     x = np.linspace(-0.4, 0.4, 1500)
     states = start_states(CASES["I"], Plane.X_PX, 0.14, x, np.full_like(x, 0.05))
     states = states[np.isfinite(states).all(axis=1)]

@@ -1,4 +1,4 @@
-"""Orbits that enter through the exits: distributed as the flux, and inside for the mean time that volume and flux imply."""
+"""Orbits that enter through the exits are distributed as the flux, and stay inside for volume over flux on average."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ UNEQUAL = Potential("unequal", ((2, 0, 0.5), (0, 2, 0.6), (1, 2, -1.0), (3, 0, 0
 
 
 def times_inside(potential: Potential, energy: float, states: np.ndarray, t_max: float) -> np.ndarray:
-    """Return the times until orbits leave, (n,), or t_max for orbits that stay."""
+    """Return the times until orbits leave, of shape (n,), or t_max for orbits that stay."""
     return np.fmin(classify_orbits(potential, energy, states, t_max).escape_time, t_max)
 
 
@@ -41,9 +41,9 @@ def test_the_mean_time_inside_is_volume_over_flux(potential: Potential, energy: 
 
 
 def test_orbits_that_enter_pass_the_volume_that_drains() -> None:
-    """Of all starts a share leaves until t_max; that share of volume over flux is the mean time of entering orbits until t_max.
+    """The mean time of entering orbits inside, until t_max, is volume over flux times the share of all starts that leave by then.
 
-    Some of these orbits are still inside then, and islands take much of the volume.
+    Some orbits are still inside at t_max, and islands take much of the volume.
     """
     potential, energy, t_max = CASES["III"], 0.3, 1000.0
     starts, entrances = (draw(potential, energy, 5 * COUNT, seed=1) for draw in (sample_starts, sample_entrances))
@@ -62,7 +62,7 @@ def test_entrances_are_inside_and_go_inward(potential: Potential, energy: float)
     for duration, outside in ((1e-4, False), (-1e-4, True)):
         x, y = (states[:, :2] + duration * states[:, 2:]).T.copy()
         beyond = find_outside_channels(potential, energy, x, y) > 0
-        # Orbits that move almost along the exit have hardly left it.
+        # Orbits that move almost along the exit are still on it, so not all are beyond.
         assert (beyond == outside).mean() > 0.9
 
 

@@ -30,7 +30,7 @@ def test_flux_is_the_integral_over_the_exit_of_all_outward_velocities(potential:
 
 
 def test_the_area_inside_is_that_of_a_disc_where_the_well_is_nearly_round() -> None:
-    # With V = ½ r² − r³ f(θ) it is 2πh + 12 h² ∫ f² dθ + …; for case I the integral of cos² θ sin⁴ θ is π/8.
+    # With V = ½ r² − r³ f(θ), the area is 2πh + 12 h² ∫ f² dθ + …. For case I, the integral of f² = cos² θ sin⁴ θ is π/8.
     h = 0.01
     found = compute_flux(CASES["I"], h)
     assert found.area == pytest.approx(2.0 * math.pi * h * (1.0 + 0.75 * h), rel=5e-4)

@@ -12,7 +12,7 @@ from engine import CASES, Fate, Plane, classify_orbits, find_divergent_start, in
 from engine.results import DivergentStart
 
 T_MAX = 2000.0
-# Potential, plane, energy, x, ordinate, at different distances from the basin boundary; the second one is bounded.
+# Potential, plane, energy, x and ordinate of starts at different distances from the basin boundary. The second orbit is bounded.
 STARTS = [
     ("I", Plane.X_PX, 0.2, -0.2, 0.1),
     ("III", Plane.X_Y, 0.5, 0.2, 0.3),

@@ -15,7 +15,8 @@ from tests.disc import DISC
 # An island and the chaotic sea of Hénon & Heiles below the escape energy.
 ISLAND, SEA = [0.5, 0.0, 0.0, 0.2334], [-0.25, 0.0, 0.0, 0.42081]
 
-# Bounded until t = 5000 without a sign of chaos in deviation vectors; SALI falls to 1e-7 by t = 1e5, and the third one escapes.
+# Orbits that are bounded until t = 5000 without a sign of chaos in deviation vectors. By t = 1e5, SALI falls to 1e-7, and the
+# third orbit escapes.
 STICKY = (
     ("I", (-0.3167831674667674, -0.1372214035177458, 0.00363892447924018, 0.3447834056797196)),
     ("I", (0.30298114722811476, 0.027745995206539975, 0.35121822596890456, -0.23779158119211288)),
@@ -38,7 +39,7 @@ def with_end(orbit: Orbit, *, sali: float, growth: float, halves: float) -> Orbi
 
 @pytest.fixture(scope="module")
 def bounded() -> Orbit:
-    """An orbit that could escape but does not."""
+    """Return an orbit that could escape but does not."""
     return replace(integrate_orbit(CASES["II"], ISLAND, 2000.0), evidence=Evidence.INTEGRATED)
 
 

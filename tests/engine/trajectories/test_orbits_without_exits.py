@@ -1,4 +1,4 @@
-"""Orbits at energies at which the exits are not defined: they are followed, and nothing is said about exits."""
+"""Where exits are not defined at an energy, orbits are followed, and verdicts say that exits are unknown."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def test_an_exit_all_around_a_well_is_not_needed() -> None:
     assert "it leads all around the well" in orbit.exits_unknown
     assert orbit.fate == Fate.FAILED
     assert compute_birkhoff_digits(RING, (0.0, 0.0, 0.6 * speed, 0.8 * speed), 3000.0).digits.size == 0
-    # The orbit has run far away.
+    # The orbit has gone far away, so the window shows only its nearby part.
     assert compute_orbit_curves(RING, orbit).window.x_high < 20.0 < np.abs(orbit.x).max()
 
 

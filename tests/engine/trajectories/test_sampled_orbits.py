@@ -38,7 +38,7 @@ def test_states_are_those_of_single_orbits(case: str) -> None:
     for place, state in enumerate(states):
         one = integrate_orbit(CASES[case], state, 30.0)
         known = one.t[-1] >= TIMES
-        # Individual times, equal to those of the single orbit.
+        # Sample the orbit at the times of the single orbit.
         again = sample_orbits(CASES[case], state[None], one.t[None])
         np.testing.assert_allclose(again.x[0], one.x, rtol=0, atol=1e-12)
         np.testing.assert_allclose(again.py[0], one.py, rtol=0, atol=1e-12)

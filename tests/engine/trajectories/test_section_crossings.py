@@ -28,7 +28,7 @@ MIXED = [("I", 0.14), ("III", 0.3)]
 
 
 def split_starts(name: str, energy: float, t_max: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return starts that escape after more than two crossings, and bounded ones."""
+    """Return starts of orbits that escape after more than two crossings, and starts of bounded orbits."""
     starts = start_states(CASES[name], Plane.X_PX, energy, *np.random.default_rng(6).uniform(-0.4, 0.4, (2, 400)))
     starts = starts[np.isfinite(starts).all(axis=1)]
     outcomes = classify_orbits(CASES[name], energy, starts, t_max)

@@ -1,4 +1,4 @@
-"""Distance of two orbits, compared with another integrator and with exponential growth."""
+"""The distance of two orbits agrees with SciPy, and long orbits are compared for a limited time."""
 
 from __future__ import annotations
 

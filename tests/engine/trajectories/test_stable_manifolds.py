@@ -15,7 +15,7 @@ from engine.propagation.fixed_steps import find_section_points
 from engine.trajectories.stable_manifolds import StableManifolds, find_stable_manifolds
 from engine.trajectories.unstable_manifold import UnstableManifold
 
-# The original orientation of the Hénon-Heiles potential (Case II): not even in y, so that orbits can touch y = 0.
+# The Hénon-Heiles potential (case II) in its original orientation. It is not even in y, so orbits can touch y = 0.
 TURNED = Potential("turned", ((2, 0, 0.5), (0, 2, 0.5), (2, 1, 1.0), (0, 3, -1 / 3)))
 NEVER = 1e9
 # Distance to either side of an arc. Successive turns of an arc that winds around another are less than 1e-8 apart.
@@ -30,7 +30,7 @@ def manifolds(potential: Potential, energy: float, images: int = 2) -> StableMan
 
 
 def points_with_normals(found: StableManifolds, channel: int, image: int) -> np.ndarray:
-    """Return the points x, px of the arcs, without their ends, and unit normals, of shape (n, 4)."""
+    """Return x and px of the points of arcs, without their ends, and the unit normals at these points, of shape (n, 4)."""
     rows = [np.empty((0, 4))]
     for arc in found.arcs:
         if (arc.channel, arc.image) == (channel, image):
@@ -44,7 +44,7 @@ def points_with_normals(found: StableManifolds, channel: int, image: int) -> np.
 
 
 def separating_share(potential: Potential, energy: float, channel: int, image: int, most: int = 60) -> float:
-    """Return the share of points of an image where orbits `STEP` to one side escape and `STEP` to the other side turn back."""
+    """Return the share of points of an image that separate: orbits `STEP` to one side escape, to the other side turn back."""
     points = points_with_normals(manifolds(potential, energy), channel, image)
     points = points[:: math.ceil(len(points) / most)]
     sides = []
@@ -138,7 +138,7 @@ def test_first_images_are_closed_curves_and_not_truncated() -> None:
 
 
 def test_an_orbit_of_the_unstable_manifold_has_no_passages_after_its_escape() -> None:
-    # Channel 1 lies on y = 0, about which orbits oscillate as they leave.
+    # Channel 1 lies on y = 0, and orbits oscillate about y = 0 as they leave.
     tube = UnstableManifold.from_orbit(find_orbits_in_well_units(CASES["II"], 0.2)[0])
     phases = np.linspace(0.0, 1.0, 200)
     displacements = tube.displacements(phases)

@@ -155,7 +155,7 @@ def test_an_orbit_at_rest_on_a_saddle_is_bounded_and_does_not_run_away(side: flo
 
 
 def test_deviations_grow_as_the_distance_of_a_neighbour_past_a_body() -> None:
-    # Steps are much shorter there than the distance of the samples; the orbit passes the body at a distance of 0.013 at t = 3.13.
+    # The orbit passes the body at a distance of 0.013 at t = 3.13. Steps are much shorter there than the sampling intervals.
     potential, start, distance = POTENTIALS["Hill"], np.array([-0.3, 0.0, 0.0, 2.5346]), 1e-9
     units = potential.units.state
     orbit = integrate_orbit(potential, start, 3.5)

@@ -1,4 +1,4 @@
-"""The colours of descriptors rise with them, and the legend has the ends of their scale."""
+"""The codes of pixels rise with their descriptors, and the legend has the ends of the scale."""
 
 from __future__ import annotations
 

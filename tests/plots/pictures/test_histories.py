@@ -1,4 +1,4 @@
-"""Reduced histories look like the curve, or, where it oscillates too fast, are its envelope and mean."""
+"""Reduced histories look like the curve, and where the curve oscillates too fast, they are its envelope and mean."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def test_a_history_has_few_points_and_its_whole_duration(oscillation: History) -
 
 
 def test_each_orbit_is_reduced_over_its_own_time() -> None:
-    """Of a long orbit the early oscillations are drawn, as those of a short one beside it."""
+    """The early oscillations of a long orbit are drawn like those of a short orbit in the same plot."""
     potential, bounded, escaping = CASES["I"], (-0.46, 0.0, 0.0, 0.2), (0.1, 0.0, 0.05, 0.6)
     for state, t_max in ((bounded, 2e4), (escaping, 2e4)):
         curves = compute_orbit_curves(potential, integrate_orbit(potential, state, t_max))

@@ -1,4 +1,4 @@
-"""Images of frames: pixel codes and orientation."""
+"""Images of frames have the right pixel codes and positions."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def test_a_coarse_frame_fills_the_window() -> None:
 def columns_of(
     fate: list[list[int]], window: tuple[float, float, float, float], *, complete: bool = False
 ) -> dict[str, list[Any]]:
-    """Return columns of a frame with these codes of fates in all images, row 0 lowest."""
+    """Return columns of a frame whose images all have these codes, row 0 lowest."""
     codes, (low, high, bottom, top) = np.array(fate, np.uint8), window
     images = {name: [codes] for name in ("fate", "crossing_class", "crossings", "escape_time")}
     return {**images, "x": [low], "y": [bottom], "dw": [high - low], "dh": [top - bottom], "complete": [complete]}
@@ -100,7 +100,7 @@ def test_pixels_beyond_the_earlier_window_are_those_of_the_frame() -> None:
 
 
 def class_of_difference(one: int, other: int) -> int:
-    """Return the code of a pixel whose orbits have these fates in two views, written out case by case."""
+    """Return the code of a pixel whose orbits have these fates in two views. All cases are written out."""
     first = len(OUTCOMES)
     if Fate.NOT_COMPUTED in (one, other):
         return list(OUTCOMES).index(Fate.NOT_COMPUTED)

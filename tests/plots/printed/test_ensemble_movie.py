@@ -1,4 +1,4 @@
-"""Movies of orbits that leave: a frame for each time, in each format, with the orbits that are still inside."""
+"""Movies of orbits have a frame for each time in each format, and show the orbits that are still inside."""
 
 from __future__ import annotations
 

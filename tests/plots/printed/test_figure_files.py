@@ -50,7 +50,7 @@ def draw_curves(format: FigureFormat, style: FigureStyle) -> bytes:
     scope="module", params=["maps", *(pytest.param(each, marks=pytest.mark.slow) for each in (draw_orbits, draw_curves))]
 )
 def draw(request: pytest.FixtureRequest, escape_map: EscapeMap) -> Draw:
-    """A function that draws one of the figures."""
+    """Return a function that draws one of the figures."""
     if callable(request.param):
         return request.param  # type: ignore[no-any-return]
     return lambda format, style: map_figure_bytes(escape_map, ["basins", "times"], PAPER, format, style)
@@ -58,7 +58,7 @@ def draw(request: pytest.FixtureRequest, escape_map: EscapeMap) -> Draw:
 
 @pytest.fixture(scope="module")
 def narrow(draw: Draw) -> dict[FigureFormat, bytes]:
-    """A narrow figure in each format."""
+    """Return the file of a narrow figure in each format."""
     return {format: draw(format, NARROW) for format in FigureFormat}
 
 

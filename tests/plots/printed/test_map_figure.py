@@ -45,12 +45,12 @@ STYLE = FigureStyle(8.0, dpi=100.0)
 
 @pytest.fixture(scope="module")
 def escape_map() -> EscapeMap:
-    """A map whose quarters all differ."""
+    """Return a map whose quarters all differ."""
     return compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.18, (40, 30), window=(-1.0, 1.4, -0.8, 0.4), t_max=200.0))
 
 
 def draw(frame: EscapeMap, picture: str, palette: Palette, **options: Any) -> tuple[Image.Image, np.ndarray]:
-    """Return a figure of one picture, and the pixels (rows, columns, 3) inside the frame of its map."""
+    """Return a figure of one picture, and the pixels inside the frame of its map, of shape (rows, columns, 3)."""
     figure = draw_map_figure(frame, [picture], palette, STYLE, **options)
     image = Image.open(BytesIO(save_figure(figure, FigureFormat.PNG, {}))).convert("RGB")
     box = figure.axes[0].get_window_extent()
@@ -74,7 +74,7 @@ def on_white(colour: str) -> tuple[int, ...]:
 
 
 def share_shown(square: np.ndarray, frame: EscapeMap, picture: str, palette: Palette) -> float:
-    """Return the share of the starts whose pixel has its colour at its centre; curves and marks cover a few of them."""
+    """Return the share of starts whose pixels have the right colour at the centre. Curves and marks cover some centres."""
     bare = picture_pixels(frame, picture, palette).astype(float)
     expected = 255 + (bare[..., :3] - 255) * bare[..., 3:] / 255
     rows, columns = (
@@ -130,7 +130,7 @@ def test_everything_is_inside_the_figure_and_nothing_overlaps(style: FigureStyle
 
 @pytest.fixture(scope="module")
 def three_maps() -> Figure:
-    """A figure as wide as a page, with many entries in its legends."""
+    """Return a figure as wide as a page, with many entries in its legends."""
     whole = compute_map(MapSpec(CASES["III"], Plane.X_Y, 0.3, (30, 30), t_max=1000.0))
     trust = {"trust": compute_trust(whole)}
     figure = draw_map_figure(whole, ["basins", "times", "crossings"], PAPER, FigureStyle(), analyses=trust)
@@ -170,7 +170,7 @@ def test_a_start_is_marked_in_the_colour_of_its_orbit(escape_map: EscapeMap) -> 
     side = plain.shape[0]
     assert abs(columns.min() - 0.75 * side) < 15
     assert abs(rows.max() - 0.25 * side) < 15
-    # The first start is outside the window and keeps its colour.
+    # The first start is outside the window, and the second start still has the second colour.
     row, column = round(0.25 * side), round(0.75 * side)
     near = marked[row - 2 : row + 2, column - 2 : column + 2]
     assert np.any(np.all(near == on_white(PAPER.orbits[1]), axis=-1))

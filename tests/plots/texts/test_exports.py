@@ -120,7 +120,7 @@ def test_the_script_reproduces_and_draws_the_map_and_the_orbits(name: str, monke
         expected = integrate_orbit(CASES["II"], start, spec.t_max)
         assert one.fate == expected.fate
         np.testing.assert_array_equal(one.x, expected.x)
-    # One figure of the map, one of each orbit.
+    # The script draws the map and two orbits.
     assert len(drawn) == 3
     pyplot.close("all")
 

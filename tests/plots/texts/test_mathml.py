@@ -1,4 +1,4 @@
-"""MathML formulas, parsed back and compared with the potential."""
+"""MathML formulas are those of the potential when they are parsed back."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ X, Y = sympy.symbols("x y")
 
 
 def rows(potential: Potential) -> dict[str, list[ElementTree.Element]]:
-    """Formulas by their labels."""
+    """Return the formulas of a potential by label."""
     page = ElementTree.fromstring(equations(potential))
     return {str(name.text): list(row) for name, row in zip(page.iter("dt"), page.iter("dd"), strict=True)}
 
@@ -53,7 +53,7 @@ def potential_of(potential: Potential) -> sympy.Expr:
     return sum(sympy.nsimplify(c, rational=True, tolerance=1e-12) * X**i * Y**j for i, j, c in potential.terms)
 
 
-# Terms of no known potential: roots, decimals, x y, saddles without exact coordinates.
+# A potential with terms that no known potential has: roots, decimals, x y. Its saddles have no exact coordinates.
 ODD = Potential("odd", ((2, 0, 0.5), (0, 2, 0.75), (1, 1, -0.123456), (3, 0, 1.0), (2, 1, -(2.0**0.5)), (0, 4, -0.3)))
 
 

@@ -64,7 +64,7 @@ def coverage(fits: list[ShareFit], truth: dict[str, float]) -> dict[str, float]:
 def test_intervals_of_a_tangent_have_about_95_percent_coverage() -> None:
     rng = np.random.default_rng(3)
     held = coverage([fit_escape_shares(ENERGIES, drawn(TANGENT(ENERGIES), rng)) for _ in range(400)], TANGENT.parameters)
-    # 94 to 95 % of very many draws.
+    # Of very many draws, 94 to 95 % of the intervals contain the true value.
     assert all(in_sample(share, 400, 0.94, 0.95) for share in held.values()), held
 
 

@@ -28,7 +28,7 @@ TINY = Quality(
     "tiny", resolution=15, t_max=300.0, curve_points=7, search_resolution=9,
     search_t_max=2000.0, classified_resolution=10, exponent_work=1e4,
 )  # fmt: skip
-# For each family a case to draw, the numbers of maps and of lines in each panel, and the labels of the axes.
+# For each family of figures: a case to draw, the number of maps, the numbers of lines of the panels, and the labels of both axes.
 DRAWN = {
     "potential": ("II", 0, [46, 6, 9], {"$x$"}, {"$y$"}),
     "basins-xy": ("III", 9, [0] * 9, {"$x$"}, {"$y$"}),

@@ -1,4 +1,4 @@
-"""Comparisons with the paper, on maps of a few hundred starts."""
+"""Comparisons with the paper have the right differences, on maps of a few hundred starts."""
 
 from __future__ import annotations
 
@@ -155,7 +155,7 @@ def test_escape_energy_and_lyapunov_orbits_are_computed() -> None:
     escape = StatedNumber("II", None, (), "", Quantity.ESCAPE_ENERGY, Relation.EXACTLY, 1 / 6)
     r2 = StatedNumber("III", Plane.X_Y, (0.26,), "", Quantity.LYAPUNOV_R2, Relation.ABOUT, 1.26)
     assert measure(escape).agrees
-    # This number is known from an independent computation of the orbits.
+    # The numbers are known from an independent computation of the orbits.
     assert measure(r2).computed == pytest.approx((1.004, 1.016), abs=5e-4)
 
 

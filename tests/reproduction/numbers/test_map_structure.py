@@ -1,4 +1,4 @@
-"""Structure of basins on maps with known fates."""
+"""The structure of basins is measured right on maps with known fates."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Consistency of the stated numbers."""
+"""The stated numbers are consistent, and include those that the paper prints."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def test_only_shares_of_channels_name_channels() -> None:
         assert bool(number.channels) is (number.quantity is Quantity.ESCAPED_BY)
 
 
-# As printed in the paper.
+# Percentages as printed in the paper.
 @pytest.mark.parametrize(
     ("case", "plane", "at", "quantity", "channels", "relation", "value"),
     [

@@ -104,7 +104,7 @@ def test_retrograde_stars_stay_more_often_and_leave_last_at_boundaries(paper_map
     frame = small(paper_map)
     assert bounded_share_beside(frame, -1) > 7.0 * bounded_share_beside(frame, 1)
     times = end_times(frame)
-    # Rounding errors change the fates of chaotic orbits, and with them the median at boundaries, by some 10 %.
+    # Rounding errors change the fates of chaotic orbits, and thereby the median time at boundaries by some 10 %.
     assert times.at_boundary > 3.0 * times.inside
 
 

@@ -17,7 +17,7 @@ from tests.app.other_loop import run_on_new_loop
 
 
 async def thread_ids() -> tuple[int, int]:
-    """Return threads of a locked callback and of the event loop."""
+    """Return the threads of a locked callback and of the event loop."""
     made = ServerSession("session", Document())  # type: ignore[arg-type]
     return await made.with_document_locked(threading.get_ident), threading.get_ident()
 

@@ -20,7 +20,7 @@ from tests.waiting import SECONDS
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
 
-# The process ends after 5 s at the latest if it gets a processor; an occupied event loop lasts for minutes.
+# A process that gets a processor ends after 5 s at the latest. Without the end, an occupied event loop would last for minutes.
 LIMIT_SECONDS = 30.0
 
 
@@ -65,7 +65,7 @@ def test_event_loop_stops_after_a_signal() -> None:
 
 
 def end_by_signal(number: signal.Signals, occupy: Callable[[], None]) -> bool:
-    """End a process, check its exit code and the time that it takes, and return whether its event loop has stopped before."""
+    """End a process by a signal, check its exit code and duration, and return whether its event loop stopped before the end."""
     started, stopped = forked.fork_context().Event(), forked.fork_context().Event()
     process = forked.start(serve, started, stopped, occupy)
     assert started.wait(SECONDS)

@@ -15,7 +15,7 @@ from plots.pictures.charts import CURVE_PANELS
 
 
 def curves(*energies: float) -> Sweep:
-    """Return a sweep with all measures. Its only exponent is invented, because measuring exponents takes seconds."""
+    """Return a sweep with all measures. The only exponent in it is invented, because measuring exponents takes seconds."""
     quick = tuple(name for name in CURVES if name != "uncertainty_exponent")
     found = compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, energies, (20, 20), t_max=100.0, measures=quick)).dataset
     missing = np.full(len(energies) - 1, np.nan)

@@ -41,12 +41,12 @@ def view(state: ViewState, results: ShownResults, frame: EscapeMap) -> Statistic
 
 @pytest.fixture(autouse=True)
 def charts(view: StatisticsView) -> list[figure]:
-    """The figures of the section after building it."""
+    """Build the section, and return its figures."""
     return [part.get_root().children[0] for make in view.parts()[1:] for part in make()]
 
 
 def test_the_charts_count_every_escape(state: ViewState, view: StatisticsView, charts: list[figure], frame: EscapeMap) -> None:
-    # Nothing is counted before it is shown.
+    # Nothing is counted before the section is shown.
     assert view.table.object == ""
     state.analysis = Analysis.STATISTICS
     statistics = compute_statistics(frame)

@@ -21,7 +21,7 @@ ALL = frozenset(int(fate) for fate in (Fate.BOUNDED, Fate.FORBIDDEN, Fate.OUTSID
 
 
 def legend(picture: str, potential: Potential = CASES["II"], **changes: Any) -> str:
-    """Return HTML of the legend of a picture."""
+    """Return the HTML of the legend of a picture."""
     values: dict[str, Any] = {"palette": PAPER, "times": TimeScale(2.5, 100.0), "fates": ALL}
     return picture_legend(map_legend(picture, ShownMap(MapSpec(potential, Plane.X_PX, 0.19), **(values | changes))))
 

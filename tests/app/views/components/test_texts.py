@@ -15,7 +15,7 @@ from app.views.components.texts import StatusPane, TextPane, breakable, typeset
 @pytest.mark.parametrize("is_on_the_page", [True, False])
 def test_a_new_text_changes_no_stylesheet(kind: type[TextPane], is_on_the_page: bool) -> None:
     pane, document = kind("before"), Document()
-    # A pane in a document of the server.
+    # The template variables are those of a document of the server.
     document.template_variables["dist_url"] = LOCAL_DIST
     column = pn.Column(pane)
     root = column.get_root(document)

@@ -12,7 +12,7 @@ HOME = MapSpec(CASES["I"], Plane.X_PX, 0.19)
 
 
 class RangesOnPage:
-    """Ranges in a document at the window of the whole interior, with their reports and the number of gestures."""
+    """Ranges in a document, first at the window of the whole interior. Records what they report, and counts gestures."""
 
     def __init__(self) -> None:
         self.zooms: list[Window | None] = []
@@ -122,7 +122,7 @@ def test_ranges_do_not_follow_an_earlier_map_before_their_window_is_shown() -> N
     ranges.end_gesture()
     ranges.follow(home)
     assert ranges.x.end == 0.2
-    # The window was refused.
+    # The server has refused the window.
     ranges.finish_report()
     assert ranges.x.end == home.x_high
 
@@ -133,7 +133,7 @@ def test_a_timer_that_is_due_when_the_ranges_move_on_reports_nothing() -> None:
     ranges.x.start = -0.1
     [timer] = page.document.session_callbacks
     ranges.x.end = 0.1
-    # Bokeh calls it all the same, once the message that moved the ranges has released the lock.
+    # Bokeh calls a timer that is due even so, once the message that moved the ranges has released the lock.
     timer.callback()
     assert page.zooms == []
     [timer] = page.document.session_callbacks

@@ -1,4 +1,4 @@
-"""Pictures stand side by side, or one is large above the others."""
+"""Pictures are side by side, or one picture is large above the others."""
 
 from __future__ import annotations
 

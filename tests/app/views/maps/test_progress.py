@@ -70,7 +70,7 @@ def test_a_deep_zoom_says_how_many_pixels_are_lost_to_rounding_and_offers_the_te
     view.show(replace(escape_map, rounded_share=0.273))
     assert "about 27 % of the pixels depend on rounding errors" in re.sub(r"<[^>]*>", "", view.text.object)
     assert (view.button.label, view.button.styles["visibility"]) == (LAYERS["trust"].title, "visible")
-    # The text is long, so the button stands outside the text.
+    # The text is long, so the button is not over the text.
     assert "stop" not in view.button.css_classes
     view.button.clicks += 1
     assert state.layers == {"trust"}

@@ -1,4 +1,4 @@
-"""The player of many orbits follows and changes the view state, and gets the decay rate of mixed motion."""
+"""The player of many orbits follows and changes the view state, and gets the decay rate of motion that mixes."""
 
 from __future__ import annotations
 

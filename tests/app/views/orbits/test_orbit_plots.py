@@ -23,7 +23,7 @@ def curves_of(state: tuple[float, ...], t_max: float) -> OrbitCurves:
 
 @pytest.fixture(scope="module")
 def drawings() -> list[OrbitCurves]:
-    """A bounded orbit of t = 2e4 and one that escapes at t = 15."""
+    """Return the curves of an orbit that is bounded until t = 2e4, and of an orbit that escapes at t = 15."""
     return [curves_of((-0.46, 0.0, 0.0, 0.2), 2e4), curves_of((0.1, 0.0, 0.05, 0.6), 2e4)]
 
 

@@ -19,7 +19,7 @@ from plots.pictures.time_scale import TimeScale
 
 
 class Page:
-    """Controls with their state, and the calls they made."""
+    """Controls with their state, and the calls that they made."""
 
     def __init__(self) -> None:
         self.locks: list[bool] = []
@@ -89,7 +89,7 @@ def test_other_potentials_leave_no_case_selected(page: Page) -> None:
 
 
 def test_another_case_writes_no_plane_that_is_shown_already(page: Page) -> None:
-    # Panel drops a choice of the browser that waits to be handled when the server writes the widget.
+    # When the server writes a widget, Panel drops a choice of the browser that is not handled yet.
     written: list[object] = []
     page.controls.plane.param.watch(lambda event: written.append(event.new), "value", onlychanged=False)
     page.controls.case.value = "II"

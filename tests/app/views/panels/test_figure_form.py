@@ -1,4 +1,4 @@
-"""Figures of the state at the click are made without blocking the event loop, and faults are told in a sentence."""
+"""Figures show the state at the click, are made without blocking the event loop, and faults are told in a sentence."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def escape_map() -> EscapeMap:
 
 @pytest.fixture(scope="module")
 def shown(escape_map: EscapeMap) -> ShownResults:
-    """Results of every kind that can be drawn."""
+    """Return results of every kind that can be drawn."""
     curves = compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.2, 0.3), (12, 12), t_max=100.0, measures="shares"))
     orbit = compute_orbit_curves(CASES["I"], integrate_orbit(CASES["I"], (0.1, 0.0, 0.05, 0.6), 50.0))
     analyses = {"judge": compute_regularity(escape_map)}
@@ -65,7 +65,7 @@ def saved() -> KeptFiles:
 
 @pytest.fixture
 def results(shown: ShownResults) -> ShownResults:
-    """The same results, for a test that changes them."""
+    """Return a copy of the results, for a test that changes them."""
     return ShownResults(frame=shown.frame, analyses=shown.analyses, orbits=shown.orbits, curves=shown.curves)
 
 

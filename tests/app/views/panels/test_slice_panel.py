@@ -18,7 +18,7 @@ C = Coordinate
 
 
 class Drawer:
-    """The panel with its state, which takes every slice."""
+    """The panel and its state. The panel accepts every legal slice."""
 
     def __init__(self) -> None:
         self.state = ViewState(system=System("I"), energy=0.19)
@@ -26,7 +26,7 @@ class Drawer:
 
     @property
     def boxes(self) -> dict[str, NumberBox]:
-        """The boxes by their labels."""
+        """The boxes of numbers, by label."""
         rows = [*self.panel.ranges.objects, *self.panel.held.objects]
         return {box.label: box for row in rows for box in row.objects}
 
@@ -56,7 +56,7 @@ def test_axes_ranges_and_held_coordinates_are_chosen(drawer: Drawer) -> None:
     drawer.panel.mode.value = "py > 0"
     drawer.type("y =", 0.1)
     assert drawer.state.plane == Slice(C.X, C.PX, fixed=((C.Y, 0.1),))
-    # The axis of the other exchanges both.
+    # Choosing the axis of the other list exchanges both axes.
     drawer.panel.axes[0].value = "px"
     assert drawer.state.plane.axis_names == ("px", "x")
     drawer.state.show_slice(Plane.X_PX)

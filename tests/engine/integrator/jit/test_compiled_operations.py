@@ -31,7 +31,7 @@ SHARE = MOST // SHARES
 
 @pytest.fixture
 def limited() -> CompiledOperations:
-    """A limit of `MOST` operations."""
+    """Return an account of compiled code with a limit of `MOST` operations."""
     limited = CompiledOperations()
     limited.most = MOST
     return limited
@@ -52,7 +52,7 @@ def test_reserved_code_is_compiled_at_the_limit_and_does_not_count(limited: Comp
     limited.add("first", MOST)
     limited.add("reserved", 2 * LARGEST_CODE)
     assert limited.used == MOST
-    # Compiled before it was reserved.
+    # This code was compiled before it was reserved.
     limited.reserve(["first"])
     assert limited.used == 0
 
@@ -73,7 +73,7 @@ def test_an_account_has_a_share_of_the_limit(limited: CompiledOperations) -> Non
             limited.add("second", 1)
     with charged_to("other"):
         limited.add("second", SHARE)
-    # Code without an account.
+    # This code has no account.
     limited.add("third", 2 * SHARE)
     assert limited.used == MOST
 

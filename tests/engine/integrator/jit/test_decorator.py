@@ -34,7 +34,7 @@ def test_a_subroutine_is_part_of_the_file_of_its_kernel(tmp_path: Path, monkeypa
 def test_the_code_of_a_kernel_contains_its_subroutines() -> None:
     """Code of the same name in another kernel would replace it and round differently, depending on the order of loading."""
     find_lyapunov_orbits(CASES["I"], 0.2)
-    # Compiled anew, since code from the cache cannot be inspected.
+    # Compile the kernel anew, because code from the cache cannot be inspected.
     signature = shoot.signatures[0]
     compiled = njit(nogil=True, error_model="numpy", fastmath={"contract"})(shoot.py_func)
     compiled.compile(signature)

@@ -16,7 +16,7 @@ from tests.waiting import SECONDS
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    """The folder of the files of an empty cache."""
+    """Yield the folder of the files of an empty cache."""
     monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
     yield tmp_path / "kernels"
     compile_in(None)

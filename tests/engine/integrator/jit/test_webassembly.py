@@ -44,7 +44,7 @@ def test_the_kernels_have_at_most_16_kb() -> None:
 
 
 def starts(potential: Potential) -> np.ndarray:
-    """Return x, y, px, py, of shape (n, 4)."""
+    """Return random starts x, y, px, py, of shape (n, 4)."""
     chance = np.random.default_rng(1)
     x, px = chance.uniform(-0.3, 0.3, 9), chance.uniform(-0.3, 0.3, 9)
     return start_states(potential, Plane.X_PX, ENERGY, x, px)

@@ -1,4 +1,4 @@
-"""Crossings of y = 0 and exits within one step, for series that are known polynomials."""
+"""Crossings of y = 0 and of exits are found within a step whose series are known polynomials."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def crossings(polynomial: Polynomial, duration: float = 1.0) -> int:
 
 
 def points_of(y: Polynomial, direction: int) -> np.ndarray:
-    """Return x, px and time, (n, 3), of the crossings of a step that begins at t = 5 and whose x is the polynomial `X`."""
+    """Return x, px and time of the crossings of a step, of shape (n, 3). The step begins at t = 5, and its x is `X`."""
     points, found = np.full((2, 8, 3), np.nan), np.zeros(2, np.int64)
     append_crossings(jet_of(X), jet_of(y), 0, float(direction), 5.0, 1.0, points, found, 1)
     assert found[0] == 0
@@ -60,7 +60,7 @@ def random_series(seed: int, direction: int) -> tuple[Polynomial, np.ndarray]:
         # Ends on 0, from below and from above.
         ((1.0,), +1, 1),
         ((1.0,), -1, 0),
-        # Touches 0, exact in floating point: y reaches y ≥ 0 from below; from above, it is never negative.
+        # Touches 0, exactly in floating point. From below, y becomes ≥ 0, which is a crossing. From above, y is never negative.
         ((0.25, 0.25), +1, 0),
         ((0.25, 0.25), -1, 1),
     ],
@@ -77,7 +77,7 @@ def test_two_roots_in_one_part_of_a_step_are_one_crossing_in_each_direction(apar
     y = sign * with_roots(*roots)
     assert crossings(y) == 1
     upward, downward = (points_of(y, direction)[:, 2] - 5.0 for direction in (+1, -1))
-    # A root is as exact as y, of order 1e-16, over the slope there.
+    # The error of a root is the error of y, of order 1e-16, divided by the slope at the root.
     np.testing.assert_allclose([downward, upward][::sign], np.reshape(roots, (2, 1)), atol=1e-15 / apart)
 
 
@@ -109,7 +109,7 @@ def test_crossings_of_random_series_are_their_roots_with_the_slope_of_the_direct
 
 
 def orbit_through(x: float, y: float, px: float, py: float) -> tuple[np.ndarray, np.ndarray]:
-    """Straight lines in time, as series."""
+    """Return the series of an orbit with constant velocity."""
     return jet_of(Polynomial([x, px])), jet_of(Polynomial([y, py]))
 
 
@@ -117,7 +117,7 @@ def test_curves_continue_straight_beyond_both_ends_of_a_lyapunov_orbit() -> None
     for orbit in find_lyapunov_orbits(CASES["II"], 0.5):
         path = np.array([orbit.x, orbit.y])[:, : orbit.x.size // 2 + 1]
         for end, before in ((0, 1), (-1, -2)):
-            # The path is densest at its ends, so that its last piece is nearly its tangent there.
+            # The path is densest at its ends, so its last piece has almost the direction of its tangent.
             tangent = path[:, end] - path[:, before]
             tangent /= np.hypot(*tangent)
             near, far = (exit_distance(*(path[:, end] + length * tangent), orbit.curve) for length in (1e-3, 1e-1))

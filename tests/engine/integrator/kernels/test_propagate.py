@@ -14,14 +14,14 @@ from engine.integrator.source.series import ORDER
 from engine.integrator.source.step_flags import HIDDEN
 from engine.propagation.fates import Fate
 
-# Not even in y, so orbits can turn anywhere and y = 0 can be grazed.
+# A potential that is not even in y, so orbits can turn anywhere and can graze y = 0.
 ODD = Potential("odd", ((2, 0, 0.5), (0, 2, 0.5), (2, 1, 0.3), (0, 3, -0.2), (4, 1, 0.11), (1, 1, 0.07)))
 
 POTENTIAL, ENERGY = CASES["III"], 0.4
 
 
 def single_steps(potential: Potential, states: np.ndarray, horizon: float = np.inf) -> tuple[np.ndarray, ...]:
-    """Return (6, n) states, times and step sizes, (n,) flags and (n,) crossings after a step."""
+    """Return states, times and step sizes after a step, of shape (6, n), and its flags and crossings, each of shape (n,)."""
     gates = np.tile([0.0, 0.0, np.inf], (potential.channels, 1))
     kernels = load_kernels(potential.terms, potential.channels)
     parts = []
@@ -46,7 +46,7 @@ def sampled_y(potential: Potential, states: np.ndarray, h: np.ndarray) -> np.nda
 def test_a_step_without_the_flag_hides_no_crossing(potential: Potential) -> None:
     rng = np.random.default_rng(11)
     states = rng.uniform(-0.6, 0.6, (2000, 4))
-    # Half of the steps start close to y = 0 and almost parallel to it, where crossings can be hidden.
+    # Half of the steps start close and almost parallel to y = 0, where a step can hide crossings.
     states[::2, 1] *= 1e-2
     states[::2, 3] *= 3e-2
     new, flag, crossed = single_steps(potential, states)

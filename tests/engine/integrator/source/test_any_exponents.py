@@ -1,4 +1,4 @@
-"""Generated programs of any polynomial, against power series that are multiplied term by term without a plan of products.
+"""Generated programs of polynomials agree with power series that are multiplied term by term, without a plan of products.
 
 The programs are run operation by operation, so that nothing is compiled.
 """
@@ -39,7 +39,7 @@ def run(program: StraightLine, inputs: dict[str, float], table: np.ndarray) -> n
 
 
 def derivative_series(terms: Terms, orders: tuple[int, int], x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Return the series of a derivative of V from those of x and y, to their length."""
+    """Return the series of a derivative of V, as long as the given series of x and y."""
     total = np.zeros(len(x))
     for *powers, c in terms:
         for k, order in enumerate(orders):
@@ -91,7 +91,7 @@ def check(terms: Terms, rng: np.random.Generator) -> None:
 
 
 def random_terms(rng: np.random.Generator, degree: int) -> Terms:
-    """Up to eight terms of limited degree; in half of the cases some coefficients are opposite."""
+    """Return up to eight terms of limited degree. In half of the cases, coefficients may be equal or opposite."""
     exponents = [(i, j) for i in range(13) for j in range(13) if 0 < i + j <= degree]
     chosen = rng.choice(exponents, min(len(exponents), int(rng.integers(1, 9))), replace=False)
     coefficients = rng.choice([-1.0, -0.5, 0.5, 1.0], len(chosen)) if rng.random() < 0.5 else rng.normal(size=len(chosen))
@@ -99,7 +99,7 @@ def random_terms(rng: np.random.Generator, degree: int) -> Terms:
 
 
 def family_with_lower_terms(rng: np.random.Generator, n: int) -> Terms:
-    """C_n plus up to three terms of lower degree."""
+    """Return the terms of the family with n exits, plus up to three terms of lower degree."""
     terms = {(i, j): c for i, j, c in channel_family(n).terms}
     lower = [(i, j) for i in range(n) for j in range(n) if 2 < i + j < n]
     for i, j in rng.choice(lower, min(len(lower), int(rng.integers(1, 4))), replace=False) if lower else ():
@@ -108,7 +108,7 @@ def family_with_lower_terms(rng: np.random.Generator, n: int) -> Terms:
 
 
 def difference_of_squares(one: tuple[int, int], other: tuple[int, int]) -> Terms:
-    """V whose derivative with respect to x is x, plus the square of a monomial, minus that of another."""
+    """Return the terms of V with V_x = x + m² − n², for two monomials m and n."""
     (a, b), (c, d) = one, other
     return (2, 0, 0.5), (0, 2, 0.5), (2 * a + 1, 2 * b, 1 / (2 * a + 1)), (2 * c + 1, 2 * d, -1 / (2 * c + 1))
 
@@ -130,5 +130,5 @@ def test_families_with_lower_terms_generate_the_equations_of_motion(n: int) -> N
 @pytest.mark.parametrize("other", [(1, 1), (3, 0)])
 @pytest.mark.parametrize("one", [(1, 0), (0, 1)])
 def test_differences_of_squares_generate_the_equations_of_motion(one: tuple, other: tuple) -> None:
-    """Such as y² − x⁴, whose series have different scales."""
+    """The squares, such as y² and x⁴, have series of different scales."""
     check(difference_of_squares(one, other), np.random.default_rng(1))

@@ -1,4 +1,4 @@
-"""Recurrences of expressions: series, tangent flow and energy of random formulas, machine code."""
+"""Kernels of expressions have the right series, tangent flow, energy and steps, and vectorised machine code."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ TEXTS = (
 
 
 def texts_of(fast: int) -> pytest.MarkDecorator:
-    """Return the texts, of which the fast suite tests only some, because compiling a kernel takes up to seconds."""
+    """Return the texts, of which the fast suite tests only the first `fast`, because compiling a kernel takes up to seconds."""
     return pytest.mark.parametrize(
         "text", [*TEXTS[:fast], *(pytest.param(text, marks=pytest.mark.slow) for text in TEXTS[fast:])]
     )
@@ -126,7 +126,7 @@ def test_steps_do_not_depend_on_lanes(text: str) -> None:
 
 @pytest.mark.parametrize("size", [1e-3])
 def test_steps_around_a_body_shrink_as_its_periods(size: float) -> None:
-    """By the third law of Kepler, h of the same orbit in another size is as size^(3/2), to 6 % of each root."""
+    """By Kepler's third law, the step of the same orbit in another size is proportional to size^(3/2), to 6 % for each root."""
     states, kernels = np.tile([1.0, 0.2, 0.3, 0.8], (2, 1)), load_kernels(parse_formula("−1/r").form.definition, 0)
     states[1] *= [size, size, size**-0.5, size**-0.5]
     now, new, counts = np.zeros((ROWS, LANES)), np.zeros((ROWS, LANES)), np.zeros((2, LANES), np.int64)

@@ -14,12 +14,12 @@ from engine.integrator.source.recurrence import LANES, ROWS, TOLERANCE
 from engine.integrator.source.series import ORDER
 from engine.integrator.source.step_flags import NEAR
 
-# Rows of 64 orbits, points along a step, and how far orbits that return go beyond an exit.
+# Number of batches of orbits, number of points along a step, and distance beyond an exit that returning orbits reach.
 BATCHES, TIMES, DEPTH = 40, 401, 1e-4
 
 
 class Shape(NamedTuple):
-    """An exit: the setting of its kernels, how far outward points are, and its row of numbers if it is at a place outward."""
+    """An exit: the setting of its kernels, the outward coordinate of points, and its row of numbers at an outward coordinate."""
 
     setting: dict[str, Any]
     outward: Callable[[np.ndarray, np.ndarray], np.ndarray]
@@ -34,7 +34,7 @@ SHAPES = {
 
 
 def step(kernels: Any, states: np.ndarray, row: tuple[float, float, float]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return flags of a step, and x and y (TIMES, LANES) along it."""
+    """Return the flags of a step, and x and y along the step, each of shape (TIMES, LANES)."""
     now, new = np.zeros((ROWS, LANES)), np.zeros((ROWS, LANES))
     flag, crossed = np.zeros(LANES, np.int64), np.zeros(LANES, np.int64)
     now[:4] = states

@@ -1,4 +1,4 @@
-"""Generated kernels: series, tangent flow, energy, step size, machine code."""
+"""Generated kernels have the right series, tangent flow, energy and step size, and vectorised machine code."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def flowed(potential: Potential, states: np.ndarray, h: float) -> np.ndarray:
 
 
 def stepped(potential: Potential, states: np.ndarray, tolerance: float, count: int = LANES) -> np.ndarray:
-    """Return states, times and step sizes, (ROWS, LANES), after one step of the first `count` states (LANES, 4); else 0."""
+    """Return states, times and step sizes after a step of the first `count` states, of shape (ROWS, LANES). Other lanes are 0."""
     now, new, counts = np.zeros((ROWS, LANES)), np.zeros((ROWS, LANES)), np.zeros((2, LANES), np.int64)
     now[:4] = states.T
     gates = np.tile([0.0, 0.0, np.inf], (potential.channels, 1))
@@ -125,7 +125,7 @@ def test_the_step_is_the_sixteenth_root_to_within_6_percent(exponent: int) -> No
 def test_a_step_is_vectorised_throughout(name: str) -> None:
     """A single library call or branch in the loop would keep the compiler from vectorising it."""
     potential = channel_family(int(name)) if name.isdigit() else CASES[name]
-    # Compiled anew, since code from the cache cannot be inspected.
+    # Compile the step anew, because code from the cache cannot be inspected.
     step = njit(error_model="numpy", fastmath={"contract"})(
         load_kernels(potential.terms, potential.channels).step.function.py_func
     )

@@ -1,4 +1,4 @@
-"""Plans of series need few sums over all lower orders for the force of a formula."""
+"""Plans of the series of a force contain few sums over all lower orders."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from engine.integrator.source.series_plan import plan_series
 
 
 def kinds_of(text: str) -> list[str]:
-    """Return the kinds of the nodes of the force whose series need such a sum; one for all factors of a coordinate in a sum."""
+    """Return the kinds of nodes whose series need a sum over all lower orders. A group of factors of a coordinate counts once."""
     graph, _ = make_graph(slopes(parse_formula(text).form.definition))
     plan = plan_series(graph)
     kinds = [plan.nodes[index].kind for index in plan.needed]

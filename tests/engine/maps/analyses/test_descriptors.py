@@ -33,7 +33,7 @@ from engine.maps.analyses.descriptors import DEFAULT_DURATION
 from engine.propagation.speed_integrals import integrate_speed
 from engine.slices.axes import Coordinate
 
-# Chaotic orbits, and those close to a body, amplify rounding errors up to this within the default time.
+# Relative error to which chaotic orbits, and orbits close to a body, amplify rounding errors within the default time.
 ACCURACY = 1e-9
 SPECS = {
     "II": MapSpec(CASES["II"], Plane.X_PX, 0.24, (5, 5), t_max=100.0),
@@ -44,7 +44,7 @@ SPECS = {
 
 
 def integrate(potential: Potential, state: np.ndarray, end: float, power: float) -> float:
-    """∫ |v|^p dt from 0 to an end, which may lie in the past, by an independent method with the integral as a component."""
+    """Return ∫ |v|^p dt from 0 to `end`, which may be negative. SciPy integrates the orbit with the integral as a component."""
 
     def rates(_t: float, values: np.ndarray) -> list[float]:
         x, y, vx, vy, _ = values
@@ -84,7 +84,7 @@ def test_an_orbit_that_stops_and_returns_has_the_integral_over_its_path(power: f
     other = float(np.sort(cubic.real)[2])
 
     def smooth(x: float, power: float) -> float:
-        # What is left of 2(h − V) when both turning points are divided out.
+        # 2(h − V) without the factors that vanish at both turning points.
         return (2.0 / 3.0 * (other - x)) ** (0.5 * (power - 1.0))
 
     ends = {"weight": "alg", "wvar": (0.5 * (power - 1.0),) * 2}
@@ -124,7 +124,7 @@ def test_long_integrals_are_cancelled_before_they_are_complete() -> None:
                 cancel.set()
             return super().submit(fn, *args, **kwargs)
 
-    # To the end the integral of one bounded orbit takes minutes.
+    # Until its end, the integral of one bounded orbit takes minutes.
     frame = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.1, (1, 1), t_max=20.0))
     found = compute_lagrangian_descriptor(frame, duration=1e8, execution=Execution(CancelsAtSecondCall(), cancel))
     assert not found.complete

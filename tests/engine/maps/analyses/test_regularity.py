@@ -1,4 +1,4 @@
-"""Bounded pixels are judged as single orbits are."""
+"""Bounded pixels are judged in the same way as single orbits."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def test_the_scale_of_a_direction_does_not_matter() -> None:
 
 
 def test_sali_is_the_smallest_of_the_orbit_and_decides_the_character() -> None:
-    # Too short for tests for tori, so that each orbit is followed to t_max.
+    # The time is too short for a test for tori, so each orbit is followed to t_max.
     whole, regularity = map_and_regularity("I", 0.12, 6, 1500.0)
     judged = np.isfinite(regularity.sali)
     np.testing.assert_array_equal(judged, (whole.fate == Fate.BOUNDED) & (whole.evidence != Evidence.QUASI_PERIODIC))

@@ -1,4 +1,4 @@
-"""Doubtful pixels are those whose outcome changes in direct reruns, and heyoka agrees on the others."""
+"""Doubtful pixels are those whose outcome changes in direct reruns. heyoka agrees with the map on confirmed pixels."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def map_and_trust(
 
 
 def rerun(whole: EscapeMap, x: np.ndarray, ordinate: np.ndarray, tolerance: float) -> tuple[OrbitBatch, np.ndarray]:
-    """Return orbits integrated directly to t_max, and their states (n, 4) at their escape or at t_max."""
+    """Return orbits integrated directly to t_max, and their states at the escape or at t_max, of shape (n, 4)."""
     potential, t_max = whole.spec.potential, whole.spec.t_max
     energies, row = np.unique(
         ordinate if whole.spec.plane is Plane.X_H else np.full(x.size, whole.spec.energy), return_inverse=True
@@ -78,7 +78,7 @@ def test_doubtful_pixels_are_those_that_change_or_end_apart_in_direct_reruns(
     assert not changed.all()
 
 
-# Starts 1e-12 apart in the chaotic sea of III at h = 0.3; those with k = 0 to 3 stay inside until t = 1e5, as do 8 others of 20.
+# The first of starts 1e-12 apart in the chaotic sea of III at h = 0.3. Of 20 starts, the first 4 and 8 others stay until t = 1e5.
 SEA = -0.3286892133349522, 0.7231162693368949
 
 
@@ -183,7 +183,7 @@ def test_pixels_doubtful_with_evidence_are_doubtful_without() -> None:
     np.testing.assert_array_equal(on_evidence.fate, integrated.fate)
     doubtful = integrated_trust.trust == Trust.DOUBTFUL
     assert np.all(doubtful[trust.trust == Trust.DOUBTFUL])
-    # Some chaotic orbits are shut in by tori: without evidence, nothing tells that they stay inside.
+    # Some chaotic orbits are enclosed by tori. Without evidence, the analysis does not know that they stay inside.
     assert np.all(on_evidence.evidence[doubtful & (trust.trust != Trust.DOUBTFUL)] > Evidence.INTEGRATED)
     assert np.any((trust.trust == Trust.CONFIRMED) & (on_evidence.fate == Fate.BOUNDED))
 

@@ -18,7 +18,7 @@ from engine.propagation.classification import classify_orbits
 from engine.slices.planes import Plane
 from engine.systems.potential import Potential
 
-# x and y are uncoupled and y alone decides about an escape (upward if its energy exceeds 1/4), so all boundaries are smooth.
+# x and y are uncoupled, and an orbit escapes if the energy of its motion along y exceeds 1/4. So all boundaries are smooth.
 SEPARABLE = Potential("separable", ((2, 0, 0.5), (0, 2, 0.5), (0, 4, -0.25)))
 HENON_HEILES = MapSpec(CASES["II"], Plane.X_PX, 0.25)
 
@@ -34,7 +34,7 @@ def test_a_smooth_basin_boundary_has_exponent_one_and_the_correct_amplitude() ->
     fit = compute_uncertainty_exponent(
         MapSpec(SEPARABLE, Plane.X_PX, energy, resolution=(10, 10), t_max=12.0), pairs=100, separations=25
     )
-    # The probability of a false alarm is 4e-8 for the exponent, and less for all counts, of a hundred pairs or more each.
+    # The probability of a false alarm is 4e-8 for the exponent, and lower for the counts, which are of a hundred pairs or more.
     assert abs(fit.exponent - 1.0) < 5.5 * (fit.high - fit.low) / 3.92
     assert fit.high - fit.low < 0.2
     # A line of length L in an area S separates starts at distance ε with probability (2/π) ε L/S. Here the line is the circle

@@ -30,7 +30,7 @@ def roots_of(first: sympy.Expr, second: sympy.Expr) -> np.ndarray:
 
 
 def intersections(first: list[tuple[int, int, int]], second: list[tuple[int, int, int]]) -> np.ndarray | None:
-    """Return intersections of lines of two families; None if two lines are parallel or two points are equal."""
+    """Return the intersections of lines of two families. None if two lines are parallel or two intersections coincide."""
     points = []
     for (a, b, c), (d, e, f) in product(first, second):
         if a * e == b * d:

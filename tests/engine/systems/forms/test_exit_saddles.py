@@ -10,12 +10,13 @@ from engine.systems.formulas.formula_parser import parse_formula
 from engine.systems.potential import Potential
 from tests.peers.random_systems import random_well
 
-# A ring-shaped valley around a hill, lowest at the origin; its highest point is a saddle with the origin below on both sides.
+# A ring-shaped valley around a hill, lowest at the origin. The highest point of the valley is a saddle, from which both sides
+# descend to the origin.
 RING = parse_formula("((x − 1.1)² + y² − 1)² + 0.924x")
 # Wells at x = 0, 2 and 4.
 ROW = parse_formula("(x(x − 2)(x − 4))²/10 + y²")
 
-# One saddle is at (-0.007, 1897), in a valley whose curvature is 10^11 times the one along it.
+# One saddle is at (-0.007, 1897), in a valley whose curvature across is 10^11 times its curvature along.
 NARROW_VALLEY = "x^2/2 + y^2/2 - x^3/3 + 0.047*x*y^3 - 0.012*x^6 - 0.183*x^3*y^4 + 0.082*x^4*y - 0.084*x^2*y^2 + 0.184*x*y^2"
 
 

@@ -15,7 +15,7 @@ from engine.systems.potential import Potential
 
 
 def points_of(potential: Potential) -> np.ndarray:
-    """Return the critical points of a potential as an expression, also of a polynomial."""
+    """Return the critical points that are found for a potential as an expression. Polynomials are converted."""
     form = potential.form
     expression = ExpressionForm(from_terms(form.coefficients)) if isinstance(form, PolynomialForm) else form
     points = expression.find_critical_points()[:, :2]

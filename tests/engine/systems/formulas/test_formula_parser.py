@@ -1,4 +1,4 @@
-"""Formulas are parsed exactly, written readably, and refused with position and reason."""
+"""Formulas are parsed exactly, written readably, and refused with the position and the reason of the error."""
 
 from __future__ import annotations
 
