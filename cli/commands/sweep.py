@@ -12,6 +12,7 @@ escape-explorer sweep III --plane x_y --energy 0.26 --energy 0.3 --resolution 10
 from __future__ import annotations
 
 from concurrent.futures import CancelledError
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
 
@@ -61,7 +62,8 @@ def run(
     try:
         with place.run() as context:
             if plan:
-                print_result(False, {}, f"{plan_sweep(spec, execution=context.execution).describe()}.")
+                cost = plan_sweep(spec, execution=context.execution)
+                print_result(as_json, asdict(cost), f"{cost.describe()}.")
                 return
             dataset = compute_sweep(spec, store, execution=context.start_stage("energies")).dataset
     except CancelledError:

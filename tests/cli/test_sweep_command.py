@@ -65,6 +65,14 @@ def test_interrupted_sweep_is_resumed(run: Run, tmp_path: Path, monkeypatch: pyt
     assert load(store)["h"].values.tolist() == list(SPEC.values)
 
 
+def test_a_plan_as_json_has_the_numbers_of_the_plan(run: Run, tmp_path: Path) -> None:
+    code, out, _ = run(*SWEEP, "--plan", "--json", "--store", tmp_path / "store.zarr")
+    assert code == 0
+    plan = json.loads(out)
+    assert plan["orbits"] == 3 * 9 * 7
+    assert plan.keys() == {"orbits", "seconds", "bytes", "cores"}
+
+
 def test_option_plan_computes_nothing(run: Run, tmp_path: Path) -> None:
     code, out, _ = run(*SWEEP, "--plan", "--store", tmp_path / "store.zarr")
     assert (code, out.count("\n")) == (0, 1)
