@@ -9,7 +9,6 @@ from typing import Any
 
 import panel as pn
 
-from app.browser.engine_component import BrowserEngine
 from app.job_clients.shown_results import ShownResults
 from app.runtime.disconnects import on_disconnect
 from app.runtime.process_state import process_state
@@ -36,6 +35,7 @@ from app.views.panels.browser_events import KEYS, PICTURE_KEYS, BrowserEvents
 from app.views.panels.controls import Controls
 from app.views.panels.downloads import Downloads
 from app.views.panels.embedding import embed_code, page_address
+from app.views.panels.engine_component import BrowserEngine
 from app.views.panels.gallery import Gallery
 from app.views.panels.help import help_panes
 from app.views.panels.slice_panel import SlicePanel

@@ -1,5 +1,5 @@
 // @ts-check
-/** Connects the component on the page (`app/browser/engine_component.py`) with the modules. */
+/** Connects the component on the page (`app/views/panels/engine_component.py`) with the modules. */
 
 import {Card} from "./gestures/card.js"
 import {Frames} from "./workers/frames.js"

@@ -9,7 +9,6 @@ from typing import Any
 
 import panel as pn
 
-from app.browser.engine_component import BrowserEngine
 from app.browser.inputs.counted_inputs import SHOWN, EnergySlider, NumberBox
 from app.state.system_review import review_catalogue_entry
 from app.state.view import allowed_resolutions, allowed_t_max
@@ -18,6 +17,7 @@ from app.views.components.collapsible_section import Fold
 from app.views.components.texts import TextPane, breakable, describe_outcomes
 from app.views.components.widgets import SegmentedControl, bind, button, set_value, switch
 from app.views.panels.analysis_choice import ComparisonSwitch, LayerSwitches
+from app.views.panels.engine_component import BrowserEngine
 from engine import CASES, Plane, Slice
 from engine.foundations.wording import format_number
 from engine.systems.catalogue.entry import EnergyRange

@@ -11,12 +11,12 @@ from panel.custom import JSComponent
 
 from app.browser.components.file_components import ImageCopier
 from app.browser.components.orbit_components import OrbitList, OrbitPlayer
-from app.browser.engine_component import BrowserEngine
 from app.browser.inputs.counted_inputs import LONGEST_TYPED, EnergySlider, FormulaBox, NumberBox, ParameterSlider
 from app.job_clients.shown_results import ShownResults
 from app.state.presets import PRESETS
 from app.state.view_state import ViewState
 from app.views.panels.browser_events import KEYS, BrowserEvents
+from app.views.panels.engine_component import BrowserEngine
 from app.views.panels.gallery import Gallery
 from engine.jobs.manager import Jobs
 from tests.app.browser_messages import send

@@ -1,6 +1,6 @@
 // @ts-check
 /**
- * The pixel codes of outcomes and classes, which the server sends (`app/browser/engine_component.py`).
+ * The pixel codes of outcomes and classes, which the server sends (`app/views/panels/engine_component.py`).
  *
  * @typedef {object} Coding
  * @property {[number, number][]} outcomes  fate and code of the outcomes that are not escapes

@@ -6,11 +6,11 @@ import panel as pn
 import pytest
 from panel.widgets import Widget
 
-from app.browser.engine_component import BrowserEngine
 from app.job_clients.shown_results import ShownResults
 from app.state.view_state import ViewState
 from app.views.components.widgets import Switches
 from app.views.panels.controls import LOCK, Controls
+from app.views.panels.engine_component import BrowserEngine
 from engine import System
 from engine.jobs.manager import Jobs
 from engine.systems.review.potential_review import review_system

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from app.browser.engine_component import describe_view
 from app.state.view_state import ViewState
+from app.views.panels.engine_component import describe_view
 from engine import Coordinate, ParameterAxis, Plane, Slice, System
 
 

@@ -97,7 +97,7 @@ class BrowserEngine(JSComponent):
 
 
 def describe_view(state: ViewState) -> dict[str, Any]:
-    """Return the view in the form of `ServerView` in modules/gestures/preview.js."""
+    """Return the view in the form of `ServerView` in app/browser/modules/gestures/preview.js."""
     outcomes = state.potential.outcomes_at(state.energy)
     return {
         "system": system_key(state.potential),
