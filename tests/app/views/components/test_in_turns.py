@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 
 import panel as pn
@@ -11,42 +11,49 @@ import pytest
 from app.views.components.collapsible_section import InTurns
 
 
+class Page:
+    """Collects the parts that are added to it, and the calls for later turns of the event loop."""
+
+    def __init__(self) -> None:
+        self.turns: list[Callable[[], None]] = []
+        self.texts: list[str] = []
+
+    def add(self, parts: Sequence[pn.viewable.Viewable]) -> None:
+        self.texts += [part.object for part in parts]
+
+    def later(self, call: Callable[[], None]) -> Callable[[], None]:
+        return lambda: self.turns.append(call)
+
+
+@pytest.fixture
+def page() -> Page:
+    return Page()
+
+
 def make(name: str) -> list[pn.viewable.Viewable]:
     return [pn.pane.HTML(name)]
 
 
-def test_each_part_has_a_turn_of_its_own_and_is_made_once() -> None:
-    turns: list[Callable[[], None]] = []
-    made: list[str] = []
+def fail() -> list[pn.viewable.Viewable]:
+    raise OSError("a full disk")
 
-    def later(call: Callable[[], None]) -> Callable[[], None]:
-        return lambda: turns.append(call)
 
-    parts = InTurns([partial(make, name) for name in "abc"], lambda added: made.extend(part.object for part in added), later)
-    assert not turns
+def test_each_part_has_a_turn_of_its_own_and_is_made_once(page: Page) -> None:
+    parts = InTurns([partial(make, name) for name in "abc"], page.add, page.later)
+    assert not page.turns
     parts.begin()
     parts.begin()
     counts = []
-    while turns:
-        turns.pop(0)()
-        counts.append(len(made))
-    assert made == ["a", "b", "c"]
+    while page.turns:
+        page.turns.pop(0)()
+        counts.append(len(page.texts))
+    assert page.texts == ["a", "b", "c"]
     assert counts[:3] == [1, 2, 3]
 
 
-def test_an_error_in_one_part_does_not_prevent_the_others() -> None:
-    turns: list[Callable[[], None]] = []
-    made: list[str] = []
-
-    def fail() -> list[pn.viewable.Viewable]:
-        raise OSError("a full disk")
-
-    def later(call: Callable[[], None]) -> Callable[[], None]:
-        return lambda: turns.append(call)
-
-    parts = InTurns([fail, partial(make, "b")], lambda added: made.extend(part.object for part in added), later)
-    parts.begin()
+def test_an_error_in_one_part_does_not_prevent_the_others(page: Page) -> None:
+    InTurns([fail, partial(make, "b")], page.add, page.later).begin()
     with pytest.raises(OSError, match="a full disk"):
-        turns.pop(0)()
-    turns.pop(0)()
-    assert made == ["b"]
+        page.turns.pop(0)()
+    page.turns.pop(0)()
+    assert page.texts == ["b"]
