@@ -23,7 +23,8 @@ class Expression:
     Attributes
     ----------
     key
-        A tuple that is unique to each expression, used for comparisons and for the order of the parts of sums and products.
+        A tuple that differs between unequal expressions, used for comparisons and for the order of the parts of sums and
+        products.
     """
 
     @cached_property
@@ -130,7 +131,7 @@ def linear_combination(parts: Iterable[tuple[float, Expression]]) -> Expression:
 
 
 def multiply(*factors: Expression) -> Expression:
-    """Return the product of expressions. Sums are not expanded."""
+    """Return the product of expressions. Sums are not expanded; powers of the same base are joined."""
     coefficient = 1.0
     exponents: dict[Expression, float] = {}
     for factor in factors:
@@ -154,7 +155,7 @@ def multiply(*factors: Expression) -> Expression:
 
 
 def expand(factor: Expression, total: Expression) -> Expression:
-    """Multiply a factor by each term of a sum."""
+    """Return the product of a factor and a sum, multiplied term by term."""
     if not isinstance(total, Sum):
         return multiply(factor, total)
     terms = ((c, multiply(factor, part)) for part, c in total.terms)
@@ -162,35 +163,36 @@ def expand(factor: Expression, total: Expression) -> Expression:
 
 
 def power(base: Expression, exponent: float) -> Expression:
-    """Return a real power; ArithmeticError or ValueError if a power of a number is not a finite real number."""
+    """Return a power with a real exponent; ArithmeticError or ValueError if a power of a number is not a finite real number."""
     coefficient, rest = _split_coefficient(base)
     is_integer = exponent == int(exponent)
     if exponent == 0.0:
         return number(1.0)
+    # A negative coefficient cannot leave a root: the power of the whole base may be real.
     if coefficient < 0.0 and not is_integer:
         coefficient, rest = 1.0, base
     if as_number(rest) is not None:
-        return number(_finite(math.pow(coefficient * rest.constant, exponent)))  # type: ignore[attr-defined]
+        return number(_checked_finite(math.pow(coefficient * rest.constant, exponent)))  # type: ignore[attr-defined]
     if isinstance(rest, Product) and (is_integer or (len(rest.factors) == 1 and _keeps_domain(rest.factors[0][1]))):
         power_of_rest: Expression = multiply(*(Product(((b, n * exponent),)) for b, n in rest.factors))
     else:
         power_of_rest = rest if exponent == 1.0 else Product(((rest, float(exponent)),))
-    return linear_combination([(_finite(math.pow(coefficient, exponent)), power_of_rest)])
+    return linear_combination([(_checked_finite(math.pow(coefficient, exponent)), power_of_rest)])
 
 
 def _keeps_domain(inner: float) -> bool:
-    """Return whether (b^inner)^a is rewritten as b^(inner a). An even `inner` forbids this, because √(b²) is |b|."""
-    return inner != int(inner) or (int(inner) % 2 != 0 and abs(inner) == 1.0)
+    """Return whether (b^inner)^a is rewritten as b^(inner a). For other integers, value or domain could change: √(b²) is |b|."""
+    return inner != int(inner) or abs(inner) == 1.0
 
 
 def apply_function(name: str, argument: Expression) -> Expression:
     """Return a function of an expression; ArithmeticError or ValueError for a number outside its domain."""
     value = as_number(argument)
-    return Function(name, argument) if value is None else number(_finite(FUNCTIONS[name](value)))
+    return Function(name, argument) if value is None else number(_checked_finite(FUNCTIONS[name](value)))
 
 
 def from_terms(terms: Terms) -> Expression:
-    """Return a polynomial {(i, j): c} as an expression."""
+    """Return the polynomial Σ c x^i y^j, given as {(i, j): c}, as an expression."""
     return linear_combination((c, multiply(power(X, i), power(Y, j))) for (i, j), c in terms.items())
 
 
@@ -233,7 +235,7 @@ def _order(part: Expression) -> tuple[Any, ...]:
     return (1, part.key) if powers is None else (0, sum(powers), powers[1])
 
 
-def _finite(value: float) -> float:
+def _checked_finite(value: float) -> float:
     if not math.isfinite(value):
         raise OverflowError
     return value

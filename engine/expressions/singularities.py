@@ -24,7 +24,7 @@ def _bases(expression: Expression) -> list[Expression]:
 
 
 def has_central_part(expression: Expression) -> bool:
-    """Return whether a singular base is a multiple of x² + y²."""
+    """Return whether one of the singular bases is a multiple of x² + y²."""
     return any(_is_central(base) for base in singular_bases(expression))
 
 
@@ -37,7 +37,7 @@ def _is_central(base: Expression) -> bool:
 
 
 def oblique_gradients(expression: Expression) -> tuple[tuple[float, float], ...]:
-    """Return (a, b) of each base of a power and argument of a function that is a x + b y + c with a, b ≠ 0, each once."""
+    """Return the gradients (a, b), each once, of the bases of powers and arguments of functions a x + b y + c with a, b ≠ 0."""
     polynomials = (as_terms(part) for part in dict.fromkeys(_inner_parts(expression)))
     gradients = ((terms.get((1, 0), 0.0), terms.get((0, 1), 0.0)) for terms in polynomials if terms and degree(terms) == 1)
     return tuple(dict.fromkeys((a, b) for a, b in gradients if a and b))

@@ -25,11 +25,7 @@ from engine.systems.well_units import WellUnits
 _EXIT_COLUMNS = {
     "count": exit_geometry.CURVE_COLUMNS,
     "shape": exit_geometry.SHAPE,
-    "shapes": {
-        "closed": exit_geometry.CLOSED,
-        "curve": exit_geometry.CURVE,
-        "line": exit_geometry.LINE,
-    },
+    "shapes": {"closed": exit_geometry.CLOSED, "curve": exit_geometry.CURVE, "line": exit_geometry.LINE},
 }
 
 
@@ -59,13 +55,13 @@ class PortableSystem:
 
     @property
     def nbytes(self) -> int:
-        """Approximate size in bytes, with 2048 for everything that is not an array."""
+        """Approximate size in bytes, with 2048 for everything except the module and the arrays."""
         return len(self.module) + 2 * self.table.nbytes + sum(table.rows.nbytes for table in self.exits) + 2048
 
     def to_dict(self) -> dict[str, object]:
         """Return everything except the module as lists and numbers."""
         scaled_potential, units = self.potential.in_well_units, self.potential.units
-        mirror = self.potential.well.mirror_channels.tolist() if self.potential.well.mirror_in_x else None
+        mirror = self.potential.well.mirror_fates.tolist() if self.potential.well.mirror_in_x else None
         return {
             "layout": {
                 "order": ORDER,
@@ -82,19 +78,19 @@ class PortableSystem:
             "backward": self.backward.tolist() if self.potential.rotation else None,
             "polynomial": _polynomial_data(scaled_potential.form),
             "innerRadius": find_inner_radius(scaled_potential),
-            "exits": [*self._tables(), *_circles(scaled_potential)],
+            "exits": [*self._saddle_exits(), *_end_exits(scaled_potential)],
             "mirror": mirror,
             "units": {"length": units.length, "time": units.time, "energy": units.energy},
             "space": SPACE.to_dict(units),
             "surface": _energy_surface(units),
         }
 
-    def _tables(self) -> list[dict[str, object]]:
-        """Return the tables of the exits over saddles, as plain data."""
-        shape = {"shape": "line" if self.potential.rotation else "curve"}
+    def _saddle_exits(self) -> list[dict[str, object]]:
+        """Return the exits over saddles as plain data."""
+        shape = "line" if self.potential.rotation else "curve"
         return [
             {
-                **shape,
+                "shape": shape,
                 "saddle": table.saddle,
                 "highest": table.highest,
                 "nodes": table.nodes.tolist(),
@@ -111,8 +107,8 @@ def _energy_surface(units: WellUnits) -> dict[str, object]:
     return {**launched, "motion": [*launched["motion"], angle_motion]}
 
 
-def _circles(potential: Potential) -> list[dict[str, object]]:
-    """Return the ends that are not over saddles, with their rows for the kernels and their gates."""
+def _end_exits(potential: Potential) -> list[dict[str, object]]:
+    """Return the ends other than exits over saddles as plain data, with their rows for the kernels and their gates."""
     return [
         {"side": end.side, "radius": end.radius, "row": end.row.tolist(), "gate": exit_gates(end.row[None, None])[0].tolist()}
         for end in potential.ends

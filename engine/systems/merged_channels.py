@@ -21,7 +21,7 @@ class ChannelMerger(NamedTuple):
 
 
 class MergedExit(NamedTuple):
-    """The increasing numbers of two or more channels that form one exit, and whether the exit leads all around the well."""
+    """The numbers, in increasing order, of two or more channels that form one exit, and whether the exit surrounds the well."""
 
     channels: tuple[int, ...]
     closes_ring: bool
@@ -51,12 +51,12 @@ def merged_exits(mergers: Sequence[ChannelMerger], energy: float) -> tuple[Merge
     )
 
 
-def exit_numbers(mergers: Sequence[ChannelMerger], outcomes: int) -> np.ndarray:
-    """Return the exit numbers of outcomes, of shape (mergers + 1, outcomes + 1).
+def exit_numbers(mergers: Sequence[ChannelMerger], outcome_count: int) -> np.ndarray:
+    """Return the exit numbers of outcomes, int8, of shape (mergers + 1, outcome_count + 1).
 
     Row k is for energies above the lowest k mergers, and column n for the outcome with fate n. `mergers` are sorted by energy.
     """
-    numbers = np.tile(np.arange(outcomes + 1, dtype=np.int8), (len(mergers) + 1, 1))
+    numbers = np.tile(np.arange(outcome_count + 1, dtype=np.int8), (len(mergers) + 1, 1))
     for k in range(len(mergers)):
         for merged in merged_exits(mergers[: k + 1], np.inf):
             numbers[k + 1, list(merged.channels)] = merged.channels[0]

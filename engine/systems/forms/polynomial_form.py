@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from math import comb
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -44,6 +44,9 @@ class PolynomialForm:
     """V = Σ c x^i y^j, given by its `terms` ((i, j, c), …)."""
 
     terms: tuple[tuple[int, int, float], ...]
+
+    singular_points: ClassVar = NO_POINTS
+    """No points, because a polynomial has no singular points."""
 
     @property
     def definition(self) -> tuple[tuple[int, int, float], ...]:
@@ -137,11 +140,6 @@ class PolynomialForm:
             return descent / (1.0 + (np.hypot(*place) / length) ** (highest - 1))
 
         return velocity
-
-    @property
-    def singular_points(self) -> np.ndarray:
-        """No points, because a polynomial has no singular points."""
-        return NO_POINTS
 
     def is_singular_on_curve(self, _x: np.ndarray, _y: np.ndarray) -> bool:
         """Return False, because a polynomial has no singular points."""
