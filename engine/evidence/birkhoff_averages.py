@@ -44,11 +44,7 @@ _MOST_DIGITS = 16.0
 
 
 def count_agreeing_digits(
-    potential: Potential,
-    states: np.ndarray,
-    window: float,
-    *,
-    execution: Execution = DEFAULT_EXECUTION,
+    potential: Potential, states: np.ndarray, window: float, *, execution: Execution = DEFAULT_EXECUTION
 ) -> np.ndarray:
     """Count the digits to which weighted averages of x² and y² agree over two consecutive windows and a window between them.
 
@@ -73,11 +69,7 @@ def count_agreeing_digits(
 
 
 def compare_averages(
-    potential: Potential,
-    states: np.ndarray,
-    window: float,
-    *,
-    execution: Execution = DEFAULT_EXECUTION,
+    potential: Potential, states: np.ndarray, window: float, *, execution: Execution = DEFAULT_EXECUTION
 ) -> np.ndarray:
     """Return the digits to which the first two averages of each orbit agree, and the digits to which all three agree, (n, 2).
 

@@ -39,7 +39,7 @@ def derivative(expression: Expression, axis: int) -> Expression:
             return linear_combination((c, derivative(part, axis)) for part, c in terms)
         case Product(factors):
             return linear_combination((n, _differentiate_factor(factors, k, axis)) for k, (_, n) in enumerate(factors))
-        case Function("log", argument) if (special_derivative := _of_inverse_hyperbolic_sine(argument, axis)) is not None:
+        case Function("log", argument) if (special_derivative := _inverse_hyperbolic_sine_derivative(argument, axis)) is not None:
             return special_derivative
         case Function(name, argument):
             return multiply(_outer_derivative(name, argument), derivative(argument, axis))
@@ -76,7 +76,7 @@ def _outer_derivative(name: str, argument: Expression) -> Expression:
     return linear_combination([(-1.0, apply_function("sin", argument))])
 
 
-def _of_inverse_hyperbolic_sine(argument: Expression, axis: int) -> Expression | None:
+def _inverse_hyperbolic_sine_derivative(argument: Expression, axis: int) -> Expression | None:
     """Return (p'/c) b^(−½), the derivative of log(p + c b^½) if c² b' = 2 p' p with a number p' ≠ 0; None for other arguments.
 
     Where p < 0, the terms of u = p + c b^½ cancel, and the usual derivative u'/u would lose digits.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 
-from engine.expressions.nodes import Expression, Product, Sum, linear_combination, multiply, power
+from engine.expressions.nodes import Expression, Product, Sum, as_sum, linear_combination, multiply, power
 
 SumTerms = tuple[tuple[Expression, float], ...]
 """The terms (m, c) of a sum Σ c m."""
@@ -21,7 +21,7 @@ def factor_out(terms: SumTerms) -> SumTerms:
     Sums among the factors are scaled to a first coefficient of 1 where the scaling is exact. Then u (2x + 1) + v (x + ½) has a
     common factor.
     """
-    terms = _terms_of(linear_combination(_with_unit_sums(part, c) for part, c in terms))
+    terms = as_sum(linear_combination(_with_unit_sums(part, c) for part, c in terms)).terms
     while (factor := _most_common_factor(terms)) is not None:
         inverse = power(factor, -1.0)
         are_multiples = [_contains(part, factor) for part, _ in terms]
@@ -29,12 +29,8 @@ def factor_out(terms: SumTerms) -> SumTerms:
             (c, multiply(part, inverse)) for (part, c), is_multiple in zip(terms, are_multiples, strict=True) if is_multiple
         )
         other_terms = [(c, part) for (part, c), is_multiple in zip(terms, are_multiples, strict=True) if not is_multiple]
-        terms = _terms_of(linear_combination([_with_unit_sums(multiply(factor, inner_sum), 1.0), *other_terms]))
+        terms = as_sum(linear_combination([_with_unit_sums(multiply(factor, inner_sum), 1.0), *other_terms])).terms
     return terms
-
-
-def _terms_of(total: Expression) -> SumTerms:
-    return total.terms if isinstance(total, Sum) else ((total, 1.0),)
 
 
 def _with_unit_sums(part: Expression, c: float) -> tuple[float, Expression]:

@@ -38,14 +38,10 @@ class Operations[Value]:
 
 def node_values[Value](graph: Graph, numbers: Sequence[float], x: Value, y: Value, operations: Operations[Value]) -> list[Value]:
     """Return the values of all nodes of a graph at x and y."""
+    coordinates = {"x": x, "y": y}
     values: list[Value] = []
     for node in graph.nodes:
-        if node.kind == "x":
-            values.append(x)
-        elif node.kind == "y":
-            values.append(y)
-        else:
-            values.append(_value(node, values, numbers, operations))
+        values.append(coordinates[node.kind] if node.kind in coordinates else _value(node, values, numbers, operations))
     return values
 
 

@@ -115,12 +115,17 @@ def as_number(expression: Expression) -> float | None:
     return expression.constant if isinstance(expression, Sum) and not expression.terms else None
 
 
+def as_sum(expression: Expression) -> Sum:
+    """Return a sum itself, or any other expression as a sum with one term."""
+    return expression if isinstance(expression, Sum) else Sum(0.0, ((expression, 1.0),))
+
+
 def linear_combination(parts: Iterable[tuple[float, Expression]]) -> Expression:
     """Return Σ c e over the pairs (c, e)."""
     constant = 0.0
     coefficients: dict[Expression, float] = {}
     for c, part in parts:
-        inner = part if isinstance(part, Sum) else Sum(0.0, ((part, 1.0),))
+        inner = as_sum(part)
         constant += c * inner.constant
         for each, d in inner.terms:
             coefficients[each] = coefficients.get(each, 0.0) + c * d
@@ -198,7 +203,7 @@ def from_terms(terms: Terms) -> Expression:
 
 def as_terms(expression: Expression) -> dict[Powers, float] | None:
     """Return {(i, j): c} of an expanded polynomial; None for other expressions."""
-    total = expression if isinstance(expression, Sum) else Sum(0.0, ((expression, 1.0),))
+    total = as_sum(expression)
     terms = {(0, 0): total.constant} if total.constant else {}
     for part, c in total.terms:
         powers = powers_of(part)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from engine.expressions.nodes import Coordinate, Expression, Function, Product, Sum, powers_of
+from engine.expressions.nodes import Coordinate, Expression, Function, Product, as_sum, powers_of
 
 _TO_SUPERSCRIPT = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 # Largest denominator of a number that is written as a fraction.
@@ -30,7 +30,7 @@ def write_expression(expression: Expression, digits: int | None = None) -> str:
 
     digits: number of significant digits; None for as many as the parser needs to read the numbers exactly.
     """
-    total = expression if isinstance(expression, Sum) else Sum(0.0, ((expression, 1.0),))
+    total = as_sum(expression)
     parts: list[tuple[float, str]] = [(c, _term(part, abs(c), digits)) for part, c in total.terms]
     if total.constant or not parts:
         parts.append((total.constant, monomial_term(0, 0, abs(total.constant), digits)))

@@ -48,7 +48,8 @@ def default_window(potential: Potential, plane: Slice, energy: Energy) -> Window
     ranges, last_error = [], None
     for member in _shown_potentials(potential, plane):
         try:
-            ranges += find_axis_ranges(member, plane, energy)
+            if (axis_ranges := find_axis_ranges(member, plane, energy)) is not None:
+                ranges.append(axis_ranges)
         except ValueError as error:
             # The potentials at other values of the parameter may have exits.
             last_error = error

@@ -50,8 +50,8 @@ Range = tuple[float, float]
 """The lower and the upper end of an interval."""
 
 
-def find_axis_ranges(potential: Potential, plane: Slice, energy: Energy) -> list[list[Range]]:
-    """Return the ranges of both axes over the interior of a slice, as a list of one pair; an empty list without an interior."""
+def find_axis_ranges(potential: Potential, plane: Slice, energy: Energy) -> list[Range] | None:
+    """Return the ranges of both axes over the interior of a slice; None without an interior."""
     units = potential.units
     scaled_potential, scaled_plane = potential.in_well_units, plane.in_well_units(units)
     if any(isinstance(axis, Direction) for axis in plane.axes):
@@ -64,8 +64,8 @@ def find_axis_ranges(potential: Potential, plane: Slice, energy: Energy) -> list
         # For an axis that the window shows whole, this range is not used.
         ranges = [positions.get(axis, momenta) if isinstance(axis, Coordinate) else momenta for axis in scaled_plane.axes]
     if any(not low < high for low, high in ranges):
-        return []
-    return [[(low * unit, high * unit) for (low, high), unit in zip(ranges, plane.axis_units(units), strict=True)]]
+        return None
+    return [(low * unit, high * unit) for (low, high), unit in zip(ranges, plane.axis_units(units), strict=True)]
 
 
 def is_whole(axis: Axis) -> bool:

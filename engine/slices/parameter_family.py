@@ -17,6 +17,7 @@ import numpy as np
 
 from engine.foundations.arrays import read_only
 from engine.slices.axes import ParameterAxis
+from engine.systems.merged_channels import ChannelMerger
 from engine.systems.outcomes import Exit
 from engine.systems.potential import Potential
 
@@ -202,27 +203,23 @@ class ParameterFamily:
     def _interpolate_member(self, value: float, low: float, high: float) -> Member | None:
         """Continue the saddles of two nodes to a value between them; None if the exits of the nodes differ."""
         low_member, high_member = self._nodes[low], self._nodes[high]
-        low_mergers, high_mergers = (member.potential.well.channel_mergers for member in (low_member, high_member))
         matches = self._match_nodes(low, high)
-        share = (value - low) / (high - low)
-        if matches is None or len(low_mergers) != len(high_mergers):
+        if matches is None:
             return None
-        order = np.array(matches, int)
+        mergers = _match_mergers(low_member.potential, high_member.potential, matches)
+        if mergers is None:
+            return None
+        share = (value - low) / (high - low)
         unsearched = self._axis.potential(value)
-        guesses = (1.0 - share) * low_member.potential.saddles + share * high_member.potential.saddles[order]
+        guesses = (1.0 - share) * low_member.potential.saddles + share * high_member.potential.saddles[np.array(matches, int)]
         saddles = _continue_points(unsearched, guesses)
-        # The maxima between channels that merge, each with the indices of the saddles around it.
-        maxima, saddle_indices = np.empty((0, 2)), []
-        for merger in low_mergers:
-            high_channels = {int(order[k - 1]) + 1 for k in merger.channels}
-            high_merger = next((other for other in high_mergers if set(other.channels) == high_channels), None)
-            if high_merger is None:
-                return None
-            guess = (1.0 - share) * np.array([[merger.x, merger.y]]) + share * np.array([[high_merger.x, high_merger.y]])
+        maxima = np.empty((0, 2))
+        for low_merger, high_merger in mergers:
+            guess = (1.0 - share) * np.array([[low_merger.x, low_merger.y]]) + share * np.array([[high_merger.x, high_merger.y]])
             maxima = np.concatenate([maxima, _continue_points(unsearched, guess)])
-            saddle_indices.append([k - 1 for k in merger.channels])
         if not (np.isfinite(saddles).all() and np.isfinite(maxima).all()):
             return None
+        saddle_indices = [[channel - 1 for channel in merger.channels] for merger, _ in mergers]
         potential = unsearched.continued(repr(self._axis), saddles, maxima, saddle_indices)
         # The potential sorts its saddles anew.
         indices = [_index_at(saddles, position) for position in potential.saddles]
@@ -265,6 +262,15 @@ def _match_exits(first: Potential, last: Potential) -> list[int] | None:
     nearest = [_index_at(last.saddles, position) for position in _continue_points(last, first.saddles)]
     matches = [k for k in nearest if k is not None]
     return matches if len(set(matches)) == first.channels else None
+
+
+def _match_mergers(first: Potential, last: Potential, matches: Sequence[int]) -> list[tuple[ChannelMerger, ChannelMerger]] | None:
+    """Pair the mergers of two potentials between the same exits, given the result of `_match_exits`; None unless all match."""
+    first_mergers, last_mergers = first.well.channel_mergers, last.well.channel_mergers
+    by_channels = {frozenset(merger.channels): merger for merger in reversed(last_mergers)}
+    images = [by_channels.get(frozenset(matches[k - 1] + 1 for k in merger.channels)) for merger in first_mergers]
+    pairs = [(merger, image) for merger, image in zip(first_mergers, images, strict=True) if image is not None]
+    return pairs if len(first_mergers) == len(last_mergers) == len(pairs) else None
 
 
 def _continue_points(potential: Potential, points: np.ndarray) -> np.ndarray:

@@ -102,9 +102,9 @@ class PortableSystem:
 
 def _energy_surface(units: WellUnits) -> dict[str, object]:
     """Return the energy surface as a slice of positions with the angle of the velocity as third axis."""
-    launched = ENERGY_SURFACE.to_dict(units)
+    surface = ENERGY_SURFACE.to_dict(units)
     angle_motion = [float(column == slice_starts.ANGLE) for column in range(slice_starts.COORDINATES)]
-    return {**launched, "motion": [*launched["motion"], angle_motion]}
+    return {**surface, "motion": [*surface["motion"], angle_motion]}
 
 
 def _end_exits(potential: Potential) -> list[dict[str, object]]:
@@ -122,8 +122,8 @@ def _polynomial_data(form: Any) -> dict[str, object] | None:
     return {name: array.tolist() for name, array in tabulate_polynomial(form)._asdict().items()}
 
 
-def make_portable_system(potential: Potential, highest: float) -> PortableSystem:
-    """Return a potential as data, with exits for energies up to `highest`, in units of the potential.
+def make_portable_system(potential: Potential, highest_energy: float) -> PortableSystem:
+    """Return a potential as data, with exits for energies up to `highest_energy`, in units of the potential.
 
     This takes up to a second for the first potential of a structure, or if exits are not cached.
     """
@@ -133,5 +133,5 @@ def make_portable_system(potential: Potential, highest: float) -> PortableSystem
     # Backward in time, the frame rotates in the opposite direction.
     rotation = scaled_potential.rotation
     table, backward = code.tabulate(definition, rotation), code.tabulate(definition, -rotation)
-    exits = tabulate_exits(scaled_potential, highest / potential.units.energy)
+    exits = tabulate_exits(scaled_potential, highest_energy / potential.units.energy)
     return PortableSystem(potential, webassembly_module(code), table, backward, exits)

@@ -36,7 +36,8 @@ def check_coordinates(
     names = ", ".join([*(axis.key for axis in axes), *(c.key for c, _ in fixed), decided.key])
     if Coordinate.SPEED in used:
         raise ValueError(f"slice of {names}: must have no axis and no fixed value of v, which only the energy decides")
-    if len({*used, decided}) <= len(used) or any(c is Coordinate.H for c, _ in fixed):
+    is_repeated = len({*used, decided}) <= len(used)
+    if is_repeated or any(c is Coordinate.H for c, _ in fixed):
         raise ValueError(f"slice of {names}: each of {all_names} must be used at most once")
     if len({axis.key for axis in axes}) < 2 or sum(isinstance(axis, ParameterAxis) for axis in axes) > 1:
         raise ValueError(f"slice of {names}: the axes must be different ones, at most one of them a parameter")

@@ -294,7 +294,7 @@ def write_outcomes(outcomes: Sequence[Outcome]) -> str:
 
 
 def read_outcomes(text: str) -> tuple[Outcome, ...]:
-    """Read outcomes from an attribute."""
+    """Read outcomes from an attribute of a file, see `write_outcomes`."""
     rows = json.loads(text)
     keys = [key for key, *_ in rows]
     # The number of an outcome among the outcomes of its kind.

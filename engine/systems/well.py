@@ -187,11 +187,11 @@ class Well(ReadOnlyArrays):
         maxima = np.flatnonzero(is_beside.sum(axis=0) > 1)
         return self._mergers_at(points[maxima], [np.flatnonzero(is_beside[:, k]) + 1 for k in maxima])
 
-    def _mergers_at(self, maxima: np.ndarray, channels: Sequence[np.ndarray]) -> tuple[ChannelMerger, ...]:
-        """Return the mergers at maxima (n, 2) between channels, the lowest first."""
-        pairs = zip(maxima.tolist(), channels, strict=True)
+    def _mergers_at(self, maxima: np.ndarray, adjacent_channels: Sequence[np.ndarray]) -> tuple[ChannelMerger, ...]:
+        """Return the mergers at maxima (n, 2), each between adjacent channels, the lowest first."""
+        pairs = zip(maxima.tolist(), adjacent_channels, strict=True)
         return tuple(
-            sorted(ChannelMerger(float(self.form.value(x, y)), x, y, tuple(around.tolist())) for (x, y), around in pairs)
+            sorted(ChannelMerger(float(self.form.value(x, y)), x, y, tuple(numbers.tolist())) for (x, y), numbers in pairs)
         )
 
     def merged_exits(self, energy: float) -> tuple[MergedExit, ...]:

@@ -112,6 +112,7 @@ class ExpressionForm:
 
     @staticmethod
     def _evaluate(x: Any, y: Any, *expressions: Expression) -> list[Any]:
+        """Return the values of expressions at (x, y)."""
         graph, numbers = make_graph(expressions)
         # The index () makes numbers of arrays without axes.
         return [value[()] for value in evaluate(graph, numbers, x, y)]

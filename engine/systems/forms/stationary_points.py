@@ -47,6 +47,9 @@ _SINGULAR_RATIO = 1e-10
 # Coordinates below this, in units of the distance of the nearest point, are rounding errors of zero.
 _ROUNDING = 1e-13
 
+# Message if the search needs too many operations or misses a point, with {} for the region.
+_UNDECIDED = "Whether all critical points {} are known is not decided within the limit on the work."
+
 # Radius of the region in half sides of an initial box; even, so that one box is centred on the origin.
 _HALF_SIDES_PER_RADIUS = 32
 # Centres of the four parts of a box, in units of half the side of a part.
@@ -108,7 +111,29 @@ def _find_within(
     """Find the points up to `factor` times the distance `nearest`. The result must contain `newton_points`."""
     radius = factor * nearest
     region = f"within r = {radius:.6g}, {factor:g} times the distance of the nearest critical point from the origin"
-    undecided = UndecidedError(f"Whether all critical points {region} are known is not decided within the limit on the work.")
+    solved_points, centres, half_side = _divide_boxes(derivatives, nearest, radius, operations, region)
+    unique = _distinct(solved_points[np.hypot(*solved_points.T) <= radius], nearest, _DUPLICATE_TOLERANCE)
+    # The remaining boxes are around poles or degenerate points.
+    is_defined = enclose(*derivatives.value_and_slopes, *box_intervals(centres, half_side)).defined_everywhere
+    is_at_pole = _are_near(centres, centres[~is_defined], _POLE_REACH * half_side)
+    degenerate = _distinct(centres[~is_at_pole], nearest, _DEGENERATE_TOLERANCE)
+    if len(unique) + len(degenerate) > MOST_POINTS:
+        raise UndecidedError(f"V has more than {MOST_POINTS} critical points {region}.")
+    all_points = np.concatenate([unique, degenerate])
+    expected = newton_points[np.hypot(*newton_points.T) <= radius]
+    if not _are_near(expected, all_points, _DEGENERATE_TOLERANCE * (nearest + np.hypot(*expected.T))).all():
+        raise UndecidedError(_UNDECIDED.format(region))
+    return np.concatenate([_with_indices(derivatives, unique), np.column_stack([degenerate, np.zeros(len(degenerate))])])
+
+
+def _divide_boxes(
+    derivatives: Derivatives, nearest: float, radius: float, operations: int, region: str
+) -> tuple[np.ndarray, np.ndarray, float]:
+    """Divide the region into boxes, until each is left out, is solved or has the smallest size.
+
+    Returns the points (n, 2) of solved boxes, the centres (m, 2) of the remaining boxes, and half the side of these boxes. The
+    text `region` is for messages.
+    """
     half_side = radius / _HALF_SIDES_PER_RADIUS
     solved_points = [NO_POINTS]
     side = radius * np.linspace(-1.0, 1.0, _HALF_SIDES_PER_RADIUS + 1)
@@ -119,7 +144,7 @@ def _find_within(
         centres = centres[np.hypot(*np.maximum(np.abs(centres) - half_side, 0.0).T) <= radius]
         operations -= len(centres) * derivatives.operations
         if operations < 0:
-            raise undecided
+            raise UndecidedError(_UNDECIDED.format(region))
         enclosure = enclose(*derivatives.value_and_slopes, *box_intervals(centres, half_side))
         if enclosure.defined_nowhere.any():
             raise UndecidedError(f"V is not defined everywhere {region}.")
@@ -133,19 +158,7 @@ def _find_within(
         solved_points.append(roots)
         half_side *= 0.5
         centres = (centres[~is_solved][:, None] + half_side * _QUARTERS).reshape(-1, 2)
-    all_solved_points = np.concatenate(solved_points)
-    unique = _distinct(all_solved_points[np.hypot(*all_solved_points.T) <= radius], nearest, _DUPLICATE_TOLERANCE)
-    # The remaining boxes are around poles or degenerate points.
-    is_defined = enclose(*derivatives.value_and_slopes, *box_intervals(centres, half_side)).defined_everywhere
-    is_at_pole = _are_near(centres, centres[~is_defined], _POLE_REACH * half_side)
-    degenerate = _distinct(centres[~is_at_pole], nearest, _DEGENERATE_TOLERANCE)
-    if len(unique) + len(degenerate) > MOST_POINTS:
-        raise UndecidedError(f"V has more than {MOST_POINTS} critical points {region}.")
-    all_points = np.concatenate([unique, degenerate])
-    expected = newton_points[np.hypot(*newton_points.T) <= radius]
-    if not _are_near(expected, all_points, _DEGENERATE_TOLERANCE * (nearest + np.hypot(*expected.T))).all():
-        raise undecided
-    return np.concatenate([_with_indices(derivatives, unique), np.column_stack([degenerate, np.zeros(len(degenerate))])])
+    return np.concatenate(solved_points), centres, half_side
 
 
 def _are_near(points: np.ndarray, targets: np.ndarray, distance: float | np.ndarray) -> np.ndarray:

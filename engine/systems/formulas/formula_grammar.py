@@ -166,8 +166,10 @@ class Parser:
             return self._parse_brackets(token)
         if token.kind in ("function", "root"):
             return self._parse_function(token)
+        if token.kind == "letter":
+            return exact_constant(self.values.get(token.text, Fraction(1)))
         if token.kind != "name":
-            return exact_constant(self.values.get(token.text, Fraction(1)) if token.kind == "letter" else read_number(token))
+            return exact_constant(read_number(token))
         x, y = RING.gens()
         # The value of r is r², see `_parse_power`.
         return {"x": x, "y": y, "r": x * x + y * y}[token.text]

@@ -190,10 +190,9 @@ def read_potential(attributes: Mapping[Any, Any]) -> Potential:
     name = str(attributes["potential"])
     matches = [_TERM.fullmatch(term) for term in text.split("; ")]
     if all(matches):
-        terms = tuple((int(match[2]), int(match[3]), float(match[1])) for match in matches if match is not None)
-        potential = Potential(name, terms)
+        form = as_form((int(match[2]), int(match[3]), float(match[1])) for match in matches if match is not None)
     else:
-        potential = parse_formula(text, name)
+        form = parse_formula(text).form
     kinds = [kind for kind in end_kinds() if kind.attribute in attributes]
     ends = [end for kind in kinds for end in kind.read(attributes[kind.attribute])]
     x, y = json.loads(attributes.get("origin", "[0.0, 0.0]"))
@@ -201,4 +200,4 @@ def read_potential(attributes: Mapping[Any, Any]) -> Potential:
     rotation = float(attributes.get("rotation", 0.0))
     mass = float(attributes.get("mass", 1.0))
     # The terms are those of the effective potential, so the rotation is not applied again.
-    return Potential(name, potential.form, rotation, origin=(x, y), ends=ends, exit_names=names, mass=mass)
+    return Potential(name, form, rotation, origin=(x, y), ends=ends, exit_names=names, mass=mass)

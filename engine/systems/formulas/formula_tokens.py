@@ -19,12 +19,14 @@ SIGNS = {"+": "+", "-": "-", "−": "-", "–": "-"}
 OPERATORS = {"*": "*", "·": "*", "×": "*", "⋅": "*", "∗": "*", "/": "/", "÷": "/", "∕": "/", "⁄": "/"}
 BASE_KINDS = ("number", "fraction", "name", "letter", "open", "function", "root")
 """Kinds of tokens with which a factor can begin."""
+# A token. The kind of a token is the name of its group.
 _TOKEN = re.compile(
     r"(?P<function>sin|cos|exp|log|ln|sqrt)|(?P<number>(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)|(?P<name>[xyr])|(?P<letter>[A-DF-UW-Za-df-qs-wzΑ-Ωα-ω][0-9₀-₉]?)|(?P<superscript>⁻?[⁰¹²³⁴⁵⁶⁷⁸⁹]+)|(?P<power>\^|\*\*)"
     r"|(?P<fraction>[½⅓⅔¼¾⅕⅙⅛⅒])|(?P<sign>[+\-−–])|(?P<operator>[*·×⋅∗/÷∕⁄])|(?P<root>√)|(?P<open>\()|(?P<close>\))"
 )
 # Names that would otherwise be read as letters or products, such as momenta, velocities and time.
 _UNKNOWN = re.compile("tan|abs|pi|[pv][xy]|t")
+# "V =" or "V(x, y) =" in front of a formula.
 _PREFIX = re.compile(r"\s*V\s*(?:\(\s*x\s*,\s*y\s*\)\s*)?=")
 ALLOWED = "allowed are numbers, x, y, r, letters for coefficients, + − * / ^ √, exp, log, sin, cos and round brackets"
 """The elements of a formula."""
