@@ -12,6 +12,7 @@ def singular_bases(expression: Expression) -> tuple[Expression, ...]:
 
 
 def _bases(expression: Expression) -> list[Expression]:
+    """Return the result of `singular_bases` with repetitions."""
     match expression:
         case Sum(_, terms):
             return [base for part, _ in terms for base in _bases(part)]
@@ -29,6 +30,7 @@ def has_central_part(expression: Expression) -> bool:
 
 
 def _is_central(base: Expression) -> bool:
+    """Return whether an expression is c (x² + y²)."""
     terms = as_terms(base)
     if terms is None:
         return False

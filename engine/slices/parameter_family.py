@@ -65,6 +65,7 @@ class Member:
         """Return `numbers` at an energy, where an exit of several channels has the lowest number of these channels."""
         numbers = self.numbers.copy()
         for merged in self.potential.well.merged_exits(energy):
+            # The lowest channel stands for the exit, so it gets the lowest number.
             channels = list(merged.channels)
             numbers[channels] = np.sort(numbers[channels])
         return read_only(numbers)

@@ -41,7 +41,7 @@ class PortableSystem:
         WebAssembly with the functions of the potential's structure, see `engine.integrator.jit.webassembly`.
     table
         (m,) the coefficients, as the functions of `module` take them.
-    backward
+    backward_table
         (m,) the coefficients of the system backward in time, whose orbits have the opposite velocities.
     exits
         The exits of each channel.
@@ -50,7 +50,7 @@ class PortableSystem:
     potential: Potential
     module: bytes
     table: np.ndarray
-    backward: np.ndarray
+    backward_table: np.ndarray
     exits: tuple[ExitTable, ...]
 
     @property
@@ -75,7 +75,7 @@ class PortableSystem:
                 "exits": _EXIT_COLUMNS,
             },
             "table": self.table.tolist(),
-            "backward": self.backward.tolist() if self.potential.rotation else None,
+            "backward": self.backward_table.tolist() if self.potential.rotation else None,
             "polynomial": _polynomial_data(scaled_potential.form),
             "innerRadius": find_inner_radius(scaled_potential),
             "exits": [*self._saddle_exits(), *_end_exits(scaled_potential)],
@@ -132,6 +132,6 @@ def make_portable_system(potential: Potential, highest_energy: float) -> Portabl
     code = generate_code(definition, setting)
     # Backward in time, the frame rotates in the opposite direction.
     rotation = scaled_potential.rotation
-    table, backward = code.tabulate(definition, rotation), code.tabulate(definition, -rotation)
+    table, backward_table = code.tabulate(definition, rotation), code.tabulate(definition, -rotation)
     exits = tabulate_exits(scaled_potential, highest_energy / potential.units.energy)
-    return PortableSystem(potential, webassembly_module(code), table, backward, exits)
+    return PortableSystem(potential, webassembly_module(code), table, backward_table, exits)

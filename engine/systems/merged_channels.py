@@ -63,21 +63,22 @@ def exit_numbers(mergers: Sequence[ChannelMerger], outcome_count: int) -> np.nda
     return numbers
 
 
-def describe_channel(channel: int, mergers: Sequence[ChannelMerger], low: float, high: float, names: Sequence[str] = ()) -> str:
+def name_exit(channel: int, mergers: Sequence[ChannelMerger], low: float, high: float, names: Sequence[str] = ()) -> str:
     """Return the name of the exit to which a channel belongs at the energies from `low` to `high`.
 
     A separate channel is "1". In an exit of several channels, the lowest channel is "1+3", and another is "3 in 1+3". For a range
     of energies, the name can be "1, 1+3 above h = 0.3". By default, the name of a channel is its number.
     """
-    changes = [(low, _name_at(channel, mergers, low, names))]
+    changes = [(low, _name_exit_at(channel, mergers, low, names))]
     for energy in sorted(merger.energy for merger in mergers if low <= merger.energy < high):
-        name = _name_at(channel, mergers, np.nextafter(energy, np.inf), names)
+        name = _name_exit_at(channel, mergers, np.nextafter(energy, np.inf), names)
         if name != changes[-1][1]:
             changes.append((energy, name))
     return ", ".join([changes[0][1], *(f"{name} above h = {energy:.6g}" for energy, name in changes[1:])])
 
 
-def _name_at(channel: int, mergers: Sequence[ChannelMerger], energy: float, names: Sequence[str]) -> str:
+def _name_exit_at(channel: int, mergers: Sequence[ChannelMerger], energy: float, names: Sequence[str]) -> str:
+    """Return the name at one energy, see `name_exit`."""
     channel_name = name_channels([channel], names)
     for merged in merged_exits(mergers, energy):
         if channel in merged.channels:

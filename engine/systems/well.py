@@ -18,7 +18,7 @@ from engine.systems.forms.exit_saddles import find_maxima_beside, leads_out_of_w
 from engine.systems.forms.expression_form import Form
 from engine.systems.forms.form import hessian_matrix
 from engine.systems.forms.stored_points import stored_points
-from engine.systems.merged_channels import ChannelMerger, MergedExit, describe_channel, exit_numbers, merged_exits
+from engine.systems.merged_channels import ChannelMerger, MergedExit, exit_numbers, merged_exits, name_exit
 from engine.systems.outcomes import End, EscapeCircle, Exit, Outcome, outcomes_of
 from engine.systems.well_units import WellUnits, nearest_power_of_two
 
@@ -212,9 +212,7 @@ class Well(ReadOnlyArrays):
         if not (names or self.merged_exits(high)):
             return self.outcomes
         numbers_at_low = self.exit_numbers(low)
-        exit_names = [
-            describe_channel(channel, self.channel_mergers, low, high, names) for channel in range(1, self.channels + 1)
-        ]
+        exit_names = [name_exit(channel, self.channel_mergers, low, high, names) for channel in range(1, self.channels + 1)]
         exits = [
             Exit.outcome(channel, name if names else f"{Exit.word} {name}", occurs=bool(numbers_at_low[channel] == channel))
             for channel, name in enumerate(exit_names, 1)
@@ -255,7 +253,7 @@ class Well(ReadOnlyArrays):
         return self.exit_numbers(energy)[..., self.mirror_fates]
 
     @cached_property
-    def is_minimum(self) -> bool:
+    def is_convex_at_origin(self) -> bool:
         """Whether V curves upward in all directions at the origin."""
         matrix = hessian_matrix(self.form, 0.0, 0.0)
         return bool(np.isfinite(matrix).all() and np.linalg.eigvalsh(matrix)[0] > 0.0)
@@ -285,7 +283,7 @@ class Well(ReadOnlyArrays):
     @cached_property
     def _unit_mass_frequency(self) -> float:
         """The value of `fastest_frequency` with a mass of 1."""
-        if self.is_minimum or not self.typical_radius:
+        if self.is_convex_at_origin or not self.typical_radius:
             matrix = hessian_matrix(self.form, 0.0, 0.0)
             if not np.isfinite(matrix).all():
                 return np.nan
@@ -332,7 +330,7 @@ class Well(ReadOnlyArrays):
 
         Without a well, this is the mean of V on a circle of `typical_radius`.
         """
-        if self.is_minimum or not self.typical_radius:
+        if self.is_convex_at_origin or not self.typical_radius:
             return float(self.form.value(0.0, 0.0))
         value = self.form.value(*self._typical_circle)
         return float(value[np.isfinite(value)].mean())

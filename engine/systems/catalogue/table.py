@@ -70,9 +70,9 @@ _ENTRIES = (
     ),
 )
 
-_BY_NAME = {entry.name: entry for entry in (*_ENTRIES, *ROTATING_ENTRIES)}
+_ENTRIES_BY_NAME = {entry.name: entry for entry in (*_ENTRIES, *ROTATING_ENTRIES)}
 
 CATALOGUE: Mapping[str, CatalogueEntry] = ByName(
-    "potential", _BY_NAME, _BY_NAME.__getitem__, {name: entry.title for name, entry in _BY_NAME.items()}
+    "potential", _ENTRIES_BY_NAME, _ENTRIES_BY_NAME.__getitem__, {name: entry.title for name, entry in _ENTRIES_BY_NAME.items()}
 )
 """The potentials included in the engine with their descriptions, by name. The three cases of Zotos (2014) come first."""

@@ -124,7 +124,8 @@ class _Hessian:
             mean = (self.xx + self.yy) / 2
             distance = (((self.xx - self.yy) / 2) ** 2 + self.xy**2).sqrt()
             eigenvalue = self.determinant / (mean + distance if mean > 0 else mean - distance)
-            # Both vectors are parallel to the eigenvector. The longer vector has the smaller rounding error.
+            # Both vectors are parallel to the eigenvector. The longer vector has the smaller rounding error. Only magnitudes of
+            # its parts enter the bound.
             vectors = ((self.xy, eigenvalue - self.xx), (eigenvalue - self.yy, self.xy))
             vector = max(([abs(float(part)) for part in each] for each in vectors), key=lambda each: math.hypot(*each))
         length = math.hypot(*vector)

@@ -37,7 +37,7 @@ def check_closed_well(potential: Potential) -> None:
     """Raise ValueError unless a potential without exits has a well at the origin that no orbit leaves."""
     points = potential.critical_points
     is_regular_origin = (points == 0.0).all(axis=1) & (potential.well.critical_indices > 0.0)
-    if not (is_regular_origin.any() and potential.well.is_minimum) or is_open_without_saddle(potential, points):
+    if not (is_regular_origin.any() and potential.well.is_convex_at_origin) or is_open_without_saddle(potential, points):
         raise ValueError(
             f"potential={potential.name}: must have exits, or a closed well at the origin, so that it is defined which orbits "
             "escape; see review_potential"
@@ -50,12 +50,12 @@ def is_open_below(potential: Potential, energy: float, points: np.ndarray) -> bo
     The grid is polar in coordinates in which V ≈ ½ r² near the origin of a well, so that the grid resolves narrow wells.
     """
     squared_frequencies, axes = (
-        np.linalg.eigh(potential.hessian_matrix(0.0, 0.0)) if potential.well.is_minimum else (np.ones(2), np.eye(2))
+        np.linalg.eigh(potential.hessian_matrix(0.0, 0.0)) if potential.well.is_convex_at_origin else (np.ones(2), np.eye(2))
     )
     distances = np.hypot(*(np.sqrt(squared_frequencies) * (points @ axes)).T)
     distances = distances[distances > 0.0]
     # Without critical points elsewhere, the unit of length of the well takes the place of their distance.
-    default = np.sqrt(potential.units.energy) if potential.well.is_minimum else potential.units.length
+    default = np.sqrt(potential.units.energy) if potential.well.is_convex_at_origin else potential.units.length
     nearest, outermost = (distances.min(), distances.max()) if distances.size else (default, default)
     low, high = _SMALLEST_RADIUS * nearest, _LARGEST_RADIUS * outermost
     radii = np.geomspace(low, high, int(_RADII_PER_E_FOLD * np.log(high / low)))[:, None]
