@@ -43,6 +43,7 @@ class MapPresenter:
         state, locked = context.state, context.locked
         self._state, self._results, self._notice = state, context.results, context.notice
         self._document, self._history = document, history
+        # Time of the latest request, in seconds; None once its first frame has arrived.
         self._requested_at: float | None = None
         # The start that the last click added; None if the start was in the list already.
         self._added_start: Start | None = None
@@ -145,12 +146,11 @@ class MapPresenter:
 
     def map_requested(self, *, compiling: bool = False) -> None:
         """Show that a map is requested."""
-        if compiling:
-            # The pictures of the previous system stay, marked, for some seconds.
-            self.view.grid.mark_stale(True)
         self._requested_at = time.monotonic()
         self.progress.start()
         if compiling:
+            # The pictures of the previous system stay, greyed out, until the kernels are compiled.
+            self.view.grid.mark_stale(True)
             self.progress.show_compiling()
         self._notice.clear()
 
