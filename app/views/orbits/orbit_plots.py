@@ -31,8 +31,8 @@ from app.views.components.orbit_lines import (
     band_style,
     in_front,
     line_columns,
+    line_source,
     line_style,
-    lines,
     opacities,
     orbit_colours,
 )
@@ -65,8 +65,8 @@ class OrbitPlots:
         self._x_range = Range1d(0.1, 1e4)
         self._y_ranges = {quantity.name: Range1d(quantity.least or 0.0, 1.0) for quantity in ORBIT_QUANTITIES}
         self._mapper = orbit_colours(state)
-        self._histories = {name: lines(f"{name}_histories") for name in self._y_ranges}
-        self._bands = {name: lines(f"{name}_bands") for name in self._y_ranges}
+        self._histories = {name: line_source(f"{name}_histories") for name in self._y_ranges}
+        self._bands = {name: line_source(f"{name}_bands") for name in self._y_ranges}
         self._plots: dict[str, figure] = {}
         self._time_mark = Span(location=0.0, dimension="height", line_color=MARK_EDGE, line_dash="dotted", visible=False)
         self._orbits: list[tuple[int, OrbitCurves]] = []
