@@ -23,8 +23,8 @@ _END_DISTANCE = 1e-4
 # Distance from the origin at which a descent counts as infinite, in units of the distance of the outermost critical point.
 _INFINITE_DISTANCE = 10.0
 
-# Rise of V in a step of a descent above which the step has passed a curve where V is infinite, in units of the largest magnitude
-# of V at a critical point.
+# Rise of V in a step of a descent above which the step has passed a curve where V is infinite, in units of the magnitude of V
+# before the step plus the largest magnitude at a critical point.
 _LARGEST_RISE = 1e-6
 
 # Length of a step below which a descent has come to rest, in units of the distance of the nearest critical point.
