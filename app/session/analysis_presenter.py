@@ -51,8 +51,8 @@ class AnalysisPresenter:
         self._state, self._results, self._maps = state, context.results, maps
         self._map_spec: MapSpec | None = None
         self._sweep_spec: SweepSpec | None = None
-        # The request of the curves that are shown, until curves of the next request arrive.
-        self._shown_spec: SweepSpec | None = None
+        # Specification of the shown curves. It differs from `_sweep_spec` until the first curves of a new sweep arrive.
+        self._shown_sweep_spec: SweepSpec | None = None
         self._results_by_layer: dict[str, _LayerResult] = {}
         self._sentences_by_name: dict[str, str] = {}
         self.notes = TextPane("", name="notes", sizing_mode="stretch_width", margin=(0, 10), css_classes=["notes"])
@@ -134,9 +134,9 @@ class AnalysisPresenter:
 
     def _mark_computing(self) -> None:
         """Mark the layers of a complete map that have no complete result yet."""
-        whole = self._results.whole_map
-        requested = {layer.name for layer in self._layers_on() if whole is not None and not layer.refusal(whole.spec)}
-        complete = {name for name, found in self._results_by_layer.items() if _is_complete(found.result)}
+        whole_map = self._results.whole_map
+        requested = {layer.name for layer in self._layers_on() if whole_map is not None and not layer.refusal(whole_map.spec)}
+        complete = {name for name, known in self._results_by_layer.items() if _is_complete(known.result)}
         self._maps.mark_computing(frozenset(requested - complete))
 
     def _fail(self, sentence: str) -> None:
@@ -169,8 +169,8 @@ class AnalysisPresenter:
 
     def _apply_settings(self) -> None:
         """Select parts of the results anew, and remove results that were computed with other settings."""
-        for name, found in list(self._results_by_layer.items()):
-            if LAYERS[name].job(found.frame.spec, self._state.settings) == found.job:
+        for name, known in list(self._results_by_layer.items()):
+            if LAYERS[name].job(known.frame.spec, self._state.settings) == known.job:
                 self._show_selection(LAYERS[name])
             else:
                 self._remove_layer_result(name)
@@ -221,19 +221,23 @@ class AnalysisPresenter:
         if self.curves.running:
             self._stop_sweep()
             return
+        self._sweep_spec = self._make_sweep_spec(self.curves.against.value)
+        self.curves.show_running(True)
+        self._sweep_request.submit(sweep_job(self._sweep_spec))
+
+    def _make_sweep_spec(self, name: str) -> SweepSpec:
+        """Return the specification of a sweep along the energy, "h", or along the parameter of this name."""
         state, energies = self._state, self._state.energies
         plane = state.plane if state.plane.energy_axis is None and state.plane.parameter is None else SECTION
-        name, energy, along = self.curves.against.value, None, None
-        low, high = energies.low, energies.high
-        if name != "h":
+        if name == "h":
+            low, high, energy, along = energies.low, energies.high, None, None
+        else:
             low, high = default_range(state.system, name)
-            along, energy = ParameterAxis(name, low, high, state.system), state.energy
-        self._sweep_spec = SweepSpec(
+            energy, along = state.energy, ParameterAxis(name, low, high, state.system)
+        return SweepSpec(
             state.potential, plane, _sweep_values(low, high), _SWEEP_RESOLUTION, t_max=state.t_max, measures=CURVES, along=along,
             energy=energy, refine=REFINED_VALUES,
         )  # fmt: skip
-        self.curves.show_running(True)
-        self._sweep_request.submit(sweep_job(self._sweep_spec))
 
     def _stop_sweep(self) -> None:
         self._sweep_request.cancel()
@@ -246,13 +250,13 @@ class AnalysisPresenter:
     def _show_curves(self, curves: Sweep | None) -> None:
         if curves is not None and curves.complete:
             self._stop_sweep()
-        self._shown_spec = self._sweep_spec
+        self._shown_sweep_spec = self._sweep_spec
         self.curves.show(curves)
         self._results.curves = curves
 
     def _open_value(self, value: float) -> None:
         """Show the map of an energy, or of a value of the parameter, on the plane of the curves."""
-        spec = self._shown_spec
+        spec = self._shown_sweep_spec
         if self.curves.shown is None or spec is None:
             return
         if spec.along is None:

@@ -18,8 +18,8 @@ from app.state.view_state import ViewState
 from app.state.watched_starts import (
     COUNTS,
     EXPLANATIONS,
-    LARGEST_RADIUS,
-    SMALLEST_RADIUS,
+    LARGEST_LOG_RADIUS,
+    SMALLEST_LOG_RADIUS,
     StartsFrom,
     WatchedStarts,
     places_for,
@@ -65,7 +65,7 @@ class EnsemblePlayer(JSComponent):
 
     address = param.String(default=WATCH_ADDRESS, doc="address of the module")
     counts = param.List(default=list(COUNTS), doc="numbers of orbits to choose from")
-    radii = param.List(default=[SMALLEST_RADIUS, LARGEST_RADIUS], doc="least and largest radius, as powers of ten")
+    radii = param.List(default=[SMALLEST_LOG_RADIUS, LARGEST_LOG_RADIUS], doc="log10 of the smallest and the largest radius")
     places = param.Dict(default={}, doc="phrase of each place of starts in the system")
     explanations = param.Dict(default={str(where): sentence for where, sentence in EXPLANATIONS.items()}, doc="of places")
     where = param.String(doc="see `WatchedStarts`")
