@@ -102,7 +102,7 @@ class ProcessState:
         return self._shares.setdefault(document, FairShare())
 
     def _processor_times(self) -> ProcessorTimes:
-        return processor_times(self.jobs.stats().computed, self.limited.computed + self.compiler.computed)
+        return processor_times(self.jobs.stats().processor_time, self.limited.computed + self.compiler.computed)
 
     def pages(self) -> Mapping[str, float]:
         """Return the number of pages by visitor, as `Capacity` counts them."""
