@@ -141,7 +141,7 @@ def _open_energy(potential: Potential) -> float:
 
 def _start_state(potential: Potential) -> np.ndarray:
     """Return a state of low energy in the middle of a well or, without a well, at the typical radius, of shape (1, 4)."""
-    if potential.well.is_minimum and potential.escape_radius is None:
+    if potential.well.is_convex_at_origin and potential.escape_radius is None:
         return SECTION.states(potential, potential.well.energy_at(0.5), np.zeros(1), np.zeros(1))
     return SECTION.states(potential, _open_energy(potential), np.array([potential.well.typical_radius]), np.zeros(1))
 

@@ -85,7 +85,7 @@ class PotentialPanel:
             *(button(label, partial(self._add, term=term), margin=0) for label, term in _TERMS.items()),
             *(button(label, partial(self._add, clause=clause), margin=0) for label, clause in _CLAUSES.items()),
         ]
-        self.sliders = {name: self._make_slider(name) for name in WELL_PARAMETERS}
+        self.sliders = {name: self._make_well_slider(name) for name in WELL_PARAMETERS}
         self.letter_sliders: dict[str, ParameterSlider] = {}
         self.letters = pn.Column(sizing_mode="stretch_width", margin=0)
         reset = lambda: self._choose(System(self.shown.case, self.shown.formula))  # noqa: E731
@@ -111,18 +111,22 @@ class PotentialPanel:
             self.facts,
         ]
 
-    def _make_slider(self, name: str) -> ParameterSlider:
-        label, _, (lowest, highest) = WELL_PARAMETERS[name]
-        low, high = _OTHER_SLIDER_ENDS.get(name, _SLIDER_ENDS)
-        return ParameterSlider(
-            partial(self._slide, name), 1.0, label=plain_symbol(label), low=low, high=high, lowest=lowest, highest=highest,
-            sizing_mode="stretch_width", margin=(2, 0),
-        )  # fmt: skip
+    def _make_well_slider(self, name: str) -> ParameterSlider:
+        symbol, _, legal_range = WELL_PARAMETERS[name]
+        ends = _OTHER_SLIDER_ENDS.get(name, _SLIDER_ENDS)
+        return self._make_slider(name, 1.0, plain_symbol(symbol), ends, legal_range)
 
     def _make_letter_slider(self, name: str, value: float) -> ParameterSlider:
         reach = max(_SMALLEST_REACH, 2.0 * abs(value))
+        return self._make_slider(name, value, name, (-reach, reach), (-LARGEST_VALUE, LARGEST_VALUE))
+
+    def _make_slider(
+        self, name: str, value: float, label: str, ends: tuple[float, float], legal_range: tuple[float, float]
+    ) -> ParameterSlider:
+        """Return the slider of a parameter between `ends`. Its box takes all numbers of the legal range."""
+        (low, high), (lowest, highest) = ends, legal_range
         return ParameterSlider(
-            partial(self._slide, name), value, label=name, low=-reach, high=reach, lowest=-LARGEST_VALUE, highest=LARGEST_VALUE,
+            partial(self._slide, name), value, label=label, low=low, high=high, lowest=lowest, highest=highest,
             sizing_mode="stretch_width", margin=(2, 0),
         )  # fmt: skip
 
