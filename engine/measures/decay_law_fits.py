@@ -211,7 +211,7 @@ def _fit_steepness(u: np.ndarray) -> float:
         return float(0.5 * special.hyp1f1(2.0, 3.0, -k) / special.exprel(-k)) - falling_mean
 
     # The mean is below 1/k, so k is below the upper end of this bracket.
-    steepness = find_root(excess, 0.0, 2.0 / falling_mean, xtol=2e-12, rtol=4 * float(np.finfo(float).eps))
+    steepness = find_root(excess, 0.0, 2.0 / falling_mean, xtol=2e-12)
     return float(np.copysign(steepness, 0.5 - mean))
 
 

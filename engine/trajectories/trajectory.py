@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from engine.evidence.birkhoff_averages import compare_halves
-from engine.exits.exit_rows import exits_of_orbit
+from engine.exits.exit_rows import exit_curves_if_known
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.foundations.former_names import with_former_fields
 from engine.foundations.validation import checked_state, checks_types
@@ -199,7 +199,7 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, exe
 def _integrate(potential: Potential, start: np.ndarray, t_max: float, execution: Execution) -> Orbit:
     """Apply `integrate_orbit` in units of the well."""
     energy = float(potential.energy(start))
-    curves, exits_unknown = exits_of_orbit(potential, energy)
+    curves, exits_unknown = exit_curves_if_known(potential, energy)
     recorded = record_orbit(potential, start, curves, t_max, execution)
     times, (x, y, px, py), sali, exponent = _sample_orbit(potential, start, recorded, execution)
     arrays = (times, x, y, px, py, sali, exponent, x * x + y * y)
