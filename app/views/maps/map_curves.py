@@ -52,7 +52,13 @@ def _flatten(lines_by_energy: Iterable[Sequence[np.ndarray]]) -> list[np.ndarray
 
 
 class MapCurves:
-    """Draws the curves of a map over any number of pictures, in the colours of the view state."""
+    """Draws the curves of a map over any number of pictures.
+
+    Parameters
+    ----------
+    state
+        View state, whose palette has the colours of the exits.
+    """
 
     def __init__(self, state: ViewState) -> None:
         self._state = state

@@ -74,7 +74,7 @@ class OrbitControls:
         state.follow(self._follow_plane, "plane")
         state.follow(lambda name: self._set_colours(PALETTES[name]), "palette")
 
-    def entry(self) -> list[pn.viewable.Viewable]:
+    def start_boxes(self) -> list[pn.viewable.Viewable]:
         """Return the boxes for a typed start, which open on demand."""
         return Fold("Type a start", lambda: [flex_row(self.x, self.ordinate, self.button, align="end")]).parts()
 

@@ -56,8 +56,8 @@ p {
 class GalleryCards(JSComponent):
     """Shows cards in the browser, and sends the key of the chosen card."""
 
-    cards = param.List(default=[])
-    groups = param.List(default=[])
+    cards = param.List(default=[], doc="data of each card, see `_card`")
+    groups = param.List(default=[], doc="titles of the groups, in order")
     hint = param.String(default="", doc="text in place of a caption; empty for cards without captions below them")
 
     _esm = Path(__file__).with_suffix(".js")
