@@ -173,7 +173,7 @@ class Jobs:
         """Return the current load, totals and memory."""
         return JobStats(
             in_flight=self.in_flight,
-            calls_waiting=sum(queue.pending_calls for queue in (self._scheduler, self._compilations, self._limited_calls)),
+            calls_waiting=sum(each.pending_calls for each in (self._scheduler, self._compilations, self._limited_calls)),
             done=self._ended["done"],
             failed=self._ended["failed"],
             cancelled=self._ended["cancelled"],
@@ -182,10 +182,11 @@ class Jobs:
             orbits_held=self._semaphore.held,
             orbits_limit=self._semaphore.limit,
             threads=count_workers(self._executor) if self._executor is not None else self._scheduler.threads,
-            processor_time=sum(queue.processor_time for queue in (self._scheduler, self._compilations)),
+            processor_time=sum(each.processor_time for each in (self._scheduler, self._compilations)),
         )
 
     def _map_priority(self) -> MapPriority:
+        """Return the priority of a map that is requested now."""
         return MapPriority(lambda: self._scheduler.first_frames_preferred, self._clock)
 
     def prefer_first_frames(self, preferred: bool) -> None:

@@ -129,13 +129,13 @@ class MapRun:
 
     def _refinements(self) -> Iterator[tuple[np.ndarray, int]]:
         """Yield (pixels, stride) of each refinement, coarse to fine. The last refinement contains all pixels."""
-        numbers = np.arange(self._started.size).reshape(self.shape)
+        pixel_numbers = np.arange(self._started.size).reshape(self.shape)
         stride = 1 if self._started.all() else self.stride
         while stride > 1:
             rows, columns = (np.unique(representative_indices(size, stride)) for size in self.shape)
-            yield self._mirror.find_first_images(numbers[np.ix_(rows, columns)].ravel()), stride
+            yield self._mirror.find_first_images(pixel_numbers[np.ix_(rows, columns)].ravel()), stride
             stride //= 2
-        yield self._mirror.find_first_images(numbers.ravel()), 1
+        yield self._mirror.find_first_images(pixel_numbers.ravel()), 1
 
     def _find_starts(self, execution: Execution) -> None:
         """Find the initial states of all pixels that have not been started, except second mirror images."""

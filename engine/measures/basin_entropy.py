@@ -81,6 +81,7 @@ class BasinEntropy(RecordedResult):
         return f"{s_b_text}; {s_bb_text}. {self._describe_conclusion()}"
 
     def _describe_conclusion(self) -> str:
+        """Return what S_bb implies for the boundary, in a sentence."""
         if self.beyond_ln2:
             return "S_bb > ln 2: at this scale the boundary is not smooth."
         if self.labels < 3:
@@ -172,4 +173,5 @@ def _mean_and_error(entropies: np.ndarray) -> tuple[float, float]:
 
 
 def _format_mean(value: float, error: float) -> str:
+    """Return a mean in words, with its standard error if there is one."""
     return f"{value:.3f}" if math.isnan(error) else f"{value:.3f} ± {error:.3f}"

@@ -150,15 +150,8 @@ def _space_separations(spec: MapSpec, count: int) -> np.ndarray:
 class _PairSampler:
     """Draws and integrates pairs of starts, and counts their outcomes at each of m separations, in units of the well."""
 
-    def __init__(
-        self,
-        spec: MapSpec,
-        separations: np.ndarray,
-        seed: int,
-        execution: Execution,
-    ) -> None:
-        self.spec, self.separations = spec, separations
-        self.execution = execution
+    def __init__(self, spec: MapSpec, separations: np.ndarray, seed: int, execution: Execution) -> None:
+        self.spec, self.separations, self.execution = spec, separations, execution
         self.horizon = min(spec.t_max, HORIZON)
         # Each separation has its own generator, so that its pairs do not depend on the other separations.
         self.random = [np.random.default_rng([seed, index]) for index in range(separations.size)]
