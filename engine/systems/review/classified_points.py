@@ -44,6 +44,7 @@ def classify_points(potential: Potential) -> tuple[CriticalPoint, ...]:
 
 
 def _kind(potential: Potential, x: float, y: float, index: float) -> PointKind:
+    """Return the kind of a critical point with an index, see `Well.critical_indices`."""
     if index == 0.0:
         return PointKind.DEGENERATE
     if index < 0.0:
