@@ -1,4 +1,4 @@
-"""Admission of pages and WebSockets. They are refused if the server is full or stopping, or if their address has too many."""
+"""Admission of pages and WebSockets. Both are refused if the server is full or stopping, or if their address has too many."""
 
 from __future__ import annotations
 
@@ -40,9 +40,9 @@ def admit(request: Any) -> None:
     if len(request.uri) > LONGEST_LINK:
         raise HTTPError(http.client.REQUEST_URI_TOO_LONG, reason=f"The address is longer than {LONGEST_LINK} characters.")
     network = network_of(request.remote_ip)
-    _refuse(http.client.SERVICE_UNAVAILABLE, refusal_reason(process_state(), network))
+    _raise_for(http.client.SERVICE_UNAVAILABLE, refusal_reason(process_state(), network))
     page_count = sum(visitor_of(session.document) == network for session in process_state().sessions())
-    _refuse(http.client.TOO_MANY_REQUESTS, _share_reason(page_count))
+    _raise_for(http.client.TOO_MANY_REQUESTS, _address_reason(page_count))
 
 
 def refusal_page(sentence: str) -> str:
@@ -91,13 +91,14 @@ def count_socket(address: str) -> None:
     bokeh.protocol.exceptions.ProtocolError
         If the address, or the server, has too many WebSockets. Then the count does not change.
     """
-    sockets, most_sockets = process_state().sockets, process_state().settings.most_sessions
-    reason = _share_reason(sockets[network_of(address)])
+    sockets, network = process_state().sockets, network_of(address)
+    most_sockets = process_state().settings.most_sessions
+    reason = _address_reason(sockets[network])
     if reason is None and sockets.total() >= most_sockets:
         reason = f"There are {most_sockets} connections already."
     if reason is not None:
         raise ProtocolError(reason)
-    sockets[network_of(address)] += 1
+    sockets[network] += 1
 
 
 def forget_socket(address: str) -> None:
@@ -108,14 +109,16 @@ def forget_socket(address: str) -> None:
         del sockets[network]
 
 
-def _share_reason(count: int) -> str | None:
+def _address_reason(count: int) -> str | None:
+    """Return a sentence that refuses another page or WebSocket to an address with `count` of them; None if it may have more."""
     limit = process_state().settings.pages_per_address
     if count < limit:
         return None
     return f"Your address has {limit} open pages, the most that {variable_name('pages_per_address')} permits. Close some of them."
 
 
-def _refuse(status: int, reason: str | None) -> None:
+def _raise_for(status: int, reason: str | None) -> None:
+    """Refuse a request with a status if there is a reason, and count the refusal."""
     if reason is not None:
         process_state().metrics.pages_refused.inc()
         raise HTTPError(status, reason=reason)

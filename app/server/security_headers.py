@@ -15,7 +15,7 @@ from tornado.web import RequestHandler
 
 from app.runtime.process_state import process_state
 
-_SCRIPT = re.compile(r"<script(?=[\s>])", re.IGNORECASE)
+_SCRIPT_TAG = re.compile(r"<script(?=[\s>])", re.IGNORECASE)
 
 
 class SecurityHeaders(RequestHandler):
@@ -35,7 +35,7 @@ class SecurityHeaders(RequestHandler):
 
 def add_nonce(page: str, nonce: str) -> str:
     """Return an HTML page with a nonce on all scripts. Panel's module loader passes the nonce on to scripts that it inserts."""
-    return _SCRIPT.sub(f'<script nonce="{nonce}"', page)
+    return _SCRIPT_TAG.sub(f'<script nonce="{nonce}"', page)
 
 
 def new_nonce() -> str:

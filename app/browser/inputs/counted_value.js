@@ -1,7 +1,7 @@
 // @ts-check
 /**
- * The value of an input. Sent values are numbered. A value from the server whose number is smaller than the last sent number
- * is older than the value in the input, and is ignored.
+ * The value of an input. Sent values are numbered, and the server returns the number of the last value that it has received. While
+ * this number is smaller than that of the last sent value, values from the server are older than that value, and are ignored.
  */
 export class CountedValue {
   /**
@@ -13,6 +13,7 @@ export class CountedValue {
     this.model = model
     this.read = read
     this.write = write
+    /** Number of the last sent value. */
     this.count = model.shown.count
     /** Whether the input has a value that is not sent yet. */
     this.unsent = false
@@ -51,7 +52,7 @@ export class CountedValue {
     this.follow()
   }
 
-  /** Send the value with its number. */
+  /** Send the value of the input with its number. */
   send() {
     this.unsent = false
     this.model.send_msg({value: this.read(), count: ++this.count, done: this.done})

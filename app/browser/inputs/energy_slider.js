@@ -2,7 +2,7 @@
 import {CountedValue} from "./counted_value.js"
 
 /**
- * The slider of the energy. While it moves, it sends the energy to the page. Released, it sends the energy to the server.
+ * The slider of the energy. While it moves, other parts of the page receive its energy. When it is released, the server does.
  *
  * @param {{model: any, el: HTMLElement}} component
  */
@@ -39,20 +39,20 @@ export function render({model, el}) {
     number.hidden = model.note !== ""
     value.follow()
   }
-  const tell = (/** @type {string} */ event, /** @type {number} */ energy) =>
+  const dispatch = (/** @type {string} */ event, /** @type {number} */ energy) =>
     document.dispatchEvent(new CustomEvent(event, {detail: energy}))
   const drag = (/** @type {number} */ energy) => {
     name.textContent = `${model.label}: `
     number.hidden = false
     write(energy)
     value.begin()
-    for (const event of ["energydragged", "energyshown"]) tell(event, energy)
+    for (const event of ["energydragged", "energyshown"]) dispatch(event, energy)
   }
   // A drag that ends at the energy where it began fires no change event.
   const release = () => {
     if (value.done) return
     const energy = value.read()
-    tell("energyreleased", energy)
+    dispatch("energyreleased", energy)
     if (energy === clamped(model.shown.value)) value.cancel()
     else value.finish()
   }
@@ -70,7 +70,7 @@ export function render({model, el}) {
   const show = (/** @type {Event} */ event) => write(clamped(/** @type {CustomEvent} */ (event).detail))
   document.addEventListener("energyshown", show)
   // The engine may be loaded while the user holds the slider.
-  const answer = () => value.unsent && tell("energydragged", value.read())
+  const answer = () => value.unsent && dispatch("energydragged", value.read())
   document.addEventListener("energyasked", answer)
   model.on("lifecycle:remove", () => {
     document.removeEventListener("energyshown", show)

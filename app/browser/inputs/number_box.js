@@ -2,7 +2,7 @@
 import {CountedValue} from "./counted_value.js"
 
 /**
- * A box for a number, which is sent when the box is left or Enter is pressed.
+ * A box for a number, which is sent when the box loses focus or Enter is pressed.
  *
  * @param {{model: any, el: HTMLElement}} component
  */

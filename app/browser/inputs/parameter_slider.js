@@ -3,7 +3,7 @@ import {CountedValue} from "./counted_value.js"
 
 /**
  * A slider with a box for its number, which may lie beyond the ends of the slider. Each number is sent. A number is final when
- * the slider or the box is left, the slider is released, or Enter is pressed.
+ * the slider is released, when the slider or the box loses focus, or when Enter is pressed in the box.
  *
  * @param {{model: any, el: HTMLElement}} component
  */

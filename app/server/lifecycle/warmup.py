@@ -42,13 +42,13 @@ def prepare_for_layers(potential: Potential) -> None:
     execution = DEFAULT_EXECUTION.in_this_thread()
     # A count of 1 is enough to compile the kernels.
     settings = {name: 1 for name, layer in LAYERS.items() if layer.count is not None}
-    # Some layers concern orbits that escape, and others bounded orbits: below the escape energy, all orbits are bounded.
+    # Some layers concern escaping orbits, which exist above the escape energy only, and others concern bounded orbits.
     for spec in (small_map(potential, potential.well.energy_at(multiple)) for multiple in (0.5, 1.01)):
         jobs = [layer.job(spec, settings) for layer in LAYERS.values() if not layer.refusal(spec)]
         call_after_maps(*(partial(run_job, job, execution, {}) for job in jobs))
 
 
-_PURPOSES: Mapping[str, Callable[[Potential], None]] = {
+_PREPARATIONS: Mapping[str, Callable[[Potential], None]] = {
     "maps": prepare_for_maps,
     "evidence": prepare_for_evidence,
     "orbits": prepare_for_orbits,
@@ -59,7 +59,7 @@ _PURPOSES: Mapping[str, Callable[[Potential], None]] = {
 def _prepare_cases(*purposes: str) -> dict[str, Callable[[], object]]:
     """Return the steps that prepare all cases of the paper for some purposes."""
     return {
-        f"the kernels of case {name} for {purpose}": partial(_PURPOSES[purpose], potential)
+        f"the kernels of case {name} for {purpose}": partial(_PREPARATIONS[purpose], potential)
         for purpose in purposes
         for name, potential in CASES.items()
     }
@@ -73,7 +73,7 @@ STEPS: Mapping[str, Callable[[], object]] = {
     "the histograms": histograms.prepare,
     "the integrators of the catalogue, to be compiled when they are needed": reserve_catalogue,
 }
-"""Functions that compile kernels or load them from the disk cache, in the order of need, by what they prepare."""
+"""Functions that compile kernels or load them from the disk cache, by what they prepare, in the order in which it is needed."""
 
 
 def start_warmup(state: ProcessState, steps: Mapping[str, Callable[[], object]] = STEPS) -> threading.Thread:
@@ -82,7 +82,7 @@ def start_warmup(state: ProcessState, steps: Mapping[str, Callable[[], object]] 
     A failed step ends the thread and sets `state.kernels_failed`. A shutdown ends the thread before the next step.
     """
     # A daemon thread does not keep the process alive: a compilation cannot be cancelled.
-    thread = threading.Thread(target=_warm_up, args=(state, steps), name="warmup", daemon=True)
+    thread = threading.Thread(target=_warm_up_server, args=(state, steps), name="warmup", daemon=True)
     thread.start()
     return thread
 
@@ -94,7 +94,7 @@ def warm_up(steps: Mapping[str, Callable[[], object]] = STEPS) -> None:
         step()
 
 
-def _warm_up(state: ProcessState, steps: Mapping[str, Callable[[], object]]) -> None:
+def _warm_up_server(state: ProcessState, steps: Mapping[str, Callable[[], object]]) -> None:
     for name, step in steps.items():
         if state.stopping.is_set():
             return

@@ -1,15 +1,15 @@
 // @ts-check
-/** Animates the energy, which rises in each frame of the display up to the end of the range. */
+/** The animation of the energy, which rises with each frame of the display up to the end of the range. */
 
 /** Duration of the animation of the whole range, in ms. */
 const SWEEP_MS = 20_000
-/** Smallest number of steps of the range. The step is a power of ten, which keeps the numbers on the page short. */
-const STEPS = 1000
+/** Smallest number of steps of the range. The step is a power of ten, so that the energies have few digits. */
+const LEAST_STEPS = 1000
 
-export class Player {
+export class EnergyPlayer {
   /**
-   * @param {(energy: number) => void} show
-   * @param {(energy: number) => void} end  takes the last energy
+   * @param {(energy: number) => void} show  shows each energy
+   * @param {(energy: number) => void} end  called with the last energy
    */
   constructor(show, end) {
     this.#show = show
@@ -37,7 +37,7 @@ export class Player {
   start(energy, low, high) {
     if (this.playing) return
     this.#energy = energy >= low && energy < high ? energy : low
-    const decimals = Math.max(Math.ceil(Math.log10(STEPS / (high - low))), 0)
+    const decimals = Math.max(Math.ceil(Math.log10(LEAST_STEPS / (high - low))), 0)
     let exactEnergy = this.#energy
     let lastTime = performance.now()
     const tick = (/** @type {number} */ now) => {

@@ -35,6 +35,7 @@ export function pixelColumns(coding, view, pixels, serverColumns, compared) {
   const fate = new Uint8Array(count)
   const crossingClass = new Uint8Array(count)
   for (let i = 0; i < count; i++) {
+    // Undefined for an escape.
     const outcome = codes.get(pixels.fate[i])
     fate[i] = outcome ?? first + ends[pixels.fate[i] - 1]
     crossingClass[i] = outcome ?? first + leastCrossings.findLastIndex(least => pixels.crossings[i] >= least)
@@ -48,7 +49,7 @@ export function pixelColumns(coding, view, pixels, serverColumns, compared) {
     crossings: [new Floats(Float32Array.from(pixels.crossings).buffer, shape)],
     escape_time: [new Floats(pixels.time.buffer, shape)],
     ...Object.fromEntries(coding.layers.map(name => [name, [emptyImage]])),
-    difference: [compared ? new Bytes(differencesFrom(coding, view, fate, compared).buffer, shape) : emptyImage],
+    difference: [compared ? new Bytes(differenceCodes(coding, view, fate, compared).buffer, shape) : emptyImage],
     ends: [coding.words],
     x: [window.xLow],
     y: [window.ordinateLow],
@@ -60,14 +61,14 @@ export function pixelColumns(coding, view, pixels, serverColumns, compared) {
 }
 
 /**
- * Return the codes of the differences from the pixels at the same places in another view.
+ * Return the codes of the differences from the pixels at the same points in another view.
  *
  * @param {Coding} coding
  * @param {import("../engine/pixels.js").View} view
  * @param {Uint8Array} fate  codes of the pixels of the view
- * @param {Columns} compared
+ * @param {Columns} compared  columns of the other view
  */
-function differencesFrom({undecided, differences}, {window, columns, rows}, fate, compared) {
+function differenceCodes({undecided, differences}, {window, columns, rows}, fate, compared) {
   const [image, x, y, dw, dh] = ["fate", "x", "y", "dw", "dh"].map(name => compared[name][0])
   const [rowCount, columnCount] = image.shape
   const centres = (/** @type {number} */ low, /** @type {number} */ high, /** @type {number} */ count) =>
@@ -85,7 +86,7 @@ function differencesFrom({undecided, differences}, {window, columns, rows}, fate
 
 /** Largest distance of edges that count as equal, as a share of the side of the window. */
 const SAME_EDGE = 1e-6
-/** Largest side of a frame from the server, as a share of the side of its window. Coarse frames extend beyond their window. */
+/** Largest side of a map from the server, as a share of the side of its window. Coarse maps extend beyond their window. */
 const WIDEST = 1.1
 /** Largest difference of energies that count as equal, as a share of the energy. */
 const SAME_ENERGY = 1e-12
@@ -99,7 +100,7 @@ const SAME_ENERGY = 1e-12
 export const sameEnergy = (one, other) => Math.abs(one - other) <= SAME_ENERGY * Math.abs(other)
 
 /**
- * Whether columns from the server show a scene, with a map that is complete or has at least as many rows as a preview.
+ * Whether columns from the server show a scene, and their map is complete or has at least as many rows as a preview.
  *
  * @param {Columns} columns
  * @param {import("../workers/frames.js").Scene} scene
