@@ -71,8 +71,7 @@ class FairShare:
             try:
                 awaited = step()
             except StopIteration as end:
-                result: Result = end.value
-                return result
+                return end.value
             finally:
                 self.charge(self._busy_clock() - begin)
             try:

@@ -186,13 +186,11 @@ class LimitedProcess:
         """Start a call, in a new process if the previous process has ended."""
         if self._executor is not None:
             with suppress(BrokenExecutor):
-                future: Future[Result] = self._executor.submit(call)
-                return future
+                return self._executor.submit(call)
         self._executor = ProcessPoolExecutor(
             max_workers=1, timeout=IDLE_SECONDS, initializer=_prepare_process, initargs=(self._memory, os.getpid())
         )
-        first_future: Future[Result] = self._executor.submit(call)
-        return first_future
+        return self._executor.submit(call)
 
 
 class LimitedProcesses:

@@ -123,7 +123,7 @@ class PageWebSocket(SecurityHeaders, WSHandler):
             await asyncio.sleep(seconds)
 
     def _has_other_pages(self) -> bool:
-        return bool(sum(session.connection_count for session in self.application_context.sessions) > 1)
+        return sum(session.connection_count for session in self.application_context.sessions) > 1
 
     async def _take_part(self, message: str | bytes) -> None:
         """Pass a message on after its last part, log a refused message, or close the connection."""

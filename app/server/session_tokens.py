@@ -65,14 +65,13 @@ def issue_token(
     has_login = bool(application.auth_provider.endpoints)
     cookies = {name: morsel.value for name, morsel in request.cookies.items()} if has_login else {}
     key = _signing_key(application)
-    token: str = generate_jwt_token(
+    return generate_jwt_token(
         generate_session_id(key, signed=True),
         key,
         signed=True,
         extra_payload={"headers": {}, "cookies": cookies, "arguments": arguments, _ISSUED: clock(), **extra},
         expiration=_BOKEH_EXPIRATION,
     )
-    return token
 
 
 def may_begin_session(application: BokehTornado, token: str, clock: Callable[[], float] = time.monotonic) -> bool:
@@ -101,5 +100,5 @@ def has_signed_token(application: BokehTornado, request: HTTPServerRequest) -> b
 
 
 def _signing_key(application: BokehTornado) -> bytes:
-    key: bytes | None = application.secret_key
-    return key or _own_key
+    """Return the key with which this server signs tokens."""
+    return application.secret_key or _own_key

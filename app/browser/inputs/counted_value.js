@@ -1,7 +1,7 @@
 // @ts-check
 /**
- * The value of an input. Sent values are numbered, and the server returns the number of the last value that it has received. While
- * this number is smaller than that of the last sent value, values from the server are older than that value, and are ignored.
+ * The value of an input. Sent values are numbered, and the server returns the number of the last value that it has received.
+ * While this number is smaller than that of the last sent value, values from the server are older, and are ignored.
  */
 export class CountedValue {
   /**

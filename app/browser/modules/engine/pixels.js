@@ -32,7 +32,7 @@ import {energyAxis, findStarts, keepInside, placeWindow} from "./starts.js"
  */
 
 /**
- * Integration error of an orbit in a step, in pixels. It can be larger than that of an orbit that is followed to t = 1e5. The last
+ * Integration error of an orbit in a step, in pixels. It can be larger than for an orbit that is followed to t = 1e5. The last
  * coefficients of a step are about as large as the error, in units of the well.
  */
 const ERROR_IN_PIXELS = 1e-6

@@ -47,7 +47,11 @@ const PACES = {
   backwards: (time, seconds) => Math.max(time - 4 * seconds, 0),
 }
 
-/** Return a new element with attributes and children. @type {(tag: string, attributes?: object, ...children: (Node | string)[]) => any} */
+/**
+ * Return a new element.
+ *
+ * @type {(tag: string, attributes?: object, ...children: (Node | string)[]) => any}
+ */
 const makeElement = (tag, attributes = {}, ...children) => {
   const node = Object.assign(document.createElement(tag), attributes)
   node.append(...children)

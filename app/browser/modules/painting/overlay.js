@@ -1,7 +1,7 @@
 // @ts-check
 /**
- * The pictures while the energy changes, on canvases over the pictures of Bokeh, because Bokeh takes longer to paint axes than the
- * browser takes to compute the pixels. Palettes and styles of lines come from the models of Bokeh.
+ * The pictures while the energy changes, on canvases over the pictures of Bokeh, because Bokeh takes longer to paint axes than
+ * the browser takes to compute the pixels. Palettes and styles of lines come from the models of Bokeh.
  */
 
 import {cover, mapPictures, strokeLine, wellPicture} from "./pictures.js"

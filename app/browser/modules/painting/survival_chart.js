@@ -16,8 +16,8 @@ const PIECES = 240
  * @param {HTMLCanvasElement} canvas
  * @param {{escapeTime: Float64Array, count: number, time: number}} ensemble  times in units of the well
  * @param {{longest: number, unit: number, rate: number, ink: string}} options  `longest`: time at the end of the axis, in units
- *   of the well. `unit`: unit of time of the well, in units of the page. `rate`: decay rate of mixed motion, in units of the page;
- *   0 if it is not known. `ink`: colour of lines and text
+ *   of the well. `unit`: unit of time of the well, in units of the page. `rate`: decay rate of mixed motion, in units of the
+ *   page; 0 if it is not known. `ink`: colour of lines and text
  */
 export function drawSurvival(canvas, {escapeTime, count, time}, {longest, unit, rate, ink}) {
   const [width, height] = [canvas.clientWidth, canvas.clientHeight]
