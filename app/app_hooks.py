@@ -63,7 +63,7 @@ def on_server_loaded(server_context: Any) -> None:
     watch = LoopWatch(state.load, state.metrics.loop_delays)
     gc.callbacks.append(watch.on_collection)
     PeriodicCallback(lambda: _measure_load(state, watch), 1000.0 * loop_watch.TICK_SECONDS).start()
-    threading.Thread(target=watch.watch, args=[state.stopping], name="loop watch", daemon=True).start()
+    threading.Thread(target=watch.sample_stacks, args=[state.stopping], name="loop watch", daemon=True).start()
     compile_in(state.compiler)
     start_warmup(state)
     # Otherwise, the first request would wait for this import and for the reviews of the cases.
@@ -107,7 +107,8 @@ def _start_state() -> ProcessState:
 
 
 def _measure_load(state: ProcessState, watch: LoopWatch) -> None:
-    # A stopping server logs no more delays, so the line that it stops is the last.
+    """Measure the delay of the event loop, and postpone work while the load is high."""
+    # A stopping server logs no delays, so that its last line says that it stops.
     if not state.stopping.is_set():
         watch.tick()
     state.adapt_to_load()

@@ -59,21 +59,23 @@ class ProcessorTimes(NamedTuple):
     all_programs: float
     """Time of all programs on the processors that this process may use."""
     own: float
-    """Time of this process, and of the processes that compute for it."""
+    """Time of this process, and of the helper processes that compute for it."""
     loop: float
     """Time of the event loop of this process."""
 
 
 class _Use(NamedTuple):
-    """Average numbers of processors that other programs and the event loop used during an interval of `seconds`."""
+    """Use of the processors during an interval between two measurements."""
 
     seconds: float
     other_cores: float
-    loop: float
+    """Average number of processors that other programs used."""
+    loop_share: float
+    """Share of the interval during which the event loop was busy."""
 
 
 class Capacity:
-    """Measures the free processor time, and decides whether there is capacity for another page.
+    """Measures the use of the processors, and decides whether there is capacity for another page.
 
     Parameters
     ----------
@@ -92,7 +94,7 @@ class Capacity:
     ----------
     cores
         Number of processors available to this process, without the part that other programs use.
-    loop
+    loop_share
         Share of the time during which the event loop is busy.
     """
 
@@ -110,7 +112,7 @@ class Capacity:
         # Measurements are a second or more apart, so this many of them cover the window.
         self._uses = deque[_Use](maxlen=WINDOW_SECONDS)
         self.cores = self._available_cores(0.0)
-        self.loop = 0.0
+        self.loop_share = 0.0
 
     def update(self) -> bool:
         """Measure unless the last measurement is less than a second old; return whether a measurement was made."""
@@ -123,7 +125,7 @@ class Capacity:
             other_cores = max(other_cores, self._mean_other_cores())
         self._uses.append(_Use(seconds, other_cores, loop / seconds))
         self.cores = self._available_cores(max(self._mean_other_cores(), 0.0))
-        self.loop = self._mean(use.loop for use in self._uses)
+        self.loop_share = self._mean(use.loop_share for use in self._uses)
         return True
 
     def is_crowded(self, pages: Mapping[str, float]) -> bool:
@@ -138,12 +140,13 @@ class Capacity:
 
     def occupied_share(self, pages: Mapping[str, float]) -> float:
         """Return the share of the processors that the pages reserve, or the busy share of the event loop if that is larger."""
-        return max(self._cores_per_page * sum(pages.values()) / self.cores, self.loop)
+        return max(self._cores_per_page * sum(pages.values()) / self.cores, self.loop_share)
 
     def _mean_other_cores(self) -> float:
         return self._mean(use.other_cores for use in self._uses)
 
     def _mean(self, values: Iterable[float]) -> float:
+        """Return the mean of a value for each measurement, weighted by the lengths of the intervals; 0 without a measurement."""
         return fmean(values, [use.seconds for use in self._uses]) if self._uses else 0.0
 
     def _available_cores(self, other_cores: float) -> float:

@@ -67,7 +67,10 @@ def _full_reason(state: ProcessState, network: str = "") -> str | None:
 
 def _is_alone(state: ProcessState, network: str) -> bool:
     """Whether a visitor is on this machine, or no page is open except perhaps one of this visitor, who may be reloading it."""
-    return (network != "" and is_local(network)) or state.sockets.total() <= min(state.sockets[network], 1)
+    if network and is_local(network):
+        return True
+    own_page_count = min(state.sockets[network], 1)
+    return state.sockets.total() <= own_page_count
 
 
 class StateCollector(Collector):

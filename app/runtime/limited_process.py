@@ -107,7 +107,9 @@ class LimitedProcess:
         """
         with self._lock:
             try:
-                return self._call(function, cancel or threading.Event())
+                cancel = cancel or threading.Event()
+                self._wait_for_start(cancel)
+                return self._call(function, cancel)
             except LimitError:
                 self.stopped_calls += 1
                 self.computed_seconds += self._seconds
@@ -143,8 +145,8 @@ class LimitedProcess:
             with suppress(OSError, MemoryError):
                 self._submit(os.getpid)
 
-    def _call[Result](self, function: Callable[[], Result], cancel: threading.Event) -> Result:
-        """Return the result of a function. Replace a process that exceeds a limit or whose call is cancelled."""
+    def _wait_for_start(self, cancel: threading.Event) -> None:
+        """Wait until the process has started. Start the process if it does not run."""
         try:
             # This call takes no time, so its result shows that the process has started.
             self._wait(self._submit(os.getpid), cancel, self._longest_wait)
@@ -152,6 +154,9 @@ class LimitedProcess:
         except (BrokenExecutor, FutureTimeoutError, MemoryError):
             self._end()
             raise LimitError(f"{self._task} could not begin: the machine is busy or short of memory; try again later") from None
+
+    def _call[Result](self, function: Callable[[], Result], cancel: threading.Event) -> Result:
+        """Return the result of a function. Replace a process that exceeds a limit or whose call is cancelled."""
         try:
             call = self._submit(partial(_call_limited, self._seconds, function))
             result, seconds = self._wait(call, cancel, self._seconds + self._longest_wait)

@@ -71,8 +71,8 @@ class LoadMonitor:
 SLOW_SECONDS = 0.05
 """Duration above which an iteration of the event loop is logged and counted, in seconds."""
 
-# Smallest delay of a tick that is reported. A slow iteration may begin up to one interval before the tick is due, and then delays
-# the tick by less than its own duration.
+# Delay above which a tick is reported, in seconds. A slow iteration may begin up to one interval before the tick is due, and then
+# delays the tick by less than its own duration.
 _REPORTED_DELAY = SLOW_SECONDS - TICK_SECONDS
 # Interval at which the stack is read, in seconds.
 _SAMPLE_SECONDS = 0.5 * TICK_SECONDS
@@ -117,9 +117,10 @@ class LoopWatch:
     def __init__(self, load: LoadMonitor, delays: Histogram, processor_time: Callable[[], float] = time.thread_time) -> None:
         self._load, self._delays, self._processor_time = load, delays, processor_time
         self._thread = threading.get_ident()
+        # Causes that were found since the last tick.
         self._samples: list[str] = []
         self._last_processor_time = self._processor_time()
-        # Processor time at the beginning of a garbage collection.
+        # Processor time of the loop's thread at the beginning of the present garbage collection.
         self._collection_begin = 0.0
         # Processor time of the garbage collections since the last tick.
         self._collection_seconds = 0.0
@@ -149,8 +150,8 @@ class LoopWatch:
                 *(1000.0 * seconds for seconds in (delay, own_seconds, collection_seconds)), cause,
             )  # fmt: skip
 
-    def watch(self, stopping: threading.Event) -> None:
-        """Read the loop's stack whenever a tick is overdue, until the server stops. Call this on a separate thread."""
+    def sample_stacks(self, stopping: threading.Event) -> None:
+        """Read the loop's stack repeatedly while a tick is overdue, until the server stops. Call this on a separate thread."""
         while not stopping.wait(_SAMPLE_SECONDS):
             frame = sys._current_frames().get(self._thread) if self._load.overdue_seconds() > _SAMPLE_SECONDS else None
             if frame is not None:

@@ -22,8 +22,8 @@ LONGEST_LINK = 8192
 RETRY_SECONDS = 10
 """Interval at which the browser requests a refused page again, in seconds."""
 
-RETRIED = (http.client.TOO_MANY_REQUESTS, http.client.SERVICE_UNAVAILABLE)
-"""HTTP statuses of refused pages that may be served later."""
+RETRIED_STATUSES = (http.client.TOO_MANY_REQUESTS, http.client.SERVICE_UNAVAILABLE)
+"""HTTP statuses of refusals after which the browser requests the page again."""
 
 
 def admit(request: Any) -> None:
@@ -47,11 +47,10 @@ def admit(request: Any) -> None:
 
 def refusal_page(sentence: str) -> str:
     """Return an error page with a sentence. The browser requests the refused page again after `RETRY_SECONDS`."""
-    head = (
-        f"<meta charset=utf-8><meta name=viewport content='width=device-width'><meta http-equiv=refresh content={RETRY_SECONDS}>"
-    )
+    refresh = f"<meta http-equiv=refresh content={RETRY_SECONDS}>"
+    head = f"<meta charset=utf-8><meta name=viewport content='width=device-width'>{refresh}<title>Escape Explorer</title>"
     body = f"<p>{escape(sentence)} This page tries again every {RETRY_SECONDS} s.</p>"
-    return f"<!doctype html><html lang=en><head>{head}<title>Escape Explorer</title></head><body>{body}</body></html>"
+    return f"<!doctype html><html lang=en><head>{head}</head><body>{body}</body></html>"
 
 
 def check_session(token: str, application_context: Any, address: str, application: Any) -> None:

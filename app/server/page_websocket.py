@@ -78,6 +78,7 @@ class PageWebSocket(SecurityHeaders, WSHandler):
             return self._refuse_connection(error)
 
     async def _async_open(self, token: str) -> None:
+        """Open or join the session of a token, or close the connection if Bokeh refuses the token."""
         try:
             await super()._async_open(token)
         except ProtocolError as error:

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import http.client
 import re
+import secrets
 from typing import Any
 
 from bokeh.server.tornado import BokehTornado
@@ -23,12 +24,12 @@ from tornado.web import Finish, HTTPError, RedirectHandler, StaticFileHandler
 
 from app.browser.module_files import ROUTES as MODULE_ROUTES
 from app.runtime.process_state import process_state
-from app.server.admission import RETRIED, RETRY_SECONDS, refusal_page
+from app.server.admission import RETRIED_STATUSES, RETRY_SECONDS, refusal_page
 from app.server.compressed_files import CompressedFiles
 from app.server.endpoints import ROUTES as ENDPOINT_ROUTES
 from app.server.endpoints import NotFound
 from app.server.page_websocket import PageWebSocket
-from app.server.security_headers import SecurityHeaders, add_nonce, new_nonce
+from app.server.security_headers import SecurityHeaders, add_nonce
 from app.server.session_tokens import issue_token, use_token
 
 # Tornado fails when it looks for a file with a null character in its name.
@@ -127,7 +128,7 @@ class PageHandler(SecurityHeaders, DocHandler):
     def write_error(self, status_code: int, **kwargs: Any) -> None:
         """Answer with the reason. A page that may be served later is requested again by the browser."""
         error = kwargs.get("exc_info", (None, None))[1]
-        if status_code not in RETRIED or not isinstance(error, HTTPError):
+        if status_code not in RETRIED_STATUSES or not isinstance(error, HTTPError):
             super().write_error(status_code, **kwargs)
             return
         self.set_header("Retry-After", RETRY_SECONDS)
@@ -136,7 +137,7 @@ class PageHandler(SecurityHeaders, DocHandler):
     def write(self, chunk: Any) -> None:
         """Write a response. A page contains the nonce and is sent with the matching policy."""
         if isinstance(chunk, str):
-            nonce = new_nonce()
+            nonce = secrets.token_urlsafe(16)
             self.set_security_headers(nonce)
             chunk = add_nonce(chunk, nonce)
         super().write(chunk)

@@ -9,7 +9,6 @@ imports components; and ``unsafe-inline`` for styles, which Bokeh inserts at run
 from __future__ import annotations
 
 import re
-import secrets
 
 from tornado.web import RequestHandler
 
@@ -36,11 +35,6 @@ class SecurityHeaders(RequestHandler):
 def add_nonce(page: str, nonce: str) -> str:
     """Return an HTML page with a nonce on all scripts. Panel's module loader passes the nonce on to scripts that it inserts."""
     return _SCRIPT_TAG.sub(f'<script nonce="{nonce}"', page)
-
-
-def new_nonce() -> str:
-    """Return a random nonce."""
-    return secrets.token_urlsafe(16)
 
 
 def content_policy(frame_ancestors: tuple[str, ...], nonce: str | None = None) -> str:

@@ -16,45 +16,45 @@ export class CountedValue {
     /** Number of the last sent value. */
     this.count = model.shown.count
     /** Whether the input has a value that is not sent yet. */
-    this.unsent = false
+    this.isUnsent = false
     /** Whether the last value is final. */
-    this.done = true
+    this.isFinal = true
   }
 
   /** Show the value from the server, unless the input has a newer value. */
   follow() {
-    if (!this.unsent && this.model.shown.count >= this.count) this.write(this.model.shown.value)
+    if (!this.isUnsent && this.model.shown.count >= this.count) this.write(this.model.shown.value)
   }
 
   /** Begin a change of the value, which is sent when it is final. */
   begin() {
-    this.unsent = true
-    this.done = false
+    this.isUnsent = true
+    this.isFinal = false
   }
 
   /** Send a change of the value at once. */
   change() {
-    this.done = false
+    this.isFinal = false
     this.send()
   }
 
   /** Send the changed value as final. */
   finish() {
-    if (this.done) return
-    this.done = true
+    if (this.isFinal) return
+    this.isFinal = true
     this.send()
   }
 
   /** Drop a change that was begun. */
   cancel() {
-    this.unsent = false
-    this.done = true
+    this.isUnsent = false
+    this.isFinal = true
     this.follow()
   }
 
   /** Send the value of the input with its number. */
   send() {
-    this.unsent = false
-    this.model.send_msg({value: this.read(), count: ++this.count, done: this.done})
+    this.isUnsent = false
+    this.model.send_msg({value: this.read(), count: ++this.count, done: this.isFinal})
   }
 }

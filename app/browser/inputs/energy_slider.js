@@ -1,6 +1,9 @@
 // @ts-check
 import {CountedValue} from "./counted_value.js"
 
+/** Largest number of decimals of a shown energy. */
+const MOST_DECIMALS = 12
+
 /**
  * The slider of the energy. While it moves, other parts of the page receive its energy. When it is released, the server does.
  *
@@ -20,8 +23,8 @@ export function render({model, el}) {
   const clamped = (/** @type {number} */ energy) => Math.min(Math.max(energy, model.low), model.high)
   const write = (/** @type {number} */ energy) => {
     rail.value = String(energy)
-    const decimals = Number(energy.toFixed(12)).toString().split(".")[1]?.length ?? 0
-    number.textContent = energy.toFixed(Math.min(Math.max(decimals, model.decimals, 0), 12))
+    const decimals = Number(energy.toFixed(MOST_DECIMALS)).toString().split(".")[1]?.length ?? 0
+    number.textContent = energy.toFixed(Math.min(Math.max(decimals, model.decimals, 0), MOST_DECIMALS))
     rail.setAttribute("aria-valuetext", number.textContent)
   }
   // An energy beyond an end of the slider stays until the user moves the thumb.
@@ -50,7 +53,7 @@ export function render({model, el}) {
   }
   // A drag that ends at the energy where it began fires no change event.
   const release = () => {
-    if (value.done) return
+    if (value.isFinal) return
     const energy = value.read()
     dispatch("energyreleased", energy)
     if (energy === clamped(model.shown.value)) value.cancel()
@@ -70,7 +73,7 @@ export function render({model, el}) {
   const show = (/** @type {Event} */ event) => write(clamped(/** @type {CustomEvent} */ (event).detail))
   document.addEventListener("energyshown", show)
   // The engine may be loaded while the user holds the slider.
-  const answer = () => value.unsent && dispatch("energydragged", value.read())
+  const answer = () => value.isUnsent && dispatch("energydragged", value.read())
   document.addEventListener("energyasked", answer)
   model.on("lifecycle:remove", () => {
     document.removeEventListener("energyshown", show)

@@ -20,14 +20,9 @@ export function count(value) {
   return groupDigits(String(Math.round(value)).replace("-", "−"))
 }
 
-/**
- * Write a share of 1 as a percentage.
- *
- * @param {number} value
- * @param {number} [digits]
- */
-export function percent(value, digits = 3) {
-  return `${number(100 * value, digits)}\u202f%`
+/** Write a share of 1 as a percentage with three significant digits. @param {number} value */
+export function percent(value) {
+  return `${number(100 * value, 3)}\u202f%`
 }
 
 /** Write a share of 1 as a percentage with one decimal. @param {number} value */

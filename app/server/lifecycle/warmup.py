@@ -34,6 +34,7 @@ log = logging.getLogger(f"bokeh.{__name__}")
 def prepare_for_orbits(potential: Potential) -> None:
     """Compile the kernels of single orbits, or load them from the cache."""
     start = start_states(potential, SECTION, potential.well.energy_at(0.5), np.zeros(1), np.zeros(1))[0]
+    # Any short orbit compiles the kernels.
     call_after_maps(lambda: integrate_orbit(potential, start, 10.0 * potential.units.time))
 
 
@@ -87,9 +88,9 @@ def start_warmup(state: ProcessState, steps: Mapping[str, Callable[[], object]] 
     return thread
 
 
-def warm_up(steps: Mapping[str, Callable[[], object]] = STEPS) -> None:
-    """Run the steps in this thread, for example to fill the kernel cache of a container image."""
-    for name, step in steps.items():
+def warm_up() -> None:
+    """Run the steps in this thread, to fill the kernel cache of a container image."""
+    for name, step in STEPS.items():
         log.info("preparing %s", name)
         step()
 

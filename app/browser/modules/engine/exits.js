@@ -59,17 +59,12 @@ export class Exits {
     })
   }
 
-  /**
-   * Return the exits at an energy, given by its row.
-   *
-   * @param {number} [row]  index of the energy
-   * @returns {Exit[]}
-   */
-  list(row = 0) {
+  /** Return the exits at the first energy. @returns {Exit[]} */
+  list() {
     const {shape, shapes} = this.#columns
     return this.#integrator.system.exits.map((exit, index) => ({
       number: index + 1,
-      isOpen: this.curves.at(row).at(index).values[shape] !== shapes.closed,
+      isOpen: this.curves.at(0).at(index).values[shape] !== shapes.closed,
       isCircle: "row" in exit,
     }))
   }

@@ -62,10 +62,10 @@ function toleranceFor({layout, exits}, {slice, window, columns, rows}) {
  * @param {Part} part
  * @returns {Pixels}
  */
-export const computePixels = (integrator, view, part) => integrator.temporarily(() => compute(integrator, view, part))
+export const computePixels = (integrator, view, part) => integrator.temporarily(() => computePart(integrator, view, part))
 
 /** @type {typeof computePixels} */
-function compute(integrator, view, part) {
+function computePart(integrator, view, part) {
   const {system} = integrator
   const {slice, window, columns, rows, horizon} = view
   const count = part.rows.length * part.columns

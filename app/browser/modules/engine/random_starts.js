@@ -52,8 +52,8 @@ function drawAtExits(integrator, {count, seed}, energy, ofTubes) {
   const {address, table} = integrator
   const states = integrator.array("float64", [count, 4])
   const curves = new Exits(integrator, [energy]).curves.at(0)
-  const options = [curves, energy, Number(ofTubes), integrator.integers([seed]), states]
-  const drawnCount = integrator.call("draw_at_exits", address.potential_value, table, ...options)
+  const inputs = [curves, energy, Number(ofTubes), integrator.integers([seed]), states]
+  const drawnCount = integrator.call("draw_at_exits", address.potential_value, table, ...inputs)
   return Float64Array.from(states.first(drawnCount).values)
 }
 

@@ -137,11 +137,10 @@ export class Card {
       const finger = this.#finger
       // Bokeh would move the picture.
       if (this.#isShowing) event.stopPropagation()
-      else if (finger && Math.hypot(event.clientX - finger.x, event.clientY - finger.y) > PRESS_PIXELS) this.#lift()
+      else if (finger && distance(finger, event) > PRESS_PIXELS) this.#lift()
       if (!this.#isShowing) return
     }
-    if (this.#clickPoint && Math.hypot(event.clientX - this.#clickPoint.x, event.clientY - this.#clickPoint.y) < CLICK_PIXELS)
-      return
+    if (this.#clickPoint && distance(this.#clickPoint, event) < CLICK_PIXELS) return
     this.#clickPoint = null
     // No card appears while the mouse drags the energy or the window.
     const isDragging = event.buttons && event.pointerType !== "touch"
@@ -196,13 +195,7 @@ export class Card {
       view.frame.y_scale.invert(event.clientY - box.top + view.frame.bbox.top),
     ]
     const [rows, columns] = fate[0].shape
-    const snap = (
-      /** @type {number} */ value,
-      /** @type {number} */ low,
-      /** @type {number} */ size,
-      /** @type {number} */ count,
-    ) => low + (size * (Math.floor(((value - low) / size) * count) + 0.5)) / count
-    return [snap(point[0], x[0], dw[0], columns), snap(point[1], y[0], dh[0], rows)]
+    return [cellCentre(point[0], x[0], dw[0], columns), cellCentre(point[1], y[0], dh[0], rows)]
   }
 
   /**
@@ -224,11 +217,7 @@ export class Card {
     context.clearRect(0, 0, box.width, box.height)
     const style = getComputedStyle(this.#canvas)
     const [ink, paper] = ["--ui-ink", "--ui-page"].map(name => style.getPropertyValue(name))
-    const draw = (
-      /** @type {{xs: ArrayLike<number>, ys: ArrayLike<number>}} */ line,
-      /** @type {string} */ colour,
-      /** @type {number} */ width,
-    ) => strokeLine(context, window, box, line, colour, width)
+    const draw = strokeLine.bind(null, context, window, box)
     const limit = this.#limits.trace(integrator, {slice: system.space, window, energy})
     for (const line of limit) draw(line, ink, 1.5)
     const {colours, labels} = this.#view()
@@ -263,7 +252,21 @@ export class Card {
   }
 }
 
-/** @type {(box: DOMRect, event: PointerEvent) => boolean} */
+/**
+ * Return the centre of the cell that contains a value, if `count` cells divide the interval from `low` to `low + size`.
+ *
+ * @type {(value: number, low: number, size: number, count: number) => number}
+ */
+const cellCentre = (value, low, size, count) => low + (size * (Math.floor(((value - low) / size) * count) + 0.5)) / count
+
+/**
+ * Return the distance of the pointer from a point of the screen, in pixels.
+ *
+ * @type {(point: {x: number, y: number}, event: PointerEvent) => number}
+ */
+const distance = ({x, y}, {clientX, clientY}) => Math.hypot(clientX - x, clientY - y)
+
+/** Whether the pointer is in a box. @type {(box: DOMRect, event: PointerEvent) => boolean} */
 const contains = (box, {clientX, clientY}) =>
   clientX >= box.left && clientX <= box.right && clientY >= box.top && clientY <= box.bottom
 

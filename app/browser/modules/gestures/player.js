@@ -5,6 +5,8 @@
 const SWEEP_MS = 20_000
 /** Smallest number of steps of the range. The step is a power of ten, so that the energies have few digits. */
 const LEAST_STEPS = 1000
+/** Largest number of decimals of an energy. */
+const MOST_DECIMALS = 20
 
 export class EnergyPlayer {
   /**
@@ -37,13 +39,14 @@ export class EnergyPlayer {
   start(energy, low, high) {
     if (this.playing) return
     this.#energy = energy >= low && energy < high ? energy : low
-    const decimals = Math.max(Math.ceil(Math.log10(LEAST_STEPS / (high - low))), 0)
+    const neededDecimals = Math.ceil(Math.log10(LEAST_STEPS / (high - low)))
+    const decimals = Math.min(Math.max(neededDecimals, 0), MOST_DECIMALS)
     let exactEnergy = this.#energy
     let lastTime = performance.now()
     const tick = (/** @type {number} */ now) => {
       exactEnergy = Math.min(exactEnergy + ((high - low) * Math.max(now - lastTime, 0)) / SWEEP_MS, high)
       lastTime = now
-      this.#energy = Math.min(Number(exactEnergy.toFixed(Math.min(decimals, 20))), high)
+      this.#energy = Math.min(Number(exactEnergy.toFixed(decimals)), high)
       this.#show(this.#energy)
       if (exactEnergy >= high) this.stop()
       else this.#frame = requestAnimationFrame(tick)

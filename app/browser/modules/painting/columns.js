@@ -100,6 +100,14 @@ const SAME_ENERGY = 1e-12
 export const sameEnergy = (one, other) => Math.abs(one - other) <= SAME_ENERGY * Math.abs(other)
 
 /**
+ * Whether an image that begins at `low` covers a side of a window, and is not much wider.
+ *
+ * @type {(low: number, size: number, from: number, to: number) => boolean}
+ */
+const coversSide = (low, size, from, to) =>
+  Math.abs(low - from) <= SAME_EDGE * (to - from) && size >= (1 - SAME_EDGE) * (to - from) && size <= WIDEST * (to - from)
+
+/**
  * Whether columns from the server show a scene, and their map is complete or has at least as many rows as a preview.
  *
  * @param {Columns} columns
@@ -107,12 +115,6 @@ export const sameEnergy = (one, other) => Math.abs(one - other) <= SAME_ENERGY *
  * @param {number} rows  of the preview
  */
 export function showsScene({x, y, dw, dh, energy, fate, complete}, {window, energy: sceneEnergy, slice}, rows) {
-  const coversSide = (
-    /** @type {number} */ low,
-    /** @type {number} */ size,
-    /** @type {number} */ from,
-    /** @type {number} */ to,
-  ) => Math.abs(low - from) <= SAME_EDGE * (to - from) && size >= (1 - SAME_EDGE) * (to - from) && size <= WIDEST * (to - from)
   const hasEnergy = energyAxis(slice) >= 0 || sameEnergy(energy[0], sceneEnergy)
   const hasWindow =
     coversSide(x[0], dw[0], window.xLow, window.xHigh) && coversSide(y[0], dh[0], window.ordinateLow, window.ordinateHigh)

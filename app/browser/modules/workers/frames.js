@@ -32,17 +32,17 @@ const PART_PIXELS = 500
 export class Frames {
   /**
    * @param {import("./pool.js").Pool} pool
-   * @param {number} workers  number of workers of the pool
+   * @param {number} workerCount  number of workers of the pool
    * @param {(view: View, pixels: Pixels, isMoving: boolean) => void} show
    */
-  constructor(pool, workers, show) {
+  constructor(pool, workerCount, show) {
     this.#pool = pool
-    this.#workers = workers
+    this.#workerCount = workerCount
     this.#show = show
   }
 
   #pool
-  #workers
+  #workerCount
   #show
   /** @type {import("../engine/system.js").System | null} */
   #system = null
@@ -93,7 +93,7 @@ export class Frames {
     const side = Math.min(this.#side, scene.mostPixels)
     const startTime = performance.now()
     // With two parts for each worker, workers that finish early take another part.
-    this.#compute({...scene, columns: side, rows: side, horizon: MOVING_HORIZON}, 2 * this.#workers, () => {
+    this.#compute({...scene, columns: side, rows: side, horizon: MOVING_HORIZON}, 2 * this.#workerCount, () => {
       // The time for a picture is proportional to the square of the side. Browsers round times, so a difference may be 0.
       const change = Math.sqrt(FRAME_MS / Math.max(performance.now() - startTime, 1))
       const nextSide = Math.round(side * Math.min(Math.max(change, LEAST_CHANGE), LARGEST_CHANGE))
@@ -240,6 +240,6 @@ export class PixelCollector {
  */
 export function mirroredAxes(system, {mirrored}, {xLow, xHigh, ordinateLow, ordinateHigh}) {
   if (!system.mirror || !mirrored || !(mirrored[0] || mirrored[1])) return null
-  const symmetric = (!mirrored[0] || xLow === -xHigh) && (!mirrored[1] || ordinateLow === -ordinateHigh)
-  return symmetric ? mirrored : null
+  const isSymmetric = (!mirrored[0] || xLow === -xHigh) && (!mirrored[1] || ordinateLow === -ordinateHigh)
+  return isSymmetric ? mirrored : null
 }
