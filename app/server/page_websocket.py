@@ -126,7 +126,7 @@ class PageWebSocket(SecurityHeaders, WSHandler):
     def _has_other_pages(self) -> bool:
         return sum(session.connection_count for session in self.application_context.sessions) > 1
 
-    async def _take_part(self, message: str | bytes) -> None:
+    async def _take_part(self, part: str | bytes) -> None:
         """Pass a message on after its last part, log a refused message, or close the connection."""
         # The check of a message depends on the document, which may change while the page waits for its turn.
         if self._guard.is_next_part_last:
@@ -135,7 +135,7 @@ class PageWebSocket(SecurityHeaders, WSHandler):
         if self._closed or session is None:
             return
         try:
-            parts = self._guard.take(message, session.document)
+            parts = self._guard.take(part, session.document)
         except UnacceptableConnectionError as error:
             self._refuse_connection(error)
         except RefusedMessageError as refusal:
