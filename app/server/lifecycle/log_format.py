@@ -110,6 +110,7 @@ def set_up_logs(log_format: LogFormat, counter: logging.Handler, loggers: Iterab
             handler.setFormatter(JsonLineFormatter() if log_format is LogFormat.JSON else TextFormatter())
             handler.addFilter(add_session_id)
             handler.addFilter(shorten_message)
+            # Panel's handler writes to stdout.
             if isinstance(handler, logging.StreamHandler) and handler.stream is sys.stdout:
                 handler.setStream(sys.stderr)
         logger.addHandler(counter)
