@@ -101,8 +101,8 @@ def read_number(text: str) -> float:
 
 def listed(choices: Iterable[str]) -> str:
     """Return choices as an enumeration: "a, b or c"."""
-    *others, last = choices
-    return f"{', '.join(others)} or {last}" if others else last
+    *first_choices, last = choices
+    return f"{', '.join(first_choices)} or {last}" if first_choices else last
 
 
 def _read_numbers(text: str, count: int) -> tuple[float, ...]:
@@ -157,5 +157,5 @@ STARTS = Format(
 WATCHED = Format(
     lambda watched: f"{watched.where},{watched.count},{watched.seed},{watched.radius:g}",
     _read_watched,
-    lambda: f"{listed(StartsFrom)}, {listed(map(str, COUNTS))}, a seed, and a power of ten, such as well,5000,1,-2",
+    lambda: f"{listed(StartsFrom)}, {listed(map(str, COUNTS))}, a seed, and log10 of a radius, such as well,5000,1,-2",
 )

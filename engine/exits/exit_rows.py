@@ -42,7 +42,10 @@ def closed_exits(potential: Potential) -> np.ndarray:
 
 
 def exit_curves(potential: Potential, energy: float) -> np.ndarray:
-    """Return the exits of a potential in units of its well at one energy, of shape (outcomes, columns)."""
+    """Return the exits of a potential in units of its well at one energy, of shape (outcomes, columns).
+
+    Raises `UndefinedExitsError` if the exits over saddles are not defined, and the errors of `closed_exits`.
+    """
     curves = closed_exits(potential)
     for orbit in find_orbits_in_well_units(potential, energy):
         curves[orbit.channel - 1] = orbit.curve
@@ -61,7 +64,7 @@ def exit_curves_at(potential: Potential, energies: np.ndarray, execution: Execut
 
 
 def exits_of_orbit(potential: Potential, energy: float) -> tuple[np.ndarray, str]:
-    """Return the `exit_curves` for one orbit, and the reason why the exits over saddles are unknown; "" if they are known.
+    """Return the `exit_curves` for one orbit, and the reason why the exits over saddles are unknown; empty if they are known.
 
     Unknown exits over saddles count as absent: no orbit crosses them. Other ends remain.
     """

@@ -25,7 +25,8 @@ class BirkhoffDigits(RecordedResult):
     Attributes
     ----------
     windows
-        (m,) increasing window lengths T, dimensionless; the orbit is bounded for 2T. Empty if the orbit is too short.
+        (m,) increasing window lengths T, dimensionless; the orbit is bounded for 2T. Empty without windows, see
+        `compute_birkhoff_digits`.
     digits
         (m,) agreeing digits, above 0 and at most 16. On a recognised torus the last value is 8 or more.
     time_unit

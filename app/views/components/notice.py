@@ -15,7 +15,7 @@ from app.views.components.texts import TextPane
 CONNECTION_LOST = "The connection to the server is lost. Reload this page: its address holds the view."
 """Message of the browser when it loses the server."""
 
-NAME = "notice"
+MODEL_NAME = "notice"
 """Name by which the server and the browser find the Bokeh model of the pane in a document."""
 
 PASSING_SECONDS = 5.0
@@ -29,10 +29,10 @@ pane.setv({text: html}, {sync: false})
 
 
 class _NamedPane(TextPane):
-    """A pane whose Bokeh model is named `NAME`."""
+    """A pane whose Bokeh model is named `MODEL_NAME`."""
 
     def _get_properties(self, doc: Document) -> dict[str, Any]:
-        return {**super()._get_properties(doc), "name": NAME}
+        return {**super()._get_properties(doc), "name": MODEL_NAME}
 
 
 class Notice:
@@ -72,12 +72,12 @@ def show_passing_notice(document: Document, sentence: str) -> None:
 def watch_connection(document: Document) -> None:
     """Have the browser show `CONNECTION_LOST` when it loses the server."""
     # The Bokeh model of the pane takes escaped HTML.
-    args = {"name": NAME, "html": escape(_html(CONNECTION_LOST))}
+    args = {"name": MODEL_NAME, "html": escape(_html(CONNECTION_LOST))}
     document.js_on_event("connection_lost", CustomJS(args=args, code=_ON_CONNECTION_LOST))
 
 
 def _set_text(document: Document, html: str) -> None:
-    model = document.get_model_by_name(NAME)
+    model = document.get_model_by_name(MODEL_NAME)
     if model is not None:
         model.text = escape(html)
 

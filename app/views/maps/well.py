@@ -10,9 +10,9 @@ from bokeh.plotting import figure
 
 from app.state.view_state import ViewState
 from app.views.components.legends import legend_items
-from app.views.components.orbit_lines import in_front, line_columns, line_style, lines, opacities, orbit_colours
+from app.views.components.orbit_lines import in_front, line_columns, line_source, line_style, opacities, orbit_colours
 from app.views.components.plots import FigurePane, LaterGlyphs, annotate_picture, map_figure, set_range
-from app.views.maps.curve_layers import CurveLayers
+from app.views.maps.map_curves import MapCurves
 from engine import MapSpec, Potential, Window
 from engine.slices.axes import highest_energy
 from engine.slices.planes import SPACE
@@ -37,11 +37,11 @@ class WellView:
         self._state = state
         self._ranges = Range1d(-1.0, 1.0), Range1d(-1.0, 1.0)
         self._line_style = line_style(orbit_colours(state))
-        self._paths, self._trails = lines("paths"), lines("trails")
+        self._paths, self._trails = line_source("paths"), line_source("trails")
         # Density images of long paths.
         self._shades = ColumnDataSource({name: [] for name in ("image", "x", "y", "dw", "dh", "alpha")}, name="shades")
         self._points = ColumnDataSource({"x": [], "y": [], "slot": []}, name="points")
-        self._outlines = CurveLayers(state)
+        self._outlines = MapCurves(state)
         self._spec: MapSpec | None = None
         self._orbits: list[tuple[int, OrbitCurves]] = []
         self._time: float | None = None

@@ -28,21 +28,26 @@ class Inspector:
         self._figure_panes: list[pn.viewable.Viewable] = []
         self._build_later = later(self._build_texts)
         self._figures_in_turns = InTurns([*plots.parts(), separation.build], self._add_figures, later)
-        self._entry = controls.entry()
+        self._start_boxes = controls.start_boxes()
         self._grid = pn.Column(
-            controls.note, *self._entry, sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=["inspector"]
+            controls.note,
+            *self._start_boxes,
+            sizing_mode="stretch_width",
+            margin=0,
+            styles=FULL_HEIGHT,
+            css_classes=["inspector"],
         )
 
     def layout(self) -> pn.viewable.Viewable:
         """Return the inspector."""
         return self._grid
 
-    def follow(self, starts: int, orbits: int) -> None:
+    def follow(self, start_count: int, orbit_count: int) -> None:
         """Show the panes that are needed for a number of starts, and for the orbits among them."""
-        self._start_count, self._orbit_count = starts, orbits
-        if starts >= 1 and not self._head:
+        self._start_count, self._orbit_count = start_count, orbit_count
+        if start_count >= 1 and not self._head:
             self._build_later()
-        if orbits >= 1:
+        if orbit_count >= 1:
             self._figures_in_turns.begin()
         self._arrange()
 
@@ -59,6 +64,6 @@ class Inspector:
         has_starts = self._start_count >= 1
         figures = self._figure_panes if self._orbit_count >= 1 else []
         results = [*figures, *self._details] if has_starts else []
-        parts = [*(self._head if has_starts else []), self._controls.note, *results, *self._entry]
+        parts = [*(self._head if has_starts else []), self._controls.note, *results, *self._start_boxes]
         if parts != self._grid.objects:
             self._grid.objects = parts
