@@ -15,7 +15,7 @@ const LONGEST_TIME = 100
 /** Time from which the logarithmic pace begins, in units of the well. */
 const FIRST_TIME = 0.5
 /** Number of steps of the slider of time. */
-const RAIL_STEPS = 1000
+const SLIDER_STEPS = 1000
 /** Playing time by which the button "Step" advances the ensemble, in seconds. */
 const STEP_SECONDS = 0.05
 /** Side of a particle, in pixels. */
@@ -84,15 +84,15 @@ class EnsemblePlayer {
     ;[this.#radius.min, this.#radius.max] = model.radii
     this.#pace = makeList("Speed", Object.fromEntries(Object.keys(PACES).map(pace => [pace, pace])))
     this.#pace.value = "normal"
-    this.#rail.setAttribute("aria-label", "Time of the orbits")
+    this.#timeSlider.setAttribute("aria-label", "Time of the orbits")
     this.#radius.setAttribute("aria-label", "Radius of the disc, as a power of ten of the window")
     for (const canvas of [this.#wellCanvas, this.#sectionCanvas]) canvas.style.cssText = STYLE
     this.#trails.checked = false
     el.replaceChildren(
-      makeElement("div", {className: "row"}, this.#where, this.#count, this.#otherStarts),
-      makeElement("label", {className: "row radius"}, "Radius ", this.#radius, this.#radiusText),
-      makeElement("div", {className: "row"}, this.#play, this.#step),
-      makeElement("div", {className: "row"}, this.#rail, this.#timeText),
+      makeElement("div", {className: "row"}, this.#where, this.#count, this.#otherStartsButton),
+      makeElement("label", {className: "row radius"}, "Radius ", this.#radius, this.#radiusOutput),
+      makeElement("div", {className: "row"}, this.#playButton, this.#stepButton),
+      makeElement("div", {className: "row"}, this.#timeSlider, this.#timeOutput),
       makeElement(
         "div",
         {className: "row"},
@@ -113,13 +113,13 @@ class EnsemblePlayer {
   #where
   #count
   #pace
-  #otherStarts = makeElement("button", {type: "button", className: "bk-btn"}, "Other starts")
-  #play = makeElement("button", {type: "button", className: "bk-btn play"})
-  #step = makeElement("button", {type: "button", className: "bk-btn"}, "Step")
-  #rail = makeElement("input", {type: "range", min: 0, max: RAIL_STEPS, step: 1, value: 0})
-  #timeText = makeElement("output")
+  #otherStartsButton = makeElement("button", {type: "button", className: "bk-btn"}, "Other starts")
+  #playButton = makeElement("button", {type: "button", className: "bk-btn play"})
+  #stepButton = makeElement("button", {type: "button", className: "bk-btn"}, "Step")
+  #timeSlider = makeElement("input", {type: "range", min: 0, max: SLIDER_STEPS, step: 1, value: 0})
+  #timeOutput = makeElement("output")
   #radius = makeElement("input", {type: "range", step: 0.5})
-  #radiusText = makeElement("output")
+  #radiusOutput = makeElement("output")
   #trails = makeElement("input", {type: "checkbox"})
   #loop = makeElement("input", {type: "checkbox"})
   #note = makeElement("p", {className: "quiet"})
@@ -148,10 +148,10 @@ class EnsemblePlayer {
     this.#where.onchange = () => this.#choose({where: this.#where.value})
     this.#count.onchange = () => this.#choose({count: Number(this.#count.value)})
     this.#radius.oninput = () => this.#choose({radius: Number(this.#radius.value)})
-    this.#otherStarts.onclick = () => this.#choose({seed: model.seed + 1})
-    this.#play.onclick = () => this.#setPlaying(this.#playFrame === 0)
-    this.#step.onclick = () => this.#goTo(PACES[this.#pace.value](this.#time, STEP_SECONDS))
-    this.#rail.oninput = () => this.#goTo((this.#rail.valueAsNumber / RAIL_STEPS) * LONGEST_TIME)
+    this.#otherStartsButton.onclick = () => this.#choose({seed: model.seed + 1})
+    this.#playButton.onclick = () => this.#setPlaying(this.#playFrame === 0)
+    this.#stepButton.onclick = () => this.#goTo(PACES[this.#pace.value](this.#time, STEP_SECONDS))
+    this.#timeSlider.oninput = () => this.#goTo((this.#timeSlider.valueAsNumber / SLIDER_STEPS) * LONGEST_TIME)
     model.on("places", () => {
       this.#where.replaceChildren(...makeOptions(model.places))
       this.#where.value = model.where
@@ -180,7 +180,7 @@ class EnsemblePlayer {
     this.#where.value = where
     this.#count.value = String(count)
     this.#radius.value = String(radius)
-    this.#radiusText.textContent = `10^${radius}`
+    this.#radiusOutput.textContent = `10^${radius}`
     this.#radius.closest(".radius").hidden = where !== "disc"
     const shown = present()
     const scene = shown?.scene() ?? null
@@ -260,8 +260,8 @@ class EnsemblePlayer {
   /** Label the button for playing by what it does. */
   #labelPlay() {
     const isPlaying = this.#playFrame !== 0
-    this.#play.textContent = isPlaying ? "❚❚ Pause" : "▶ Watch them leave"
-    this.#play.setAttribute("aria-pressed", String(isPlaying))
+    this.#playButton.textContent = isPlaying ? "❚❚ Pause" : "▶ Watch them leave"
+    this.#playButton.setAttribute("aria-pressed", String(isPlaying))
   }
 
   /** Go to a time, in units of the well. @param {number} time */
@@ -274,7 +274,7 @@ class EnsemblePlayer {
   #draw() {
     const [ensemble, shown] = [this.#ensemble, present()]
     this.#labelPlay()
-    for (const control of [this.#play, this.#step, this.#rail]) control.disabled = !ensemble?.count
+    for (const control of [this.#playButton, this.#stepButton, this.#timeSlider]) control.disabled = !ensemble?.count
     this.#note.textContent = this.#explain()
     if (!ensemble || !shown) {
       for (const canvas of [this.#wellCanvas, this.#sectionCanvas]) canvas.style.display = "none"
@@ -282,8 +282,8 @@ class EnsemblePlayer {
     }
     if (!this.#wellCanvas.isConnected) shown.host.append(this.#wellCanvas, this.#sectionCanvas)
     const time = this.#time * shown.system.units.time
-    this.#rail.valueAsNumber = (RAIL_STEPS * this.#time) / LONGEST_TIME
-    this.#timeText.textContent = `t = ${time.toFixed(time < 100 ? 1 : 0)}`
+    this.#timeSlider.valueAsNumber = (SLIDER_STEPS * this.#time) / LONGEST_TIME
+    this.#timeOutput.textContent = `t = ${time.toFixed(time < 100 ? 1 : 0)}`
     this.#paintWell(ensemble, shown)
     this.#paintSection(ensemble, shown)
     // Numbers that change in every frame could not be read.

@@ -4,7 +4,7 @@
  *
  * @typedef {object} Coding
  * @property {[number, number][]} outcomes  fate and code of the outcomes that are not escapes
- * @property {number} first  code of the first end, and of the first class of crossings
+ * @property {number} firstClass  code of the first end, and of the first class of crossings
  * @property {number[]} ends  place of each outcome, from fate 1, among all ends
  * @property {string[]} words  descriptions of all ends
  * @property {number[]} leastCrossings  fewest crossings of each class
@@ -28,7 +28,7 @@ import {energyAxis} from "../engine/starts.js"
  * @returns {Columns}
  */
 export function pixelColumns(coding, view, pixels, serverColumns, compared) {
-  const {outcomes, first, ends, leastCrossings} = coding
+  const {outcomes, firstClass, ends, leastCrossings} = coding
   const {window, columns, rows} = view
   const codes = new Map(outcomes)
   const count = columns * rows
@@ -37,8 +37,8 @@ export function pixelColumns(coding, view, pixels, serverColumns, compared) {
   for (let i = 0; i < count; i++) {
     // Undefined for an escape.
     const outcome = codes.get(pixels.fate[i])
-    fate[i] = outcome ?? first + ends[pixels.fate[i] - 1]
-    crossingClass[i] = outcome ?? first + leastCrossings.findLastIndex(least => pixels.crossings[i] >= least)
+    fate[i] = outcome ?? firstClass + ends[pixels.fate[i] - 1]
+    crossingClass[i] = outcome ?? firstClass + leastCrossings.findLastIndex(least => pixels.crossings[i] >= least)
   }
   const [Bytes, Floats] = [serverColumns.fate[0].constructor, serverColumns.escape_time[0].constructor]
   const shape = [rows, columns]
