@@ -79,7 +79,7 @@ class ProcessState:
     _turns: WeakKeyDictionary[asyncio.AbstractEventLoop, asyncio.Lock] = field(default_factory=WeakKeyDictionary, init=False)
 
     def __post_init__(self) -> None:
-        compiled_operations.most = self.settings.compiled_operations
+        compiled_operations.limit = self.settings.compiled_operations
         self.jobs = Jobs(
             cache_bytes=self.settings.cache_bytes,
             most_orbits=self.settings.most_orbits,

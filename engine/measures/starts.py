@@ -153,10 +153,11 @@ def checked_dataset(name: str, value: Any, arrays: Collection[str], legal: str) 
     legal
         Description of what is legal, for messages.
     """
+    # Any other value counts as a dataset without arrays.
     dataset: Any = with_present_names(value) if hasattr(value, "data_vars") else {}
-    missing = [array for array in arrays if array not in dataset]
-    if "fate" in missing:
+    if "fate" not in dataset:
         raise ValueError(f"{name}={short_repr(value)}: must be {legal}")
+    missing = [array for array in arrays if array not in dataset]
     if missing:
         raise ValueError(f"{name}: a dataset of a map without {', '.join(missing)}; must have all arrays of the map")
     if dataset["fate"].ndim > 2:

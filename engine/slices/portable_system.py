@@ -11,7 +11,7 @@ from engine.exits.exit_rows import exit_gates
 from engine.exits.exit_tables import ExitTable, tabulate_exits
 from engine.exits.interior import find_inner_radius, tabulate_polynomial
 from engine.integrator.jit.kernel_module import HEAP_CELL
-from engine.integrator.jit.webassembly import FUNCTIONS, PAIR, webassembly_module
+from engine.integrator.jit.webassembly import FUNCTIONS, VECTOR_LANES, webassembly_module
 from engine.integrator.kernels import events, exit_geometry, slice_starts
 from engine.integrator.kernels.random_starts import BEFORE_EXIT
 from engine.integrator.source.recurrence import ROWS, TOLERANCE, generate_code
@@ -66,7 +66,7 @@ class PortableSystem:
             "layout": {
                 "order": ORDER,
                 "rows": ROWS,
-                "lanes_together": PAIR,
+                "lanes_together": VECTOR_LANES,
                 "tolerance": TOLERANCE,
                 "heap": HEAP_CELL,
                 "beforeExit": BEFORE_EXIT,

@@ -56,7 +56,7 @@ class BasinMeasuresView:
     def __init__(self, state: ViewState, on_measure: Callable[[str], None], on_copy: Callable[[str], None]) -> None:
         slow = [measure for measure in DESCRIBED_MEASURES if measure.slow]
         self.buttons = {one.name: button(f"Measure the {one.title.lower()}", partial(on_measure, one.name)) for one in slow}
-        self.whole = button(COUNT_WHOLE, lambda: state.param.update(box=None))
+        self.count_whole = button(COUNT_WHOLE, lambda: state.param.update(box=None))
         self.text = TextPane("", name="measures", sizing_mode="stretch_width")
         self.copy = copy_button(self._rows, on_copy)
         self._sentences: dict[str, str] = {}
@@ -71,7 +71,7 @@ class BasinMeasuresView:
 
     def _follow_box(self, box: Window | None) -> None:
         """Name the region of the measures, the whole view for None, and remove slow measures of the previous region."""
-        self.whole.visible = box is not None
+        self.count_whole.visible = box is not None
         self._remove([measure.name for measure in DESCRIBED_MEASURES if measure.slow and counts_in_box(measure)])
 
     def show(self, name: str, result: Any) -> None:
@@ -102,7 +102,7 @@ class BasinMeasuresView:
         return [self._build_texts, lambda: [self.survival.build()], lambda: [self.uncertainty.build()]]
 
     def _build_texts(self) -> list[pn.viewable.Viewable]:
-        return [pn.Column(self.text, self.whole, self.copy, *self.buttons.values(), margin=0)]
+        return [pn.Column(self.text, self.count_whole, self.copy, *self.buttons.values(), margin=0)]
 
     def _remove(self, names: list[str]) -> None:
         for name in names:
@@ -130,7 +130,7 @@ class BasinMeasuresView:
         return [row for title, result in results for row in number_rows(title, result.numbers())]
 
     def _write(self) -> None:
-        region = "In the box drawn on the maps" if self.whole.visible else "In the whole view"
+        region = "In the box drawn on the maps" if self.count_whole.visible else "In the whole view"
         described = [(one, self._sentences[one.name]) for one in DESCRIBED_MEASURES if one.name in self._sentences]
         body = "".join(_measure_section(measure, self._results.get(measure.name), sentence) for measure, sentence in described)
         table = f"<table aria-label='measures'><caption>{region}</caption>{body}</table>" if body else ""

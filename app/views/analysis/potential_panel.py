@@ -80,7 +80,7 @@ class PotentialPanel:
         )
         self.typeset = TextPane("", css_classes=["typeset"], sizing_mode="stretch_width", margin=0)
         self.message = StatusPane("", css_classes=["potential-message"], sizing_mode="stretch_width", margin=0)
-        self.move = button("Use this well", self._move, visible=False, margin=(8, 0))
+        self.use_well = button("Use this well", self._use_well, visible=False, margin=(8, 0))
         self.additions = [
             *(button(label, partial(self._add, term=term), margin=0) for label, term in _TERMS.items()),
             *(button(label, partial(self._add, clause=clause), margin=0) for label, clause in _CLAUSES.items()),
@@ -97,7 +97,7 @@ class PotentialPanel:
 
     def build(self) -> list[pn.viewable.Viewable]:
         """Return the parts of a column, parts of fixed height first: no part moves while the formula is typed."""
-        buttons = flex_row(self.reset, self.move, gap="8px")
+        buttons = flex_row(self.reset, self.use_well, gap="8px")
         return [
             self.known,
             self.formula,
@@ -176,7 +176,7 @@ class PotentialPanel:
     def _offer(self, well: tuple[float, float] | None) -> None:
         """Offer to move the axes to a well; None offers nothing."""
         self._offered_well = well
-        self.move.visible = well is not None
+        self.use_well.visible = well is not None
 
     def _choose(self, system: System) -> None:
         """Show a system in all widgets, and propose it."""
@@ -214,7 +214,7 @@ class PotentialPanel:
         self._show_around_text(used if text == _formula_of(used) else _typed_system(text, self.shown))
         self._propose(self.shown, done=done)
 
-    def _move(self) -> None:
+    def _use_well(self) -> None:
         if self._offered_well is not None:
             x, y = self._offered_well
             typed = self.shown.as_typed

@@ -46,9 +46,9 @@ class StatisticsView:
         self._times = HistogramView(TIMES, _TIMES_TEXT)
         self._probabilities = HistogramView(PROBABILITIES, _PROBABILITIES_TEXT)
         self.table = TextPane("", name="statistics", sizing_mode="stretch_width")
-        self.whole = button(COUNT_WHOLE, lambda: state.param.update(box=None))
+        self.count_whole = button(COUNT_WHOLE, lambda: state.param.update(box=None))
         self.copy = copy_button(self._rows, on_copy)
-        state.follow(lambda box: self.whole.param.update(visible=box is not None), "box")
+        state.follow(lambda box: self.count_whole.param.update(visible=box is not None), "box")
         state.param.watch(lambda *events: self._count(), ["box", "analysis", "palette"])
         results.param.watch(lambda event: self._take_frame(event.new), "frame")
 
@@ -63,7 +63,7 @@ class StatisticsView:
         return [self._build_table, lambda: [self._times.build()], lambda: [self._probabilities.build()]]
 
     def _build_table(self) -> list[pn.viewable.Viewable]:
-        return [pn.Column(self.whole, self.table, self.copy, margin=0, css_classes=["plot"])]
+        return [pn.Column(self.count_whole, self.table, self.copy, margin=0, css_classes=["plot"])]
 
     def _count(self) -> None:
         """Count and show the pixels of the last frame, if the tab is open."""

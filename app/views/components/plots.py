@@ -182,19 +182,19 @@ class LaterGlyphs:
 
     def __init__(self, add: Callable[[figure], object]) -> None:
         self._add = add
-        self._plots: list[figure] = []
+        self._waiting_plots: list[figure] = []
         self._is_drawn = False
 
-    def expect(self, plot: figure) -> None:
-        """Take a figure for the glyphs, which are added at once if other figures have them, otherwise by `draw`."""
+    def add_figure(self, plot: figure) -> None:
+        """Add the glyphs to a figure, at once if other figures have them, otherwise when `draw` is called."""
         if self._is_drawn:
             self._add(plot)
         else:
-            self._plots.append(plot)
+            self._waiting_plots.append(plot)
 
     def draw(self) -> None:
         """Add the glyphs to the figures that lack them, and to later figures."""
-        plots, self._plots, self._is_drawn = self._plots, [], True
+        plots, self._waiting_plots, self._is_drawn = self._waiting_plots, [], True
         document = plots[0].document if plots else None
         # With the models frozen, Bokeh searches the page once for all new models.
         with document.models.freeze() if document is not None else nullcontext():

@@ -18,7 +18,7 @@ from plots.pictures.image_columns import NO_LAYER, difference_column, map_column
 Columns = dict[str, list[Any]]
 """Columns of a data source of maps."""
 
-# Columns of the other map.
+# The columns of `map_columns` that drawing, hover text and comparison of the other map need.
 _MAP_COLUMNS = ("fate", "x", "y", "dw", "dh", "ends")
 
 

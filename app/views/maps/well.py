@@ -50,7 +50,7 @@ class WellView:
         self.plot = map_figure("well", TITLE, *self._ranges)
         self._outlines.draw(self.plot, full=True)
         self._orbit_glyphs = LaterGlyphs(self._add_orbits)
-        self._orbit_glyphs.expect(self.plot)
+        self._orbit_glyphs.add_figure(self.plot)
         self.pane = FigurePane(self.plot)
         state.param.watch(lambda event: self._outline(), "palette")
 
@@ -105,7 +105,7 @@ class WellView:
     def describe(self) -> None:
         """Write title, legend and names of the axes around the frame."""
         if self._outline_key is not None:
-            spec = self._outline_key[0]
+            spec, _ = self._outline_key
             annotate_picture(self.plot, TITLE, spec.plane.axis_symbols, legend_items(self._outlines.entries(spec)))
 
     def _outline(self) -> None:
@@ -119,12 +119,12 @@ class WellView:
         if chosen is not None and (spec.common_energy is None or spec.plane.parameter is not None):
             # On a slice of several energies or potentials, the chosen orbit determines the well.
             potential, energy = chosen.orbit.potential or potential, chosen.orbit.energy
-        key = well_spec(potential, energy), self._state.colours
-        if key == self._outline_key:
+        outlined_spec = well_spec(potential, energy)
+        if (outlined_spec, self._state.colours) == self._outline_key:
             return
-        self._outline_key = key
-        self._outlines.show(key[0])
-        self._go_to(key[0].find_window())
+        self._outline_key = outlined_spec, self._state.colours
+        self._outlines.show(outlined_spec)
+        self._go_to(outlined_spec.find_window())
         self.describe()
 
     def _go_to(self, window: Window) -> None:

@@ -67,9 +67,7 @@ class EnsemblePlayer(JSComponent):
     counts = param.List(default=list(COUNTS), doc="numbers of orbits to choose from")
     radii = param.List(default=[SMALLEST_LOG_RADIUS, LARGEST_LOG_RADIUS], doc="log10 of the smallest and the largest radius")
     places = param.Dict(default={}, doc="phrase of each place of starts in the system")
-    explanations = param.Dict(
-        default={str(where): sentence for where, sentence in EXPLANATIONS.items()}, doc="explanation of some places"
-    )
+    explanations = param.Dict(default={str(place): text for place, text in EXPLANATIONS.items()}, doc="texts about some places")
     where = param.String(doc="see `WatchedStarts`")
     count = param.Integer()
     seed = param.Integer()

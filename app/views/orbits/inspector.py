@@ -15,7 +15,15 @@ from app.views.orbits.separation_plot import SeparationPlot
 
 
 class Inspector:
-    """Arranges the verdict on the chosen orbit, the player, histories, indicators and values, and the boxes to type a start."""
+    """Arranges the verdict on the chosen orbit, the player, histories, indicators and values, and the boxes to type a start.
+
+    Parameters
+    ----------
+    controls, player, plots, separation
+        The parts of the inspector.
+    later
+        Wraps a function to run in a later iteration of the event loop. Texts and figures are made later than the inspector.
+    """
 
     def __init__(
         self, controls: OrbitControls, player: OrbitPlayer, plots: OrbitPlots, separation: SeparationPlot, later: Later
@@ -28,14 +36,9 @@ class Inspector:
         self._figure_panes: list[pn.viewable.Viewable] = []
         self._build_later = later(self._build_texts)
         self._figures_in_turns = InTurns([*plots.parts(), separation.build], self._add_figures, later)
-        self._start_boxes = controls.start_boxes()
+        self._boxes = controls.start_boxes()
         self._grid = pn.Column(
-            controls.note,
-            *self._start_boxes,
-            sizing_mode="stretch_width",
-            margin=0,
-            styles=FULL_HEIGHT,
-            css_classes=["inspector"],
+            controls.note, *self._boxes, sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=["inspector"]
         )
 
     def layout(self) -> pn.viewable.Viewable:
@@ -64,6 +67,6 @@ class Inspector:
         has_starts = self._start_count >= 1
         figures = self._figure_panes if self._orbit_count >= 1 else []
         results = [*figures, *self._details] if has_starts else []
-        parts = [*(self._head if has_starts else []), self._controls.note, *results, *self._start_boxes]
+        parts = [*(self._head if has_starts else []), self._controls.note, *results, *self._boxes]
         if parts != self._grid.objects:
             self._grid.objects = parts

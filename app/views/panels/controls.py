@@ -134,19 +134,12 @@ class Controls:
 
     def _build_quality(self) -> list[pn.viewable.Viewable]:
         """Make the lists of t_max, resolution and colours, and the switch for the scale of escape times."""
+        is_locked = lambda times: times is not None  # noqa: E731
         return [
             self._make_list("t_max", "t_max", allowed_t_max()),
             self._make_list("resolution", "Resolution", allowed_resolutions()),
             self._make_list("palette", "Colours", {palette.name: key for key, palette in PALETTES.items()}),
-            switch(
-                "Escape times",
-                LOCK_SCALE,
-                self.state,
-                "lock_times",
-                lambda times: times is not None,
-                self._lock_times,
-                margin=(0, 10),
-            ),
+            switch("Escape times", LOCK_SCALE, self.state, "lock_times", is_locked, self._lock_times, margin=(0, 10)),
         ]
 
     def _make_list(self, name: str, label: str, options: dict[str, Any]) -> pn.viewable.Viewable:

@@ -26,7 +26,17 @@ MAPS, ORBITS, CURVES, SCRIPT = "Maps (NetCDF)", "Orbits (CSV)", "Curves (CSV)", 
 
 
 class Downloads:
-    """Buttons that copy links, and buttons that make files."""
+    """Buttons that copy links, and buttons that make files.
+
+    Parameters
+    ----------
+    state, results
+        State and results of the session.
+    copy_link, copy_embed_code
+        Copy the address of the page, and the HTML of a frame with one picture.
+    on_copied
+        Handles whether the browser has copied an image.
+    """
 
     def __init__(
         self,
