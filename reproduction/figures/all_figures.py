@@ -65,8 +65,8 @@ def _case_figures(case: str) -> Sequence[FigureEntry]:
         ("times-xpx", f"escape times on (x, px) at nine energies: {times}", _nine_maps(Plane.X_PX, "times")),
         (
             "crossings-xpx",
-            "upward crossings of y = 0 before the escape, on (x, px) at nine energies: 0 red, 1 blue, 2 magenta, 3 to 10 "
-            "orange, more green, bounded grey",
+            "upward crossings of y = 0 before the escape, on (x, px) at nine energies: 0, 1, 2, 3 to 10 and more from light to "
+            "dark blue, bounded grey",
             _nine_maps(Plane.X_PX, "crossings"),
         ),
         ("percentages", "shares of bounded starts and of each channel against h, on (x, y) and (x, px)", draw_percentages),

@@ -21,7 +21,7 @@ from app.browser.module_files import NUMBERS_MODULE
 from app.state.help_texts import title_with_help
 from engine import Window
 from plots.pictures.axis_labels import find_offset
-from plots.pictures.histories import find_decades
+from plots.pictures.histories import logarithmic_limits
 
 _OFFSET_LABEL_CODE = callback_code(Path(__file__).with_name("offset_ticks.js"), "offsetLabel(tick, base, unit)")
 
@@ -209,7 +209,7 @@ def set_range(axis_range: Range1d, low: float, high: float) -> None:
 
 def set_decades(axis_range: Range1d, low: float, high: float) -> None:
     """Set the ends of a logarithmic axis: the power of ten below `low`, and a number a little above `high`."""
-    set_range(axis_range, *find_decades(low, high))
+    set_range(axis_range, *logarithmic_limits(low, high))
 
 
 def chart_hover(text: str, renderers: Sequence[GlyphRenderer], **options: Any) -> HoverTool:
