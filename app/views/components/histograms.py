@@ -43,9 +43,11 @@ class HistogramView:
         """Show a chart."""
         self._charts.send(chart)
 
-    def build(self) -> pn.pane.HoloViews:
-        """Return the pane with the histogram."""
-        return pn.pane.HoloViews(hv.DynamicMap(self._draw, streams=[self._charts]), margin=0, sizing_mode="stretch_width")
+    def build(self) -> pn.pane.Bokeh:
+        """Return the pane with the histogram, whose figure stays the same when other tabs have been shown in between."""
+        # Panel's pane for HoloViews would draw a new figure each time it returns to the page.
+        drawing = hv.renderer("bokeh").get_plot(hv.DynamicMap(self._draw, streams=[self._charts]))
+        return pn.pane.Bokeh(drawing.state, margin=0)
 
     def _draw(self, data: Chart) -> hv.Histogram:
         (element,) = chart_elements(data)
