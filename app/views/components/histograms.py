@@ -37,6 +37,7 @@ class HistogramView:
 
     def __init__(self, frame: Frame, text: str) -> None:
         self._frame, self._text = frame, text
+        self._labels = CustomJSTickFormatter(code=_TICK)
         self._charts = hv.streams.Pipe(data=_empty_chart(frame))
 
     def show(self, chart: Chart) -> None:
@@ -52,9 +53,7 @@ class HistogramView:
     def _draw(self, data: Chart) -> hv.Histogram:
         (element,) = chart_elements(data)
         x_limits = data.limits[0]
-        ticks: dict[str, Any] = {}
-        if "x" in self._frame.logarithmic and x_limits is not None:
-            ticks = {"xticks": _few_ticks(*x_limits), "xformatter": CustomJSTickFormatter(code=_TICK)}
+        ticks = {"xticks": _few_ticks(*x_limits)} if "x" in self._frame.logarithmic and x_limits is not None else {}
         return element.opts(
             color=MEASURED,
             line_color=None,
@@ -65,6 +64,8 @@ class HistogramView:
             toolbar=None,
             default_tools=[],
             hooks=[self._style],
+            xformatter=self._labels,
+            yformatter=self._labels,
             **axis_options(data),
             **ticks,
         )

@@ -215,6 +215,11 @@ def set_decades(edges: Range1d, low: float, high: float) -> None:
     set_range(edges, *find_decades(low, high))
 
 
+def hover_html(text: str) -> str:
+    """Return the HTML of a hover text in the type of the page, whose stylesheet does not reach into a tooltip."""
+    return f'<style>b {{ font-weight: 600 }}</style><div style="font-size:12px;line-height:16px;color:var(--ui-ink)">{text}</div>'
+
+
 def chart_hover(text: str, renderers: Sequence[GlyphRenderer], **options: Any) -> HoverTool:
     """Return a tool that describes the points of a chart under the mouse.
 
@@ -228,6 +233,5 @@ def chart_hover(text: str, renderers: Sequence[GlyphRenderer], **options: Any) -
         Options of `bokeh.models.HoverTool`.
     """
     formatters = {value: CustomJSHover(code=HOVER_FORMATS[name]) for value, name in _HOVER_VALUE.findall(text)}
-    html = _HOVER_VALUE.sub(r"\1{custom}", text)
-    tooltips = f'<div style="font-size:12px;line-height:16px;color:var(--ui-ink)">{html}</div>'
+    tooltips = hover_html(_HOVER_VALUE.sub(r"\1{custom}", text))
     return HoverTool(tooltips=tooltips, formatters=formatters, renderers=list(renderers), visible=False, **options)

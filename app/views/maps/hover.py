@@ -5,7 +5,7 @@ from __future__ import annotations
 from bokeh.models import ColumnDataSource, CustomJSHover, HoverTool, Range1d
 
 from app.browser.javascript import callback_code
-from app.views.components.plots import HOVER_TEXTS
+from app.views.components.plots import HOVER_TEXTS, hover_html
 from engine import Evidence, Fate
 from engine.propagation.fates import describe_evidence
 from plots.layers.table import LAYERS
@@ -17,10 +17,8 @@ _FATE = callback_code(HOVER_TEXTS, "fateName(value, names, maps.data)")
 _PLACE = callback_code(HOVER_TEXTS, "coordinate(value, range)")
 
 _DETAILS_TEXT = '<div style="white-space:pre-line">@crossing_class{custom}</div>'
-_TEXT = (
-    '<div style="font-size:12px;line-height:16px;color:var(--ui-ink)"><b>@fate{{custom}}</b>'
-    "{details}<div>($x{{custom}}, $y{{custom}})</div></div>"
-)
+_FATE_TEXT = "<b>@fate{custom}</b>"
+_PLACE_TEXT = "<div>($x{custom}, $y{custom})</div>"
 
 _FATES = list(OUTCOMES.values())
 
@@ -36,9 +34,8 @@ def fate_hover(source: ColumnDataSource, x: Range1d, ordinate: Range1d) -> Hover
         Ranges of the pictures.
     """
     formatters = _fate_and_place(source, x, ordinate)
-    return HoverTool(
-        tooltips=_TEXT.format(details=""), formatters=formatters, attachment="vertical", show_arrow=False, renderers=[]
-    )
+    text = hover_html(_FATE_TEXT + _PLACE_TEXT)
+    return HoverTool(tooltips=text, formatters=formatters, attachment="vertical", show_arrow=False, renderers=[])
 
 
 def _fate_and_place(source: ColumnDataSource, x: Range1d, ordinate: Range1d) -> dict[str, CustomJSHover]:
@@ -78,5 +75,5 @@ def pixel_hover(source: ColumnDataSource, compared: ColumnDataSource, x: Range1d
     }
     arguments = {"maps": source, "compared": compared, "codes": codes, "words": words}
     formatters = _fate_and_place(source, x, ordinate) | {"@crossing_class": CustomJSHover(args=arguments, code=_DETAILS)}
-    text = _TEXT.format(details=_DETAILS_TEXT)
+    text = hover_html(_FATE_TEXT + _DETAILS_TEXT + _PLACE_TEXT)
     return HoverTool(tooltips=text, formatters=formatters, attachment="vertical", show_arrow=False, renderers=[])
