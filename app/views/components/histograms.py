@@ -61,6 +61,7 @@ class HistogramView:
             responsive=True,
             aspect=_ASPECT,
             title="",
+            fontsize={"ticks": "12px", "labels": "12px"},
             toolbar=None,
             default_tools=[],
             hooks=[self._style],

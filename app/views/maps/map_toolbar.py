@@ -11,6 +11,7 @@ import panel as pn
 from bokeh.models import BoxSelectTool, BoxZoomTool, CrosshairTool, HoverTool, PanTool, Span, Toolbar, WheelZoomTool
 
 from app.state.view_state import ViewState
+from app.views.components.theme import INK_LINE
 from app.views.components.widgets import SegmentedControl, button, flex_row, keep_place
 
 
@@ -40,7 +41,7 @@ class MapTools:
 
     def __init__(self, state: ViewState, *hovers: HoverTool) -> None:
         pan, wheel = PanTool(), WheelZoomTool()
-        spans = [Span(dimension=dimension, line_alpha=0.35) for dimension in ("width", "height")]
+        spans = [Span(dimension=dimension, line_alpha=0.35, styles=INK_LINE) for dimension in ("width", "height")]
         tools = [pan, wheel, CrosshairTool(overlay=spans), *hovers]
         self.toolbar = Toolbar(tools=tools, active_drag=pan, active_scroll=wheel)
         self._drags: dict[Drag, Any] = {Drag.PAN: pan}

@@ -56,6 +56,11 @@ def test_the_charts_count_every_escape(state: ViewState, view: StatisticsView, c
     assert probabilities["top"][0] == pytest.approx(statistics.direct_share)
 
 
+def test_numbers_on_the_axes_keep_their_size_with_each_count(state: ViewState, charts: list[figure]) -> None:
+    state.analysis = Analysis.STATISTICS
+    assert {axis.major_label_text_font_size for chart in charts for axis in (*chart.below, *chart.left)} == {"12px"}
+
+
 def test_a_chart_that_returns_to_the_page_is_not_drawn_again(view: StatisticsView) -> None:
     for make in view.parts()[1:]:
         content = list(make())
