@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 import panel as pn
 from bokeh.events import Tap
-from bokeh.models import Range1d, Span
+from bokeh.models import Range1d
 
 from app.state.view_state import ViewState
 from app.views.components.charts import ChartView
 from app.views.components.collapsible_section import InTurns, Later
+from app.views.components.plots import moving_line
 from app.views.components.texts import TextPane, plain_symbol
-from app.views.components.theme import INK_LINE
 from app.views.components.widgets import FULL_HEIGHT, button, flex_row
 from engine import Measure, System
 from engine.foundations.wording import format_number, format_whole
@@ -81,7 +81,7 @@ class CurvesView:
             SHARES.name: ChartView(measure_frame(SHARES), _SHARES_TEXT, Shape.LINE, **options),
             **{each.name: ChartView(measure_frame(each), _panel_text(each), **options) for each in CURVE_PANELS},
         }
-        self._mark_line = Span(location=0.0, dimension="height", styles=INK_LINE, line_dash="dotted")
+        self._mark_line = moving_line("height", location=0.0, line_dash="dotted")
         self._charts_in_turns = InTurns([partial(self._build_chart, chart) for chart in self._charts.values()], self._add, later)
         self._plots = pn.Column(sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=["curves"], visible=False)
         state.follow(self._follow_system, "system")

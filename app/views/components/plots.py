@@ -12,7 +12,7 @@ from typing import Any
 import panel as pn
 from bokeh.events import Event
 from bokeh.model import Model
-from bokeh.models import BasicTickFormatter, CustomJSHover, CustomJSTickFormatter, GlyphRenderer, HoverTool, Range1d
+from bokeh.models import BasicTickFormatter, CustomJSHover, CustomJSTickFormatter, GlyphRenderer, HoverTool, Range1d, Span
 from bokeh.models.dom import HTML
 from bokeh.plotting import figure
 
@@ -213,6 +213,11 @@ def set_range(edges: Range1d, low: float, high: float) -> None:
 def set_decades(edges: Range1d, low: float, high: float) -> None:
     """Set the ends of a logarithmic axis: the power of ten below `low`, and a number a little above `high`."""
     set_range(edges, *find_decades(low, high))
+
+
+def moving_line(dimension: str, **options: Any) -> Span:
+    """Return a line across figures in the colour of the text. The figures are not painted again when the line moves."""
+    return Span(dimension=dimension, level="overlay", styles={"--bk-line-color": "var(--ui-ink)"}, **options)
 
 
 def hover_html(text: str) -> str:

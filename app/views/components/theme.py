@@ -17,9 +17,6 @@ from plots.pictures.palette import DARK, LIGHT
 THEME_KEY = "escape-explorer-theme"
 """Key of the chosen theme, "light" or "dark", in the browser's local storage."""
 
-INK_LINE = {"--bk-line-color": "var(--ui-ink)"}
-"""Styles of an annotation whose line has the colour of the text, in each theme."""
-
 # JavaScript of a transform. On a dark page, it replaces `x`, the colour on a light page.
 _THEME_COLOUR = "return document.documentElement.dataset.theme === 'dark' ? dark : x"
 

@@ -36,8 +36,7 @@ from app.views.components.orbit_lines import (
     opacities,
     orbit_colours,
 )
-from app.views.components.plots import FigurePane, history_figure, set_range
-from app.views.components.theme import INK_LINE
+from app.views.components.plots import FigurePane, history_figure, moving_line, set_range
 from engine import CASES, integrate_orbit, start_states
 from engine.slices.planes import SECTION
 from plots.pictures.histories import has_log_time
@@ -69,7 +68,7 @@ class OrbitPlots:
         self._histories = {name: lines(f"{name}_histories") for name in self._y_ranges}
         self._bands = {name: lines(f"{name}_bands") for name in self._y_ranges}
         self._plots: dict[str, figure] = {}
-        self._time_mark = Span(location=0.0, dimension="height", styles=INK_LINE, line_dash="dotted", visible=False)
+        self._time_mark = moving_line("height", location=0.0, line_dash="dotted", visible=False)
         self._orbits: list[tuple[int, OrbitCurves]] = []
 
     def parts(self) -> list[Build]:
