@@ -92,9 +92,9 @@ class MapRun:
         # Energy errors of orbits that an earlier map has finished, because their states are not stored; NaN for other orbits.
         self._earlier_errors: np.ndarray | None = None
         if resume is not None:
-            self._continue(resume)
+            self._continue_from(resume)
 
-    def _continue(self, earlier: EscapeMap) -> None:
+    def _continue_from(self, earlier: EscapeMap) -> None:
         """Copy the outcomes of an earlier map, and the states of the orbits that a larger t_max can change."""
         assert earlier.batch is not None
         continued_pixels = earlier.continued_pixels

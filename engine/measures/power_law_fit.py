@@ -249,7 +249,7 @@ def _select_by_expected_pairs(indices: np.ndarray, epsilon: np.ndarray, n: np.nd
 
 def predict_shares(epsilon: np.ndarray, n: np.ndarray, k: np.ndarray) -> np.ndarray:
     """Return f of the most likely power law at each separation; at least two of the k must be above 0, and all k below n."""
-    design = _powers(np.log(epsilon), 1)
+    design = _scaled_powers(np.log(epsilon), 1)
     return np.exp(design @ _maximise_likelihood(design, n, k)[0])
 
 
@@ -260,7 +260,7 @@ def _fit_law(indices: np.ndarray, epsilon: np.ndarray, n: np.ndarray, k: np.ndar
     if indices.size < MIN_SEPARATIONS or np.ptp(np.log10(epsilon[indices])) < MIN_DECADES:
         return None
     x, n, k = np.log(epsilon[indices]), n[indices], k[indices]
-    design = _powers(x, 1)
+    design = _scaled_powers(x, 1)
     (level, slope), covariance = _maximise_likelihood(design, n, k)
     share = np.exp(design @ [level, slope])
     degrees_of_freedom = x.size - 2
@@ -283,14 +283,14 @@ def _fit_law(indices: np.ndarray, epsilon: np.ndarray, n: np.ndarray, k: np.ndar
 
 def _measure_bend(x: np.ndarray, n: np.ndarray, k: np.ndarray) -> float:
     """Return the quadratic term of log f in x, in standard errors that include the scatter about the fitted parabola."""
-    design = _powers(x, 2)
+    design = _scaled_powers(x, 2)
     coefficients, covariance = _maximise_likelihood(design, n, k)
     share = np.exp(design @ coefficients)
     scatter = np.sum((k - n * share) ** 2 / (n * share * (1.0 - share))) / (x.size - 3)
     return float(coefficients[2] / np.sqrt(covariance[2, 2] * max(scatter, 1.0)))
 
 
-def _powers(x: np.ndarray, degree: int) -> np.ndarray:
+def _scaled_powers(x: np.ndarray, degree: int) -> np.ndarray:
     """Return powers of x, shifted to mean 0 and scaled to a range of length 1, of shape (m, degree + 1)."""
     return np.vander((x - x.mean()) / np.ptp(x), degree + 1, increasing=True)
 

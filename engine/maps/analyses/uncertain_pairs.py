@@ -118,7 +118,7 @@ def compute_uncertainty_exponent(
     pairs = checked_count("pairs", pairs, 10, _MAX_PAIRS)
     separations = checked_count("separations", separations, 5, _MAX_SEPARATIONS)
     seed = checked_count("seed", seed, 0, 2**63 - 1)
-    # Type checkers know the type of `work` and would report that this check cannot fail; an `object` prevents this.
+    # With the declared type of `work`, type checkers would report that this check cannot fail; an `object` prevents this.
     given_work: object = work
     if not isinstance(given_work, numbers.Real) or not work > 0.0:
         raise ValueError(f"work={short_repr(work)}: must be above 0")
