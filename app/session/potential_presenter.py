@@ -80,7 +80,7 @@ class PotentialPresenter:
             self._request.cancel()
 
     def _take(self, system: System, *, done: bool) -> None:
-        """Review a system of the panel, after a running review. If each system cancelled it, no map would follow a steady drag."""
+        """Review a system of the panel, after a running review. If each system cancelled it, no map could follow a drag."""
         proposal = _Proposal(system, self._use if done else self._use_if_ready, done=done)
         if self._proposal is None or self._proposal.refuse is not None:
             self._propose(proposal)
