@@ -17,7 +17,7 @@ from bokeh.models.dom import HTML
 from bokeh.plotting import figure
 
 from app.browser.javascript import callback_code
-from app.browser.module_files import NUMBERS
+from app.browser.module_files import NUMBERS_MODULE
 from app.state.help_texts import title_with_help
 from engine import Window
 from plots.pictures.axis_labels import find_offset
@@ -25,7 +25,7 @@ from plots.pictures.histories import find_decades
 
 _OFFSET_LABEL_CODE = callback_code(Path(__file__).with_name("offset_ticks.js"), "offsetLabel(tick, base, unit)")
 
-HOVER_FORMATS = {name: callback_code(NUMBERS, f"{name}(value)") for name in ("number", "count", "percent")}
+HOVER_FORMATS = {name: callback_code(NUMBERS_MODULE, f"{name}(value)") for name in ("number", "count", "percent")}
 """JavaScript that formats a `value`: as a number of four digits, a whole number in groups of digits, or a percentage."""
 
 # A value in a hover text, with the name of its format.
