@@ -43,7 +43,15 @@ class _LayerResult(NamedTuple):
 
 
 class AnalysisPresenter:
-    """Requests the analyses that the view state asks for, shows them over the maps, and stores them in the session's results."""
+    """Requests the analyses that the view state asks for, shows them over the maps, and stores them in the session's results.
+
+    Parameters
+    ----------
+    context
+        The session.
+    maps
+        Shows the results of layers.
+    """
 
     def __init__(self, context: SessionContext, maps: MapsView) -> None:
         state, jobs, locked = context.state, context.jobs, context.locked
@@ -51,8 +59,8 @@ class AnalysisPresenter:
         self._state, self._results, self._maps = state, context.results, maps
         self._map_spec: MapSpec | None = None
         self._sweep_spec: SweepSpec | None = None
-        # The request of the curves that are shown, until curves of the next request arrive.
-        self._shown_spec: SweepSpec | None = None
+        # Specification of the shown curves. It differs from `_sweep_spec` until the first curves of a new sweep arrive.
+        self._shown_sweep_spec: SweepSpec | None = None
         self._results_by_layer: dict[str, _LayerResult] = {}
         self._sentences_by_name: dict[str, str] = {}
         self.notes = TextPane("", name="notes", sizing_mode="stretch_width", margin=(0, 10), css_classes=["notes"])
@@ -62,10 +70,15 @@ class AnalysisPresenter:
             name: LatestRequest(jobs, partial(self._show_slow_measure, name), partial(self.measures.say, name), locked)
             for name in self.measures.buttons
         }
-        state.param.watch(lambda event: self._cancel_box_measures(), "box")
+        watch = state.param.watch
+        watch(lambda event: self._cancel_box_measures(), "box")
         self._sweep_request = LatestRequest(jobs, self._show_curves, self._fail_sweep, locked)
         self._follow_ups = FollowUpRequests(state, jobs, self._list_follow_ups(), self._fail, locked)
-        self._connect()
+        self._results.param.watch(lambda event: self._follow_map(), "frame")
+        watch(self._switch_layers, "layers")
+        watch(lambda event: self._apply_settings(), "settings")
+        watch(lambda *events: self._stop_sweep(), ["system", "plane", "t_max"])
+        watch(lambda *events: self._show_curves(None), "system")
 
     def _list_follow_ups(self) -> list[FollowUp]:
         """Return the analyses of each complete map."""
@@ -88,21 +101,14 @@ class AnalysisPresenter:
             return
         self._map_spec = spec
         self._results_by_layer = {}
-        self._cancel_measures()
+        for request in self._measure_requests.values():
+            request.cancel()
         self._maps.overlays.begin(spec)
         self.measures.begin()
         if self._results.analyses != NO_ANALYSES:
             self._results.analyses = NO_ANALYSES
         self.show_notes(**dict.fromkeys(LAYERS, ""))
         self._explain_refusals()
-
-    def _connect(self) -> None:
-        watch = self._state.param.watch
-        self._results.param.watch(lambda event: self._follow_map(), "frame")
-        watch(self._switch_layers, "layers")
-        watch(lambda event: self._apply_settings(), "settings")
-        watch(lambda *events: self._stop_sweep(), ["system", "plane", "t_max"])
-        watch(lambda *events: self._show_curves(None), "system")
 
     def _layer_follow_up(self, layer: Layer) -> FollowUp:
         """Return the analysis of a layer, which is requested while the layer is on."""
@@ -134,9 +140,9 @@ class AnalysisPresenter:
 
     def _mark_computing(self) -> None:
         """Mark the layers of a complete map that have no complete result yet."""
-        whole = self._results.whole_map
-        requested = {layer.name for layer in self._layers_on() if whole is not None and not layer.refusal(whole.spec)}
-        complete = {name for name, found in self._results_by_layer.items() if _is_complete(found.result)}
+        whole_map = self._results.whole_map
+        requested = {layer.name for layer in self._layers_on() if whole_map is not None and not layer.refusal(whole_map.spec)}
+        complete = {name for name, known in self._results_by_layer.items() if _is_complete(known.result)}
         self._maps.mark_computing(frozenset(requested - complete))
 
     def _fail(self, sentence: str) -> None:
@@ -169,8 +175,8 @@ class AnalysisPresenter:
 
     def _apply_settings(self) -> None:
         """Select parts of the results anew, and remove results that were computed with other settings."""
-        for name, found in list(self._results_by_layer.items()):
-            if LAYERS[name].job(found.frame.spec, self._state.settings) == found.job:
+        for name, known in list(self._results_by_layer.items()):
+            if LAYERS[name].job(known.frame.spec, self._state.settings) == known.job:
                 self._show_selection(LAYERS[name])
             else:
                 self._remove_layer_result(name)
@@ -204,10 +210,6 @@ class AnalysisPresenter:
         self._measure_requests[name].cancel()
         self.measures.show(name, result)
 
-    def _cancel_measures(self) -> None:
-        for request in self._measure_requests.values():
-            request.cancel()
-
     def _cancel_box_measures(self) -> None:
         """Cancel the slow measures that depend on the box."""
         for name, request in self._measure_requests.items():
@@ -221,19 +223,23 @@ class AnalysisPresenter:
         if self.curves.running:
             self._stop_sweep()
             return
+        self._sweep_spec = self._make_sweep_spec(self.curves.against.value)
+        self.curves.show_running(True)
+        self._sweep_request.submit(sweep_job(self._sweep_spec))
+
+    def _make_sweep_spec(self, name: str) -> SweepSpec:
+        """Return the specification of a sweep along the energy, "h", or along the parameter of this name."""
         state, energies = self._state, self._state.energies
         plane = state.plane if state.plane.energy_axis is None and state.plane.parameter is None else SECTION
-        name, energy, along = self.curves.against.value, None, None
-        low, high = energies.low, energies.high
-        if name != "h":
+        if name == "h":
+            low, high, energy, along = energies.low, energies.high, None, None
+        else:
             low, high = default_range(state.system, name)
-            along, energy = ParameterAxis(name, low, high, state.system), state.energy
-        self._sweep_spec = SweepSpec(
+            energy, along = state.energy, ParameterAxis(name, low, high, state.system)
+        return SweepSpec(
             state.potential, plane, _sweep_values(low, high), _SWEEP_RESOLUTION, t_max=state.t_max, measures=CURVES, along=along,
             energy=energy, refine=REFINED_VALUES,
         )  # fmt: skip
-        self.curves.show_running(True)
-        self._sweep_request.submit(sweep_job(self._sweep_spec))
 
     def _stop_sweep(self) -> None:
         self._sweep_request.cancel()
@@ -246,13 +252,13 @@ class AnalysisPresenter:
     def _show_curves(self, curves: Sweep | None) -> None:
         if curves is not None and curves.complete:
             self._stop_sweep()
-        self._shown_spec = self._sweep_spec
+        self._shown_sweep_spec = self._sweep_spec
         self.curves.show(curves)
         self._results.curves = curves
 
     def _open_value(self, value: float) -> None:
         """Show the map of an energy, or of a value of the parameter, on the plane of the curves."""
-        spec = self._shown_spec
+        spec = self._shown_sweep_spec
         if self.curves.shown is None or spec is None:
             return
         if spec.along is None:

@@ -46,11 +46,11 @@ class ComparisonPresenter:
         self._map: EscapeMap | None = None
         self._other_map: EscapeMap | None = None
         self._other_review: SystemReview | None = None
-        self._review = LatestRequest(context.jobs, self._take_review, self._refuse_system, context.locked)
-        self._request = LatestRequest(context.jobs, self._show, self._fail, context.locked)
+        self._review_request = LatestRequest(context.jobs, self._take_review, self._refuse_system, context.locked)
+        self._map_request = LatestRequest(context.jobs, self._show, self._fail, context.locked)
         self._state.param.watch(lambda event: self._restart(), "compared")
         context.results.param.watch(lambda event: self._follow_map(context.results.whole_map), "frame")
-        self._continue()
+        self._request_missing()
 
     def swap_views(self) -> None:
         """Exchange the view of the controls and the other view."""
@@ -64,42 +64,42 @@ class ComparisonPresenter:
         """Compare a complete map. It stays in the comparison until the next map is complete."""
         if frame is not None:
             self._map = frame
-            self._continue()
+            self._request_missing()
             self._describe()
 
     def _restart(self) -> None:
         self._other_map = None
         self._maps.show_compared(None)
         self._say("")
-        self._review.cancel()
-        self._request.cancel()
-        self._continue()
+        self._review_request.cancel()
+        self._map_request.cancel()
+        self._request_missing()
 
-    def _continue(self) -> None:
-        """Request what is missing next: the review of the other system, or its map."""
+    def _request_missing(self) -> None:
+        """Request the next missing result: the review of the other system, or its map. A refused system ends the comparison."""
         view, reviewed = self._state.compared, self._other_review
         if view is None:
             return
         if reviewed is None or reviewed.system != view.system:
-            self._review.submit(review_job(view.system))
+            self._review_request.submit(review_job(view.system))
         elif (problem := refusal(reviewed)) is not None:
             self._refuse_system(problem)
         elif self._map is not None:
             self._request_map(view, reviewed, self._map.spec)
 
-    def _request_map(self, view: View, reviewed: SystemReview, like: MapSpec) -> None:
-        """Request the map of the other view for the pixels of a map."""
+    def _request_map(self, view: View, reviewed: SystemReview, shown_spec: MapSpec) -> None:
+        """Request the map of the other view, with the pixels and t_max of the map in view."""
         try:
-            spec = view.map_spec(reviewed)
-            spec = replace(spec, resolution=like.resolution, window=like.find_window(), t_max=like.t_max)
+            window = shown_spec.find_window()
+            spec = replace(view.map_spec(reviewed), resolution=shown_spec.resolution, window=window, t_max=shown_spec.t_max)
         except ValueError as error:
             self._fail(str(error))
         else:
-            self._request.submit(*jobs_of_map(spec))
+            self._map_request.submit(*jobs_of_map(spec))
 
     def _take_review(self, reviewed: SystemReview) -> None:
         self._other_review = reviewed
-        self._continue()
+        self._request_missing()
 
     def _refuse_system(self, problem: str) -> None:
         """End the comparison with a view whose system is refused."""
@@ -135,5 +135,5 @@ def _difference(one: EscapeMap, other: EscapeMap) -> str:
     if not counted.any():
         return "no start in the window has an orbit in both."
     differ = counted & (one.fate != other.fate)
-    of_all = " of ".join(format_whole(int(np.count_nonzero(pixels))) for pixels in (differ, counted))
-    return f"{of_all} starts have different outcomes ({format_share(float(np.mean(differ[counted])))})."
+    counts = " of ".join(format_whole(int(np.count_nonzero(pixels))) for pixels in (differ, counted))
+    return f"{counts} starts have different outcomes ({format_share(float(np.mean(differ[counted])))})."

@@ -53,7 +53,7 @@ class History:
         self.entry = 0
         """The present entry."""
         # The last entry. After "Back", it follows the present entry.
-        self._last = 0
+        self._last_entry = 0
         self._in_gesture = False
         self._gesture_recorded = False
 
@@ -61,7 +61,7 @@ class History:
         """Return the entry of a new state. All states of one gesture share an entry."""
         if not (self._in_gesture and self._gesture_recorded):
             self.entry += 1
-            self._last = self.entry
+            self._last_entry = self.entry
             self._gesture_recorded = self._in_gesture
         return self.entry
 
@@ -77,4 +77,4 @@ class History:
     def move_to(self, entry: int) -> None:
         """Follow the browser to another entry; an entry of an earlier page counts as the first entry."""
         self.end_gesture()
-        self.entry = entry if 0 <= entry <= self._last else 0
+        self.entry = entry if 0 <= entry <= self._last_entry else 0

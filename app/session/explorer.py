@@ -62,7 +62,7 @@ class Explorer:
         self._locked = callbacks.every
         self._client = JobClient(process_state().jobs, account=account_of(document))
         on_disconnect(document, self._client.close)
-        self.links = LinkPresenter(document, _parameters())
+        self.links = LinkPresenter(document, _link_parameters())
         if self.links.view.system.case == TYPED:
             # The process that reviews the formula starts while the page is made and loaded.
             process_state().limited.start()
@@ -151,7 +151,7 @@ class Explorer:
 
     def _show_preset(self, preset: Preset) -> None:
         self.engine.stop()
-        # On a narrow screen the drawer covers the maps.
+        # On a phone, the drawer covers the maps.
         if self.state.touch:
             self.drawers.show(None)
         self._open_view(preset.view.system, preset.view.within_limits().values())
@@ -195,6 +195,6 @@ class Explorer:
             self.maps.requests.stop_map()
 
 
-def _parameters() -> dict[str, str]:
+def _link_parameters() -> dict[str, str]:
     """Return the parameters in the address of the page."""
     return {name: texts[0].decode(errors="replace") for name, texts in dict(pn.state.session_args or {}).items()}

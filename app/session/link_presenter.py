@@ -48,7 +48,7 @@ class LinkPresenter:
     def __init__(self, document: Document, parameters: Mapping[str, str]) -> None:
         self._document = document
         self._link, self._problems = read_link(parameters)
-        self._navigating = False
+        self._is_navigating = False
         self.embedded = parameters.get(EMBED) in PICTURES
         """Whether the page shows only one picture, in a frame of another page."""
         self.open_link = OpenLink()
@@ -64,7 +64,17 @@ class LinkPresenter:
         progress: ProgressView,
         notice: Notice,
     ) -> None:
-        """Connect the links with the other parts of the page, and write a link for each change of the state."""
+        """Connect the links with the other parts of the page, and write a link for each change of the state.
+
+        Parameters
+        ----------
+        potential
+            Reviews the systems of links.
+        browser
+            Writes links to the address of the page.
+        progress, notice
+            Show that a review runs, and messages about links.
+        """
         self._potential, self._browser = potential, browser
         self._progress, self._notice = progress, notice
         self.state.param.watch(self._write, list(LINKED))
@@ -77,7 +87,7 @@ class LinkPresenter:
             begin_view()
             self._show_problems()
         else:
-            self._review(system, self._begin_with, partial(self._begin_without, begin_view))
+            self._review(system, self._begin_with_review, partial(self._begin_with_default, begin_view))
 
     def open(self, system: System, use: Callable[[SystemReview], object]) -> None:
         """Review a system, then use it or say why it is refused."""
@@ -93,7 +103,7 @@ class LinkPresenter:
         self._browser.follow_steps(steps)
         values, self._problems = read_link(dict(parse_qsl(link.removeprefix("?"))))
         self.history.move_to(entry)
-        self.open(linked_view(values).system, partial(self._return, values))
+        self.open(linked_view(values).system, partial(self._show_entry, values))
 
     def _first_state(self) -> ViewState:
         """Return the state of the first link, with the default system until the system of the link is reviewed."""
@@ -103,12 +113,12 @@ class LinkPresenter:
         self._problems += problems
         return ViewState(**fitting)
 
-    def _begin_with(self, reviewed: SystemReview) -> None:
+    def _begin_with_review(self, reviewed: SystemReview) -> None:
         """Show the view of the first link with its reviewed system."""
         self._problems += self._show(self._link, reviewed)
         self._show_problems()
 
-    def _begin_without(self, begin_view: Callable[[], object], problem: str) -> None:
+    def _begin_with_default(self, begin_view: Callable[[], object], problem: str) -> None:
         """Show the default system in place of a refused system."""
         self._problems.append(refused_link(problem))
         begin_view()
@@ -131,25 +141,27 @@ class LinkPresenter:
         """Show the values of a link with a reviewed system; return messages for invalid values."""
         fitting, problems = fit_to_system(values, reviewed)
         shown = ViewState(**fitting)
-        self._navigating = True
+        self._is_navigating = True
         try:
             # A link can add figures and buttons. With the models frozen, Bokeh searches the page once for all of these.
             with pn.io.hold(), self._document.models.freeze():
                 self.state.show(reviewed, **{name: getattr(shown, name) for name in LINKED})
         finally:
-            self._navigating = False
+            self._is_navigating = False
         return problems
 
-    def _return(self, values: Mapping[str, Any], reviewed: SystemReview) -> None:
+    def _show_entry(self, values: Mapping[str, Any], reviewed: SystemReview) -> None:
         """Show the values of an entry of the browser's history, and write its address in normal form."""
         self._show(values, reviewed)
-        self._browser.write_link(write_link(self.state, embedded=self.embedded), self.history.entry)
+        self._write_address(self.history.entry)
 
     def _write(self, *events: Any) -> None:
         """Write the link of the state to the address. Choosing another orbit makes no entry in the browser's history."""
-        if not self._navigating:
+        if not self._is_navigating:
             # "Back" on a page also goes through the entries of its frames, so an embedded page makes no entries.
-            is_entry = not self.embedded and {event.name for event in events} != {"chosen"}
-            entry = self.history.record() if is_entry else self.history.entry
-            self._browser.write_link(write_link(self.state, embedded=self.embedded), entry)
+            makes_entry = not self.embedded and {event.name for event in events} != {"chosen"}
+            self._write_address(self.history.record() if makes_entry else self.history.entry)
             self.open_link.show(write_link(self.state))
+
+    def _write_address(self, entry: int) -> None:
+        self._browser.write_link(write_link(self.state, embedded=self.embedded), entry)

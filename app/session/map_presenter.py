@@ -43,6 +43,7 @@ class MapPresenter:
         state, locked = context.state, context.locked
         self._state, self._results, self._notice = state, context.results, context.notice
         self._document, self._history = document, history
+        # Time of the latest request, in seconds; None once its first frame has arrived.
         self._requested_at: float | None = None
         # The start that the last click added; None if the start was in the list already.
         self._added_start: Start | None = None
@@ -52,8 +53,8 @@ class MapPresenter:
                 tap=locked(self.add_start),
                 dive=locked(self._dive),
                 zoom=locked(self._zoom_to),
-                rest=locked(history.end_gesture),
-                box=locked(self._count_in),
+                end_gesture=locked(history.end_gesture),
+                count_in=locked(self._count_in),
             ),
             alone=alone,
         )
@@ -145,12 +146,11 @@ class MapPresenter:
 
     def map_requested(self, *, compiling: bool = False) -> None:
         """Show that a map is requested."""
-        if compiling:
-            # The pictures of the previous system stay, marked, for some seconds.
-            self.view.grid.mark_stale(True)
         self._requested_at = time.monotonic()
         self.progress.start()
         if compiling:
+            # The pictures of the previous system stay, greyed out, until the kernels are compiled.
+            self.view.grid.mark_stale(True)
             self.progress.show_compiling()
         self._notice.clear()
 

@@ -11,14 +11,14 @@ from typing import Any
 
 import panel as pn
 
-from app.session import explorer as session
+from app.session.explorer import Explorer as SessionExplorer
 from app.session.page import TITLE, explorer_page
 from app.state.permalink import write_link
 from app.state.view_state import ViewState
 from engine import POTENTIALS, EscapeMap, MapSpec, Orbit, System, compute_map, write_formula
 from engine.systems.system import TYPED
 
-# Longest time until the server answers, in seconds.
+# Longest time until the server has started, in seconds.
 _START_SECONDS = 60.0
 
 # Resolution and largest t_max of the map that is shown where the page cannot be reached.
@@ -34,7 +34,7 @@ class Explorer:
     Parameters
     ----------
     spec
-        The map to open: its potential, plane, energy and window, and the nearest choices of t_max and resolution; None for the
+        The map to open: its potential, plane, energy and window, and the nearest choices of t_max and of columns; None for the
         first view of the page.
     height
         Height of the frame in the cell, in pixels.
@@ -45,7 +45,7 @@ class Explorer:
         view = ViewState() if spec is None else _view_of(spec)
         self._link = "" if spec is None else write_link(view)
         self._picture_spec = replace(view.map_spec(), resolution=_PICTURE_RESOLUTION, t_max=min(view.t_max, _PICTURE_T_MAX))
-        self._session: session.Explorer | None = None
+        self._session: SessionExplorer | None = None
         self._port = 0
         self._started = threading.Event()
         threading.Thread(target=self._serve, name="explorer", daemon=True).start()
@@ -65,8 +65,8 @@ class Explorer:
     @property
     def orbits(self) -> tuple[Orbit, ...]:
         """The clicked orbits that are computed."""
-        chosen = self._session.results.orbits if self._session is not None else ()
-        return tuple(one.orbit for one in chosen if one.orbit is not None)
+        chosen_orbits = self._session.results.orbits if self._session is not None else ()
+        return tuple(chosen.orbit for chosen in chosen_orbits if chosen.orbit is not None)
 
     def close(self) -> None:
         """Stop serving the page."""
@@ -94,14 +94,14 @@ class Explorer:
     def _open(self) -> Any:
         """Build the page of a session."""
         pn.extension()
-        self._session = session.Explorer(self._loop)
+        self._session = SessionExplorer(self._loop)
         return explorer_page(self._session)
 
 
 def _view_of(spec: MapSpec) -> ViewState:
-    """Return the view that shows a map, with the nearest of the page's choices of `t_max` and resolution."""
-    known = next((name for name, potential in POTENTIALS.items() if potential == spec.potential), TYPED)
-    view = ViewState(system=System(known, write_formula(spec.potential) if known == TYPED else ""))
+    """Return the view that shows a map, with the nearest of the page's choices of t_max and of the number of columns."""
+    case = next((name for name, potential in POTENTIALS.items() if potential == spec.potential), TYPED)
+    view = ViewState(system=System(case, write_formula(spec.potential) if case == TYPED else ""))
     energy = {} if spec.common_energy is None else {"energy": spec.common_energy}
     nearest = {
         "t_max": min(view.param.t_max.objects, key=lambda choice: abs(choice - spec.t_max)),

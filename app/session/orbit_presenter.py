@@ -26,7 +26,8 @@ from engine.slices.planes import SECTION
 from engine.trajectories.chaos_indicators import evaluate_indicators
 from plots.pictures.orbit_curves import OrbitCurves, restrict_curves
 
-REMOVED = "The orbits are removed, because they start on another slice. The Back button of the browser shows them again."
+ORBITS_REMOVED = "The orbits are removed, because they start on another slice. The Back button of the browser shows them again."
+"""Message after a change of the slice."""
 
 Interval = tuple[float, float]
 """Begin and end of an interval of time, dimensionless."""
@@ -41,7 +42,7 @@ class OrbitPresenter:
         The session.
     marks, well
         Marks on the maps, and the picture of the paths.
-    on_start
+    add_start
         Adds a typed start, given by x and ordinate.
     """
 
@@ -50,7 +51,7 @@ class OrbitPresenter:
         context: SessionContext,
         marks: Markers,
         well: WellView,
-        on_start: Callable[[float, float], None],
+        add_start: Callable[[float, float], None],
     ) -> None:
         state, jobs, locked, latest = context.state, context.jobs, context.locked, context.latest
         self._state, self._results, self._marks, self._well = state, context.results, marks, well
@@ -61,13 +62,13 @@ class OrbitPresenter:
         # The interval of time in view, None for the whole duration, and the curves restricted to the interval.
         self._interval: Interval | None = None
         self._restricted_curves: list[OrbitCurves | None] = []
-        # What the pictures show: the starts with their curves, the place of the chosen start, and the palette.
+        # What the pictures show: the starts with their curves, the index of the chosen start, and the palette.
         self._picture_content: Any = None
-        self._show_restricted = locked(self._on_restricted)
+        self._show_restricted = locked(self._take_restricted)
         actions = OrbitActions(
-            add=locked(on_start),
+            add=locked(add_start),
             find_divergent_start=lambda: self._divergent_start_requests.search(),
-            open_plane=self._open_plane,
+            open_section=self._open_section,
             show_all_times=lambda: self._brush(None),
             copy=context.copy,
         )
@@ -105,9 +106,9 @@ class OrbitPresenter:
         self.controls.end_message(has_orbits=bool(self._state.starts))
         changed = {event.name: event for event in events}
         if "plane" in changed and "starts" in changed and changed["starts"].old and not changed["starts"].new:
-            self.controls.say(REMOVED)
+            self.controls.say(ORBITS_REMOVED)
 
-    def _open_plane(self) -> None:
+    def _open_section(self) -> None:
         """Open the section at the energy, or the parameter value, of the chosen orbit."""
         state, start = self._state, self._state.chosen_start
         if start is None:
@@ -152,7 +153,8 @@ class OrbitPresenter:
 
     def _draw(self) -> None:
         """Draw the orbits in the interval of time in view."""
-        curves, chosen = self._restricted_curves or [one.curves for one in self._orbits], self._state.chosen
+        curves = [one.curves for one in self._orbits] if self._interval is None else self._restricted_curves
+        chosen = self._state.chosen
         chosen_curves = curves[chosen] if curves else None
         duration = (0.0, float(chosen_curves.orbit.t[-1])) if chosen_curves is not None else None
         self._well.show_orbits(curves, chosen)
@@ -176,7 +178,7 @@ class OrbitPresenter:
         """Restrict the curves to an interval of time; None shows the whole duration."""
         curves = [one.curves for one in self._orbits]
         if interval is None:
-            self._on_restricted(curves, None, [])
+            self._take_restricted(curves, None, [])
         else:
             # The curves of a long orbit take up to a second, so a thread computes them.
             pn.state.execute(partial(self._restrict, curves, interval))
@@ -184,10 +186,10 @@ class OrbitPresenter:
     async def _restrict(self, curves: list[OrbitCurves | None], interval: Interval) -> None:
         self._show_restricted(curves, interval, await asyncio.to_thread(_restrict_all, curves, interval))
 
-    def _on_restricted(
+    def _take_restricted(
         self, curves: list[OrbitCurves | None], interval: Interval | None, restricted: list[OrbitCurves | None]
     ) -> None:
-        # The orbits may have changed in the meantime.
+        """Draw restricted curves, unless the orbits have changed in the meantime."""
         if curves == [one.curves for one in self._orbits]:
             self._interval, self._restricted_curves = interval, restricted
             with pn.io.hold():

@@ -30,10 +30,10 @@ LONGEST_FORMULA = 80
 
 
 @cache
-def _frame() -> Template:
+def _template() -> Template:
     """Return the HTML of the page without its widgets."""
-    frame: Template = parse_template(Path(__file__).with_name("page.html").read_text(encoding="utf-8"))
-    return frame
+    template: Template = parse_template(Path(__file__).with_name("page.html").read_text(encoding="utf-8"))
+    return template
 
 
 def link_title(view: View) -> str:
@@ -52,7 +52,7 @@ def link_sentence(view: View) -> str:
 
 
 def _shown_formula(system: System) -> str:
-    """Return a typed formula without its clauses, which may contain names; empty if the formula is long or contains other words.
+    """Return a typed formula without its clauses, which may contain names; empty for a long formula or one with unknown words.
 
     Other programs show the result as this server's words, whoever wrote the link.
     """
@@ -75,7 +75,7 @@ class ExplorerTemplate(pn.Template):
     """The page of one session: a header, the controls, and the stage with the maps."""
 
     def __init__(self, view: View, **roots: pn.viewable.Viewable) -> None:
-        super().__init__(_frame(), items=roots, design=ExplorerDesign, location=False)
+        super().__init__(_template(), items=roots, design=ExplorerDesign, location=False)
         self.add_variable("link_title", link_title(view))
         self.add_variable("link_sentence", link_sentence(view))
         self.add_variable("is_embedded", "picture_alone" in roots)

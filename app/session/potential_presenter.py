@@ -42,6 +42,13 @@ class PotentialPresenter:
     """Reviews each potential that is chosen, typed or set by a slider, and writes it to the view state if it is valid.
 
     All changes while a formula is typed, or a slider dragged, make one entry of the history.
+
+    Parameters
+    ----------
+    context
+        The session.
+    history
+        Numbers the entries of the browser's history.
     """
 
     def __init__(self, context: SessionContext, history: History) -> None:
@@ -53,27 +60,27 @@ class PotentialPresenter:
         self._last_review: SystemReview | None = None
         self.panel = PotentialPanel(state.reviewed, context.locked(self._take))
         self._request = LatestRequest(context.jobs, self._on_review, self._on_failure, context.locked)
-        state.param.watch(lambda *events: self._follow(), "system")
+        state.param.watch(lambda *events: self._follow_system(), "system")
         self.panel.show(state.reviewed)
 
     def open(self, system: System, use: Callable[[SystemReview], object], refuse: Callable[[str], None]) -> bool:
-        """Use or refuse the system of a link, a preset or the browser's history; return whether a review was requested."""
+        """Use or refuse the system of a link, a preset or the browser's history; return whether its review is awaited."""
         known = self._known_review(system)
         if known is not None and refusal(known) is None:
-            self._drop_link()
+            self._cancel_link_review()
             use(known)
             return False
         self._propose(_Proposal(system, use, refuse))
-        return True
+        return self._proposal is not None
 
-    def _drop_link(self) -> None:
+    def _cancel_link_review(self) -> None:
         """Cancel the review of an earlier link, but not the review of a system of the panel."""
         if self._proposal is not None and self._proposal.refuse is not None:
             self._proposal = None
             self._request.cancel()
 
     def _take(self, system: System, *, done: bool) -> None:
-        """Review a system of the panel. A running review is finished first: the maps could not follow a steady drag otherwise."""
+        """Review a system of the panel, after a running review. If each system cancelled it, no map could follow a drag."""
         proposal = _Proposal(system, self._use if done else self._use_if_ready, done=done)
         if self._proposal is None or self._proposal.refuse is not None:
             self._propose(proposal)
@@ -81,7 +88,7 @@ class PotentialPresenter:
             self._waiting_proposal = proposal
 
     def _use_if_ready(self, reviewed: SystemReview) -> None:
-        """Use an unfinished system unless its integrator must be compiled: a server can keep only some dozens of integrators."""
+        """Use an unfinished system if its integrator is compiled, because a server can keep only some dozens of integrators."""
         if is_ready_for_maps(reviewed.potential):
             self._use(reviewed)
         else:
@@ -149,18 +156,18 @@ class PotentialPresenter:
 
     def _energy_for(self, reviewed: SystemReview) -> float | None:
         """Return the energy at the same multiple of the well's depth; None if that energy is too high, or the case is another."""
-        before, energies = self._state.reviewed, reviewed.energies
-        if reviewed.system.case not in (TYPED, before.system.case):
+        previous, energies = self._state.reviewed, reviewed.energies
+        if reviewed.system.case not in (TYPED, previous.system.case):
             return None
-        if before.potential.escape_radius is not None or reviewed.potential.escape_radius is not None:
+        if previous.potential.escape_radius is not None or reviewed.potential.escape_radius is not None:
             # Without exits the depth is undefined, so the energy itself is kept.
             return self._state.energy if energies.low <= self._state.energy <= energies.high else None
-        depth = before.escape_energy - before.potential.well.bottom
-        multiple = (self._state.energy - before.potential.well.bottom) / depth
+        depth = previous.escape_energy - previous.potential.well.bottom
+        multiple = (self._state.energy - previous.potential.well.bottom) / depth
         energy = round(float(reviewed.potential.well.energy_at(multiple)), energies.decimals + 1)
         return energy if energy < reviewed.highest_energy else None
 
-    def _follow(self) -> None:
+    def _follow_system(self) -> None:
         """Follow a system that the panel has not chosen, and cancel any review."""
         if self._state.reviewed is not self.panel.used:
             self._proposal = self._waiting_proposal = None

@@ -30,7 +30,7 @@ HELP_TEXTS: Mapping[str, str] = MappingProxyType(
             "the time in which an error grows by a factor of e."
         ),
         "r2": (
-            "The squared distance from the centre of the well. On a regular orbit it oscillates between fixed limits. A "
+            "The squared distance from the origin. On a regular orbit it oscillates between fixed limits. A "
             "sticky orbit looks like that for a long time, until its range widens and it escapes. Drag over this curve, SALI "
             "or the Lyapunov exponent to see an interval of time in full detail; a double click shows the whole orbit again."
         ),

@@ -48,6 +48,7 @@ def _write_letters(values: Mapping[str, float]) -> str:
 
 def _read_letters(text: str) -> dict[str, float]:
     pairs = [pair.split(":") for pair in text.split(",")]
+    # The parameters of the well have link parameters of their own.
     if any(name in WELL_PARAMETERS for name, *_ in pairs):
         raise ValueError
     return {name: checked_letter_value(name, float(value)) for name, value in pairs}

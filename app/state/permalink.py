@@ -37,20 +37,22 @@ LONGEST_VALUE = LONGEST_TEXT
 EMBED = "embed"
 """Link parameter of a page in an iframe of another page. Its value is the name of the only picture that is shown."""
 
-_DEFAULT_EMBEDDED = "basins"
+_DEFAULT_PICTURE = "basins"
 # Longest part of a value that a message repeats, in characters.
 _LONGEST_QUOTE = 40
 # Names of link parameters.
 _PLANE, _FIX, _ENERGY, _JACOBI = "plane", "fix", "h", "C"
 # Prefix of the parameters of the view with which the state is compared.
 _COMPARED = "with_"
-_VIEW_NAMES = (*SYSTEM_FORMATS, _PLANE, _FIX, _ENERGY)
+# Names of the parameters of system, slice and energy.
+_VIEW_PARAMETERS = (*SYSTEM_FORMATS, _PLANE, _FIX, _ENERGY)
 
 # Indices of starts by the number that the page shows.
 _PLACES = {str(place + 1): place for place in range(MOST_ORBITS)}
 
 
 def _sides() -> dict[str, int]:
+    """Return the columns and rows that the server's settings allow, by their text in a link."""
     return {str(side): side for side in allowed_resolutions().values()}
 
 
@@ -83,7 +85,7 @@ _FORMATS: dict[str, Format] = {
     EMBED: _LINKED["focus"].form,
 }
 
-PARAMETERS = (*_FORMATS, _PLANE, _FIX, *(f"{_COMPARED}{name}" for name in _VIEW_NAMES))
+PARAMETERS = (*_FORMATS, _PLANE, _FIX, *(f"{_COMPARED}{name}" for name in _VIEW_PARAMETERS))
 """Names of the parameters of a link."""
 
 LINKED = ("system", "plane", "energy", *_LINKED, "layers", "settings", "compared")
@@ -107,7 +109,7 @@ def write_link(state: ViewState, *, embedded: bool = False) -> str:
             written[parameter.name] = parameter.form.write(value)
     written |= _write_layers(state)
     if embedded:
-        written[EMBED] = written.pop("focus", _DEFAULT_EMBEDDED)
+        written[EMBED] = written.pop("focus", _DEFAULT_PICTURE)
     if state.compared is not None:
         written |= {f"{_COMPARED}{name}": text for name, text in _write_view(state.compared).items()}
     return "?" + urlencode(written, safe=",;:=")
@@ -130,7 +132,7 @@ def read_link(parameters: Mapping[str, str], prefix: str = "") -> tuple[dict[str
     problems : list of str
         A message for each invalid value.
     """
-    parts, problems = _read_each(parameters, prefix)
+    parts, problems = _read_parts(parameters, prefix)
     values = {attribute: parts[parameter.name] for attribute, parameter in _LINKED.items() if parameter.name in parts}
     values |= _read_layers(parts)
     if _JACOBI in parts:
@@ -140,7 +142,7 @@ def read_link(parameters: Mapping[str, str], prefix: str = "") -> tuple[dict[str
         # The picture of a layer needs the layer.
         if picture in LAYER_OF:
             values["layers"] = values.get("layers", frozenset()) | {LAYER_OF[picture].name}
-    # A link without starts has at most the first place.
+    # Without starts, only the index 0 is legal.
     if values.get("chosen", 0) >= len(values.get("starts", (0,))):
         values["chosen"] = 0
     for more_values, more_problems in (_read_view(parameters, parts, prefix), _read_compared(parameters)):
@@ -172,21 +174,22 @@ def fit_to_system(values: Mapping[str, Any], reviewed: SystemReview) -> tuple[di
     reviewed
         The review of the system in the link, which was not refused.
     """
+    potential = reviewed.potential
+    problems: list[str] = []
     jacobi_constant = values.get("jacobi")
     values = {name: value for name, value in values.items() if name != "jacobi"}
     if jacobi_constant is not None and "energy" not in values:
-        if not reviewed.potential.rotation:
-            fitted, problems = fit_to_system(values, reviewed)
-            return fitted, [f"Ignored C={jacobi_constant:.6g}: the frame of this system does not rotate.", *problems]
-        values["energy"] = reviewed.potential.jacobi_energy(jacobi_constant)
-    lowest = float(reviewed.potential.value(0.0, 0.0))
-    first = reviewed.energies.first
-    t_max = min(ViewState.param.t_max.default, longest_first_t_max(reviewed.potential))
-    completed = {"energy": first, "t_max": t_max, **values, "system": reviewed.system}
-    if completed["energy"] > lowest:
-        return completed, []
-    problem = f"Ignored h={completed['energy']:.6g}: choose an energy above {lowest:.6g}, such as {first:.6g}."
-    return completed | {"energy": first}, [problem]
+        if potential.rotation:
+            values["energy"] = potential.jacobi_energy(jacobi_constant)
+        else:
+            problems.append(f"Ignored C={jacobi_constant:.6g}: the frame of this system does not rotate.")
+    lowest, first_energy = float(potential.value(0.0, 0.0)), reviewed.energies.first
+    t_max = min(ViewState.param.t_max.default, longest_first_t_max(potential))
+    completed = {"energy": first_energy, "t_max": t_max, **values, "system": reviewed.system}
+    if completed["energy"] <= lowest:
+        problems.append(f"Ignored h={completed['energy']:.6g}: choose an energy above {lowest:.6g}, such as {first_energy:.6g}.")
+        completed["energy"] = first_energy
+    return completed, problems
 
 
 def refused_link(problem: str) -> str:
@@ -223,7 +226,7 @@ def _read_layers(parts: Mapping[str, Any]) -> dict[str, Any]:
     return values
 
 
-def _read_each(parameters: Mapping[str, str], prefix: str) -> tuple[dict[str, Any], list[str]]:
+def _read_parts(parameters: Mapping[str, str], prefix: str) -> tuple[dict[str, Any], list[str]]:
     """Return the values with one parameter each, by parameter, and a message for each invalid value."""
     parts: dict[str, Any] = {}
     problems: list[str] = []
@@ -262,7 +265,7 @@ def _read_view(parameters: Mapping[str, str], parts: Mapping[str, Any], prefix: 
 
 def _read_compared(parameters: Mapping[str, str]) -> tuple[dict[str, Any], list[str]]:
     """Return the view with which a link compares, or a message for each invalid value."""
-    given = {name: parameters[_COMPARED + name] for name in _VIEW_NAMES if _COMPARED + name in parameters}
+    given = {name: parameters[_COMPARED + name] for name in _VIEW_PARAMETERS if _COMPARED + name in parameters}
     if not given:
         return {}, []
     if _ENERGY in given:

@@ -12,7 +12,7 @@ from engine import MapSpec, Plane, Slice, System, Window
 from engine.slices.axes import Energy
 from engine.systems.review.potential_review import SystemReview
 from plots.layers.layer import Settings
-from plots.layers.table import PICTURES as MAPS
+from plots.layers.table import PICTURES as PICTURE_ENTRIES
 from plots.layers.table import SETTINGS
 
 Start = tuple[float, float]
@@ -34,8 +34,8 @@ _FIRST_SYSTEM = System("I")
 
 def _up_to[Number: (int, float)](limit: float, choices: dict[str, Number]) -> dict[str, Number]:
     """Return the choices up to a limit, and always the smallest choice."""
-    least = min(choices.values())
-    return {name: value for name, value in choices.items() if value <= max(limit, least)}
+    smallest = min(choices.values())
+    return {name: value for name, value in choices.items() if value <= max(limit, smallest)}
 
 
 T_MAX_CHOICES = {"100": 1e2, "1 000": 1e3, "10 000": 1e4, "100 000": 1e5, "1 000 000": 1e6}
@@ -55,7 +55,7 @@ def allowed_resolutions() -> dict[str, int]:
     return _up_to(process_state().settings.largest_resolution, RESOLUTION_CHOICES)
 
 
-PICTURES = ("well", *(name for name in MAPS if name != "curves"))
+PICTURES = ("well", *(name for name in PICTURE_ENTRIES if name != "curves"))
 """Names of the pictures: the well, the maps of starts, and the comparison with another view."""
 
 

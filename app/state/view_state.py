@@ -38,7 +38,7 @@ WINDOW_UNKNOWN = "The window is not known before the integrator is compiled."
 """Message while the default window is not known."""
 
 # Longest initial t_max of systems whose bounded orbits must all be integrated until t_max, in natural units of time.
-_LONGEST_FIRST = 1000.0
+_LONGEST_FIRST_T_MAX = 1000.0
 
 
 def plane_of_system(plane: Slice, system: System) -> Slice:
@@ -88,7 +88,7 @@ def _is_start(value: Any) -> bool:
 def longest_first_t_max(potential: Potential) -> float:
     """Return the longest initial t_max of a system. It is short if all bounded orbits must be integrated until t_max."""
     allowed = allowed_t_max().values()
-    longest = np.inf if potential.tori_are_evidence else _LONGEST_FIRST * potential.well.exact_time_unit
+    longest = np.inf if potential.tori_are_evidence else _LONGEST_FIRST_T_MAX * potential.well.exact_time_unit
     return max((each for each in allowed if each <= longest), default=min(allowed))
 
 
@@ -138,7 +138,7 @@ class ViewState(param.Parameterized):
 
     @property
     def view(self) -> View:
-        """The view without the visitor's own choices."""
+        """The part of the state that belongs to a view."""
         return View(**{name: getattr(self, name) for name in FIRST_VIEW.values()})
 
     @property
@@ -237,7 +237,7 @@ class ViewState(param.Parameterized):
         longest_t_max = self.t_max if reviewed.system.case == self.system.case else longest_first_t_max(reviewed.potential)
         self.show(reviewed, energy=new_energy, window=None, starts=(), chosen=0, t_max=min(self.t_max, longest_t_max))
 
-    def remove_start(self, place: int) -> None:
+    def remove_start(self, index: int) -> None:
         """Remove the start at an index."""
-        starts = self.starts[:place] + self.starts[place + 1 :]
+        starts = self.starts[:index] + self.starts[index + 1 :]
         self.param.update(starts=starts, chosen=max(min(self.chosen, len(starts) - 1), 0))

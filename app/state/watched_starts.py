@@ -46,21 +46,21 @@ EXPLANATIONS = {
 
 def places_for(potential: Potential) -> dict[StartsFrom, str]:
     """Return the places of a system, with their phrases. Exits need saddles; tubes also need a frame that does not rotate."""
-    missing = set[StartsFrom]()
+    missing_places = set[StartsFrom]()
     if potential.escape_radius is not None:
-        missing |= {StartsFrom.EXITS, StartsFrom.TUBES}
+        missing_places |= {StartsFrom.EXITS, StartsFrom.TUBES}
     if potential.rotation:
-        missing.add(StartsFrom.TUBES)
-    return {where: words for where, words in PLACES.items() if where not in missing}
+        missing_places.add(StartsFrom.TUBES)
+    return {where: words for where, words in PLACES.items() if where not in missing_places}
 
 
 COUNTS = (1000, 5000, 20000)
 """Possible numbers of orbits."""
 
-SMALLEST_RADIUS = -9.0
+SMALLEST_LOG_RADIUS = -9.0
 """Decimal logarithm of the smallest radius of a disc, as a share of half the window."""
 
-LARGEST_RADIUS = -1.0
+LARGEST_LOG_RADIUS = -1.0
 """Decimal logarithm of the largest radius of a disc, as a share of half the window."""
 
 
@@ -97,5 +97,5 @@ class WatchedStarts:
             raise ValueError(f"count={self.count}: must be one of {', '.join(map(str, COUNTS))}")
         if not 0 <= self.seed <= LARGEST_SEED:
             raise ValueError(f"seed={self.seed}: must be from 0 to {LARGEST_SEED}")
-        if not SMALLEST_RADIUS <= self.radius <= LARGEST_RADIUS:
-            raise ValueError(f"radius={self.radius:g}: must be from {SMALLEST_RADIUS:g} to {LARGEST_RADIUS:g}")
+        if not SMALLEST_LOG_RADIUS <= self.radius <= LARGEST_LOG_RADIUS:
+            raise ValueError(f"radius={self.radius:g}: must be from {SMALLEST_LOG_RADIUS:g} to {LARGEST_LOG_RADIUS:g}")

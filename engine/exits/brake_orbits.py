@@ -1,6 +1,6 @@
 """Orbits over a saddle between two points at rest on the zero-velocity curve, found by shooting and by continuation in energy.
 
-At an energy h above the saddle, such an orbit oscillates between two points where it is at rest (Contopoulos 1990, Astron.
+At an energy h above the saddle, such a brake orbit oscillates between two points where it is at rest (Contopoulos 1990, Astron.
 Astrophys. 231, 41). A trial orbit that starts at rest on the zero-velocity curve moves inward if its start is too close to the
 well, and outward if its start is too far out. In between is the start for which the velocity along the channel is 0 at the
 turning point across the channel. The zero-velocity curve along a side of the channel is a wall. All quantities are in units of
@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from engine.exits.continuation import Steps, follow
+from engine.exits.continuation import StepLimits, follow
 from engine.foundations.root_finding import find_root
 from engine.integrator.source.recurrence import TOLERANCE
 from engine.integrator.source.series import ORDER
@@ -54,14 +54,16 @@ _FIRST_ENERGY_STEP = 2.0**-4
 _SMALLEST_ENERGY_STEP = 2.0**-14
 _MOST_ENERGY_STEPS = 256
 
-# Largest speed at the second end, in units of the well. A root with a larger speed is a discontinuity of the velocity. Also the
-# largest distance between two shots that are joined.
-_REST = 1e-8
+# Largest speed at the second end, in units of the well. A root with a larger speed is a discontinuity of the velocity.
+_LARGEST_END_SPEED = 1e-8
 # Largest speed at the second end of a shot that is joined with another.
-_NEARLY_AT_REST = 1e-3
+_LARGEST_JOINED_END_SPEED = 1e-3
+# Largest distance between two shots where they are joined, in units of the well.
+_LARGEST_MISMATCH = 1e-8
 # Two shots that are joined are compared up to this share of the half period before and after the middle.
 _OVERLAP = 0.05
-_SAMPLES_PER_HALF_PERIOD = 100
+# The path of half a period has one point more.
+_INTERVALS_PER_HALF_PERIOD = 100
 # Largest number of integrator steps of a trial orbit.
 _MOST_STEPS = 400
 
@@ -98,12 +100,12 @@ class Axes(NamedTuple):
         return np.array([-self.outward[1], self.outward[0]])
 
     def points(self, u: np.ndarray, q: np.ndarray) -> np.ndarray:
-        """Return x and y, of shape (2, …)."""
+        """Return x and y of the points at u and q, of shape (2, …)."""
         return np.moveaxis(self.origin + u[..., None] * self.outward + q[..., None] * self.across, -1, 0)
 
 
 class _Search(NamedTuple):
-    """Lengths of a bracket search: its first step and its end along the channel."""
+    """Lengths of a bracket search along the channel: its first step and its largest distance from the origin of the axes."""
 
     stride: float
     farthest: float
@@ -126,7 +128,7 @@ class _Shot(NamedTuple):
     @property
     def path(self) -> np.ndarray:
         """(2, 101) x and y, evenly spaced in time."""
-        return self.positions(np.linspace(0.0, self.half_period, _SAMPLES_PER_HALF_PERIOD + 1))
+        return self.positions(np.linspace(0.0, self.half_period, _INTERVALS_PER_HALF_PERIOD + 1))
 
     def positions(self, times: np.ndarray) -> np.ndarray:
         """Return x and y at m `times`, of shape (2, m)."""
@@ -148,7 +150,7 @@ def chord_axes(path: np.ndarray) -> Axes:
 
 def find_directly(potential: Potential, energy: float, channel: int) -> BrakeOrbit | None:
     """Return the orbit over a saddle at one energy, searched from the saddle; None if it is not found."""
-    shot = _find_from_saddle(potential, energy, channel, saddle_axes(potential, channel), _REST)
+    shot = _find_from_saddle(potential, energy, channel, saddle_axes(potential, channel), _LARGEST_END_SPEED)
     return None if shot is None else shot.orbit
 
 
@@ -159,22 +161,25 @@ def find_from_both_ends(potential: Potential, energy: float, channel: int) -> Br
     """
     axes = saddle_axes(potential, channel)
     # With reversed axes, the shot starts at the second end.
-    backward = _find_from_saddle(potential, energy, channel, Axes(axes.origin, -axes.outward), _NEARLY_AT_REST)
+    backward = _find_from_saddle(potential, energy, channel, Axes(axes.origin, -axes.outward), _LARGEST_JOINED_END_SPEED)
     if backward is None:
         return None
     path = backward.path[:, ::-1]
-    forward = _shoot(potential, energy, channel, chord_axes(path), _chord_search(path), _NEARLY_AT_REST)
+    forward = _shoot(potential, energy, channel, chord_axes(path), _chord_search(path), _LARGEST_JOINED_END_SPEED)
     return None if forward is None else _join(forward, backward, chord_axes(path))
 
 
 def find_from_outside(potential: Potential, energy: float, axes: Axes, search_size: float) -> Iterator[BrakeOrbit]:
-    """Yield the orbits from a wall at q < 0 to a wall at q > 0, the outermost first."""
+    """Yield the orbits from a wall at q < 0 to a wall at q > 0, the outermost first.
+
+    `search_size` is the unit of the lengths of the search: the distance of the outermost saddle from the origin.
+    """
     trials = _Trials(potential, energy, axes, _LARGEST_MOVE * search_size)
     offsets = _FARTHEST_START * search_size * np.linspace(1.0, -1.0, _STARTS)
     velocities = [trials.outward_velocity(u) for u in offsets.tolist()]
     for k in range(_STARTS - 1):
         if velocities[k] > 0.0 > velocities[k + 1]:
-            shot = trials.solve((float(offsets[k + 1]), float(offsets[k])), _REST)
+            shot = trials.solve((float(offsets[k + 1]), float(offsets[k])), _LARGEST_END_SPEED)
             if shot is not None:
                 yield shot.orbit
 
@@ -188,14 +193,14 @@ def continue_in_energy(potential: Potential, energy: float, channel: int) -> Bra
     def advance(orbit: BrakeOrbit | None, target: float) -> BrakeOrbit | None:
         return _next_orbit(potential, target, channel, orbit) if orbit else find_directly(potential, target, channel)
 
-    steps = Steps(_FIRST_ENERGY_STEP * height, _SMALLEST_ENERGY_STEP * height, _MOST_ENERGY_STEPS)
-    return follow(advance, None, saddle_energy, energy, steps)
+    limits = StepLimits(_FIRST_ENERGY_STEP * height, _SMALLEST_ENERGY_STEP * height, _MOST_ENERGY_STEPS)
+    return follow(advance, None, saddle_energy, energy, limits)
 
 
 def _find_from_saddle(potential: Potential, energy: float, channel: int, axes: Axes, largest_speed: float) -> _Shot | None:
     """Return the orbit from a point with q < 0 in axes at the saddle to a point with q > 0; None if it is not found."""
-    distance = _distance(potential, channel)
-    search = _Search(_FIRST_STRIDE * distance, _LARGEST_OFFSET * distance)
+    saddle_distance = _saddle_distance(potential, channel)
+    search = _Search(_FIRST_STRIDE * saddle_distance, _LARGEST_OFFSET * saddle_distance)
     shot = _shoot(potential, energy, channel, axes, search, largest_speed)
     if shot is None:
         return None
@@ -209,14 +214,15 @@ def _join(forward: _Shot, backward: _Shot, axes: Axes) -> BrakeOrbit | None:
     path, reversed_path = forward.path, backward.path[:, ::-1]
     if np.abs((path - reversed_path)[:, [0, -1]]).max() > _LARGEST_CHANGE * _chord_length(reversed_path):
         return None
-    middle = 0.5 * (axes.coordinates(path)[1][0] + axes.coordinates(reversed_path)[1][-1])
-    forward_duration, backward_duration = _time_at(middle, forward, axes), _time_at(middle, backward, axes)
+    first_q, last_q = axes.coordinates(path)[1][0], axes.coordinates(reversed_path)[1][-1]
+    middle_q = 0.5 * (first_q + last_q)
+    forward_duration, backward_duration = _time_at(middle_q, forward, axes), _time_at(middle_q, backward, axes)
     half_period = forward_duration + backward_duration
     overlap = forward_duration + _OVERLAP * half_period * np.linspace(-1.0, 1.0, 11)
     # `not … <` also rejects NaN.
-    if not np.abs(forward.positions(overlap) - backward.positions(half_period - overlap)).max() < _REST:
+    if not np.abs(forward.positions(overlap) - backward.positions(half_period - overlap)).max() < _LARGEST_MISMATCH:
         return None
-    times = np.linspace(0.0, half_period, _SAMPLES_PER_HALF_PERIOD + 1)
+    times = np.linspace(0.0, half_period, _INTERVALS_PER_HALF_PERIOD + 1)
     path = np.where(times < forward_duration, forward.positions(times), backward.positions(half_period - times))
     return BrakeOrbit(half_period, path)
 
@@ -227,13 +233,13 @@ def _time_at(q: float, shot: _Shot, axes: Axes) -> float:
     def distance(time: float) -> float:
         return float(axes.coordinates(shot.positions(np.array([time])))[1][0]) - q
 
-    return find_root(distance, 0.0, shot.half_period, absolute=1e-15, relative=4 * float(np.finfo(float).eps))
+    return find_root(distance, 0.0, shot.half_period, xtol=1e-15)
 
 
 def _next_orbit(potential: Potential, energy: float, channel: int, previous: BrakeOrbit) -> BrakeOrbit | None:
     """Continue the previous orbit to a nearby energy; None if the orbit found there is not close to the previous orbit."""
     ends = previous.path[:, [0, -1]]
-    shot = _shoot(potential, energy, channel, chord_axes(previous.path), _chord_search(previous.path), _REST)
+    shot = _shoot(potential, energy, channel, chord_axes(previous.path), _chord_search(previous.path), _LARGEST_END_SPEED)
     if shot is None:
         return None
     orbit, length = shot.orbit, _chord_length(previous.path)
@@ -251,13 +257,13 @@ def _chord_search(path: np.ndarray) -> _Search:
     return _Search(_FIRST_SHIFT * length, _LARGEST_SHIFT * length)
 
 
-def _distance(potential: Potential, channel: int) -> float:
+def _saddle_distance(potential: Potential, channel: int) -> float:
     return float(np.hypot(*potential.saddles[channel - 1]))
 
 
 def _shoot(potential: Potential, energy: float, channel: int, axes: Axes, search: _Search, largest_speed: float) -> _Shot | None:
     """Return the orbit whose start is nearest to the origin of the axes along the channel; None if it is not found."""
-    trials = _Trials(potential, energy, axes, _LARGEST_EXCURSION * _distance(potential, channel))
+    trials = _Trials(potential, energy, axes, _LARGEST_EXCURSION * _saddle_distance(potential, channel))
     bracket = _find_bracket(trials.outward_velocity, search)
     return None if bracket is None else trials.solve(bracket, largest_speed)
 
@@ -275,8 +281,7 @@ class _Trials:
 
     def solve(self, bracket: tuple[float, float], largest_speed: float) -> _Shot | None:
         """Return the orbit that starts between two offsets and ends slower than `largest_speed`; None if no orbit does."""
-        # The tolerances are those of rounding.
-        u = find_root(self.outward_velocity, *bracket, absolute=1e-17, relative=4 * float(np.finfo(float).eps))
+        u = find_root(self.outward_velocity, *bracket, xtol=1e-17)
         velocity, half_period, count = self._kernels.shoot(u, *self._arguments)
         if not (np.isfinite(half_period) and abs(velocity) < largest_speed):
             return None
@@ -286,7 +291,7 @@ class _Trials:
 
 
 def _find_bracket(outward_velocity: Callable[[float], float], search: _Search) -> tuple[float, float] | None:
-    """Search, with growing steps, for an inner start that moves inward and an outer start that moves outward."""
+    """Return the offsets of a start that moves inward and of a start farther out that moves outward; None if none are found."""
     offset, stride = 0.0, search.stride
     first_velocity = outward_velocity(offset)
     if np.isnan(first_velocity):

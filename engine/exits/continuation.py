@@ -6,16 +6,16 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 
-class Steps(NamedTuple):
-    """Limits of a continuation: the first and the smallest step of the parameter, and the largest number of steps."""
+class StepLimits(NamedTuple):
+    """Limits of a continuation: the first and the smallest step of the parameter, and the largest number of attempted steps."""
 
     first: float
     smallest: float
-    most: int
+    attempts: int
 
 
 def follow[Solution](
-    advance: Callable[[Solution, float], Solution | None], solution: Solution, begin: float, end: float, steps: Steps
+    advance: Callable[[Solution, float], Solution | None], solution: Solution, begin: float, end: float, limits: StepLimits
 ) -> Solution | None:
     """Follow a solution from one value of a parameter up to another with an adaptive step.
 
@@ -28,22 +28,22 @@ def follow[Solution](
         The solution at `begin`.
     begin, end
         The first and the last value.
-    steps
+    limits
         Limits of the steps.
 
     Returns
     -------
-    The solution at `end`; None if `end` is not reached.
+    The solution at `end`; None if the limits do not suffice to reach `end`.
     """
-    reached, step = begin, steps.first
-    for _ in range(steps.most):
+    reached, step = begin, limits.first
+    for _ in range(limits.attempts):
         target = min(reached + step, end)
         next_solution = advance(solution, target)
         if next_solution is not None:
             solution, reached, step = next_solution, target, 2.0 * step
             if reached == end:
                 return solution
-        elif step > steps.smallest:
+        elif step > limits.smallest:
             step *= 0.5
         else:
             return None

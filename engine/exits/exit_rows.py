@@ -42,7 +42,10 @@ def closed_exits(potential: Potential) -> np.ndarray:
 
 
 def exit_curves(potential: Potential, energy: float) -> np.ndarray:
-    """Return the exits of a potential in units of its well at one energy, of shape (outcomes, columns)."""
+    """Return the exits of a potential in units of its well at one energy, of shape (outcomes, columns).
+
+    Raises `UndefinedExitsError` if the exits over saddles are not defined, and the errors of `closed_exits`.
+    """
     curves = closed_exits(potential)
     for orbit in find_orbits_in_well_units(potential, energy):
         curves[orbit.channel - 1] = orbit.curve
@@ -60,10 +63,10 @@ def exit_curves_at(potential: Potential, energies: np.ndarray, execution: Execut
     return curves
 
 
-def exits_of_orbit(potential: Potential, energy: float) -> tuple[np.ndarray, str]:
-    """Return the `exit_curves` for one orbit, and the reason why the exits over saddles are unknown; "" if they are known.
+def exit_curves_if_known(potential: Potential, energy: float) -> tuple[np.ndarray, str]:
+    """Return the `exit_curves`, and the reason why the exits over saddles are unknown; empty if they are known.
 
-    Unknown exits over saddles count as absent: no orbit crosses them. Other ends remain.
+    Unknown exits over saddles are returned as absent, so that no orbit crosses them. Other ends remain.
     """
     try:
         return exit_curves(potential, energy), ""

@@ -37,10 +37,10 @@ _BISECTIONS = 60
 _LINE_POINTS = 41
 # Step of the difference across the ridge, in units of the distance of the saddle from the origin.
 _RIDGE_STEP = 1e-3
-# Largest change of a wall's position in a step, in units of the neck's width; a larger change can be a jump to another wall.
+# Largest change of a wall's position in a step, in units of the channel's width; a larger change can be a jump to another wall.
 _LARGEST_WALL_STEP = 0.25
 # Largest distance between ends of two orbits that count as the same end, in units of the well.
-_SAME_END = 1e-6
+_END_TOLERANCE = 1e-6
 
 
 def closed_channel(axes: Axes, saddle: np.ndarray) -> np.ndarray:
@@ -55,7 +55,7 @@ def closed_channel(axes: Axes, saddle: np.ndarray) -> np.ndarray:
 
 
 def absent_channel(axes: Axes, saddle: np.ndarray) -> np.ndarray:
-    """Return a row that no orbit crosses, (columns,), for a channel that is part of another exit."""
+    """Return a row that no orbit crosses, (columns,), for a channel that is part of another exit, or whose exit is unknown."""
     curve = closed_channel(axes, saddle)
     curve[geometry.REACH] = -1.0
     return curve
@@ -75,9 +75,9 @@ def ridge_bend(potential: Potential, channel: int) -> float:
 
 
 def line_across(potential: Potential, energy: float, channel: int, edge: float) -> np.ndarray | None:
-    """Return the row of the exit u = edge + a q², a of `ridge_bend`, between the walls of a neck, in the axes of the saddle.
+    """Return the row of the exit u = edge + a q² between the walls of a channel, in the axes of the saddle; a is `ridge_bend`.
 
-    The walls are followed from the saddle to the exit. The result is None if the walls do not reach it.
+    The walls are followed from the saddle to the exit. The result is None if the walls do not reach the exit.
     """
     axes, bend = saddle_axes(potential, channel), ridge_bend(potential, channel)
     walls = _find_walls(potential, energy, axes, np.linspace(0.0, edge, _WALL_STEPS + 1), bend)
@@ -100,7 +100,7 @@ def line_across(potential: Potential, energy: float, channel: int, edge: float) 
 
 
 def curve_along(axes: Axes, saddle: np.ndarray, path: np.ndarray) -> np.ndarray | None:
-    """Return the row of a path (2, n) as a graph u = f(s), s ∈ [−1, 1], without its reach; None unless it is a smooth graph."""
+    """Return the row of a path (2, n) as a graph u = f(s), s ∈ [−1, 1]; None unless it is a smooth graph. Its reach is unset."""
     u, q = axes.coordinates(path)
     middle, half_width = 0.5 * (q[0] + q[-1]), 0.5 * (q[-1] - q[0])
     s = (q - middle) / half_width
@@ -177,7 +177,7 @@ def _find_walls(potential: Potential, energy: float, axes: Axes, offset: np.ndar
 
 def paths_meet(one: np.ndarray, other: np.ndarray) -> bool:
     """Return whether two paths, (n, 2) and (m, 2), intersect, or have the same ends and thus are the same path."""
-    return _paths_cross(one, other) or bool(np.abs(one[[0, -1]] - other[[0, -1]]).max() < _SAME_END)
+    return _paths_cross(one, other) or bool(np.abs(one[[0, -1]] - other[[0, -1]]).max() < _END_TOLERANCE)
 
 
 def _paths_cross(one: np.ndarray, other: np.ndarray) -> bool:
@@ -191,5 +191,5 @@ def _paths_cross(one: np.ndarray, other: np.ndarray) -> bool:
         return segment[..., 0] * offset[..., 1] > segment[..., 1] * offset[..., 0]
 
     # Two segments intersect if the ends of each lie on different sides of the other.
-    of_other, of_one = sides(one, other), sides(other, one).T
-    return bool(np.any((of_other[:, 1:] != of_other[:, :-1]) & (of_one[1:] != of_one[:-1])))
+    other_sides, one_sides = sides(one, other), sides(other, one).T
+    return bool(np.any((other_sides[:, 1:] != other_sides[:, :-1]) & (one_sides[1:] != one_sides[:-1])))

@@ -27,7 +27,7 @@ LARGEST_ERROR = 1e-6
 """Largest distance of an interpolated exit from the exit, in units of the well."""
 
 # Numbers of nodes to try, in turn, until the error measured between the nodes is small enough.
-_NODES = (10, 20, 40)
+_NODE_COUNTS = (10, 20, 40)
 # Shares of the range of energies to try. A smaller share is needed near a maximum between two exits, where exits change too fast.
 _SHARES = (1.0, 0.9, 0.75, 0.5)
 # The error between the nodes must be below this share of the largest error.
@@ -41,8 +41,8 @@ _POSITIONS = np.linspace(-1.0, 1.0, 21)
 # Columns of an exit curve that follow gate and reach in a row of a table, see `engine.integrator.kernels.exit_geometry`.
 _CURVE_COLUMNS = np.r_[geometry.ORIGIN_X : geometry.OUTWARD_Y + 1, geometry.MIDDLE : geometry.CURVE_COLUMNS]
 
-# Returns the exit curves at an energy, by channel.
-_Curves = Callable[[float], dict[int, np.ndarray]]
+# A function of the energy that returns the exit curves by channel.
+_CurvesAt = Callable[[float], dict[int, np.ndarray]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +92,7 @@ def tabulate_exits(potential: Potential, highest: float) -> tuple[ExitTable, ...
 
     def curves_at(energy: float) -> dict[int, np.ndarray]:
         if energy not in curves:
-            curves[energy] = _curves(potential, energy)
+            curves[energy] = _find_curves(potential, energy)
         return curves[energy]
 
     highest = min([highest, *(merger.energy for merger in potential.well.channel_mergers)])
@@ -100,8 +100,8 @@ def tabulate_exits(potential: Potential, highest: float) -> tuple[ExitTable, ...
     return tuple(_tabulate(curves_at, channel, saddle, highest) for channel, saddle in saddles)
 
 
-def _curves(potential: Potential, energy: float) -> dict[int, np.ndarray]:
-    """Return the exit curves at one energy, by channel; ValueError if a curve is not a graph over its chord."""
+def _find_curves(potential: Potential, energy: float) -> dict[int, np.ndarray]:
+    """Return the exit curves at one energy, by channel; ValueError if exits are undefined or no graphs over their chords."""
     curves = {}
     for orbit in find_orbits_in_well_units(potential, energy):
         curve = _exit_over_chord(orbit)
@@ -129,20 +129,19 @@ def _exit_over_chord(orbit: LyapunovOrbit) -> np.ndarray | None:
     return curve
 
 
-def _tabulate(curves_at: _Curves, channel: int, saddle: float, highest: float) -> ExitTable:
-    """Return the table of one channel."""
+def _tabulate(curves_at: _CurvesAt, channel: int, saddle: float, highest: float) -> ExitTable:
+    """Return the table of one channel: of the widest range of `_SHARES` with an accurate interpolation, or an empty table."""
     no_nodes, no_rows = np.zeros(0), np.zeros((0, MIDDLE_COLUMN))
     if highest <= saddle:
         return ExitTable(saddle, highest, no_nodes, no_rows)
-    for share, count in itertools.product(_SHARES, _NODES):
-        largest = np.sqrt(share * (highest - saddle))
-        nodes, test_sigmas = _nodes(count, largest), _test_sigmas(count, largest)
+    for share, count in itertools.product(_SHARES, _NODE_COUNTS):
+        largest_sigma = np.sqrt(share * (highest - saddle))
+        nodes, test_sigmas = _chebyshev_nodes(count, largest_sigma), _test_sigmas(count, largest_sigma)
         try:
             # The end of the range is tried first: if an exit is undefined anywhere, it is undefined there.
-            curves_at(saddle + largest**2)
-            node_curves, test_curves = (
-                [curves_at(saddle + sigma**2)[channel] for sigma in sigmas.tolist()] for sigmas in (nodes, test_sigmas)
-            )
+            curves_at(saddle + largest_sigma**2)
+            node_curves = [curves_at(saddle + sigma**2)[channel] for sigma in nodes.tolist()]
+            test_curves = [curves_at(saddle + sigma**2)[channel] for sigma in test_sigmas.tolist()]
         except ValueError:
             # An exit is undefined in this range: try the next range.
             continue
@@ -154,14 +153,14 @@ def _tabulate(curves_at: _Curves, channel: int, saddle: float, highest: float) -
     return ExitTable(saddle, saddle, no_nodes, no_rows)
 
 
-def _nodes(count: int, largest: float) -> np.ndarray:
+def _chebyshev_nodes(count: int, largest_sigma: float) -> np.ndarray:
     """Return the Chebyshev nodes of the first kind between σ = 0 and the largest σ."""
-    return 0.5 * largest * (1.0 - np.cos(np.pi * (2 * np.arange(count) + 1) / (2 * count)))
+    return 0.5 * largest_sigma * (1.0 - np.cos(np.pi * (2 * np.arange(count) + 1) / (2 * count)))
 
 
-def _test_sigmas(count: int, largest: float) -> np.ndarray:
+def _test_sigmas(count: int, largest_sigma: float) -> np.ndarray:
     """Return values of σ between the nodes, and the end of the range."""
-    return 0.5 * largest * (1.0 - np.cos(np.pi * (np.arange(count) + 1) / count))
+    return 0.5 * largest_sigma * (1.0 - np.cos(np.pi * (np.arange(count) + 1) / count))
 
 
 def _row(curve: np.ndarray) -> np.ndarray:

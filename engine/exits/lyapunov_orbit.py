@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from engine.exits.exit_shapes import line_points, mirrored_curve
-from engine.exits.periodic_orbits import monodromy_matrix, multipliers_of
+from engine.exits.periodic_orbits import floquet_multipliers, monodromy_matrix
 from engine.foundations.arrays import read_only
 from engine.foundations.result import Result
 from engine.integrator.kernels import exit_geometry as geometry
@@ -20,7 +20,7 @@ from engine.systems.well_units import ENERGY, LENGTH, MOMENTUM, TIME, WellUnits
 
 @dataclass(frozen=True, eq=False, repr=False)
 class LyapunovOrbit(Result):
-    """One Lyapunov orbit; lengths and times are dimensionless. The arrays are read-only.
+    """One Lyapunov orbit; all quantities are dimensionless. The arrays are read-only.
 
     Attributes
     ----------
@@ -31,16 +31,17 @@ class LyapunovOrbit(Result):
     period
         Period of the orbit.
     x, y
-        (201,) path over one period, evenly spaced in time, from one side of the channel to the other and back; the first and the
-        last point are equal.
+        (201,) path over one period, evenly spaced in time, from one side of the channel to the other and back; in a rotating
+        frame, once around a closed curve. The first and the last point are equal.
     curve
-        (columns,) row of the exit for the kernels of the integrator.
+        (columns,) the exit as a row of numbers, see `engine.integrator.kernels.exit_geometry`.
     velocity
-        (2,) px and py at the first point, equal to the velocity for a mass of 1; 0 unless the frame rotates.
+        (2,) momenta px and py at the first point, which equal ẋ and ẏ; 0 unless the frame rotates.
     others
-        Other channels of the same exit, above the maxima between the channels; `channel` is the lowest of their numbers.
+        Numbers of the other channels of the same exit, if the energy is above the maxima between them and `channel`, which is
+        the lowest number.
     potential
-        The `Potential`.
+        The potential in which the orbit moves.
     """
 
     channel: int
@@ -56,9 +57,9 @@ class LyapunovOrbit(Result):
     inner_names: ClassVar = Result.inner_names | {"mirrored", "restored", "symmetrized"}
 
     def find_multipliers(self) -> np.ndarray:
-        """Return the stability of the orbit: the eigenvalues of the flow linearised along one period, the largest modulus first.
+        """Return the Floquet multipliers: the eigenvalues of the monodromy matrix, in order of decreasing modulus.
 
-        The result is complex, of shape (4,): 1, 1, λ and 1/λ. If the modulus of λ is not 1, the orbit is unstable. The double
+        The result is complex, of shape (4,): λ, 1, 1 and 1/λ. If the modulus of λ is not 1, the orbit is unstable. The double
         eigenvalue 1 has only one eigenvector, so rounding changes it by the square root of the error of the matrix, 1e-8 to 1e-6.
 
         Examples
@@ -69,9 +70,8 @@ class LyapunovOrbit(Result):
         93.85
         """
         units = self.potential.units
-        return read_only(
-            multipliers_of(monodromy_matrix(self.potential.in_well_units, self.start / units.state, self.period / units.time))
-        )
+        monodromy = monodromy_matrix(self.potential.in_well_units, self.start / units.state, self.period / units.time)
+        return read_only(floquet_multipliers(monodromy))
 
     @property
     def start(self) -> np.ndarray:
@@ -113,6 +113,7 @@ class LyapunovOrbit(Result):
 
     @property
     def _is_closed_curve(self) -> bool:
+        # Only in a rotating frame is the orbit a closed curve, and its exit a parabola (LINE).
         return bool(self.curve[geometry.SHAPE] == geometry.LINE)
 
     def restored(self, units: WellUnits) -> LyapunovOrbit:
@@ -126,9 +127,9 @@ class LyapunovOrbit(Result):
         return replace(units.restore(self), curve=curve)
 
     def mirrored(self, channel: int) -> LyapunovOrbit:
-        """Return the exact image under x → −x, so that mirror images of orbits escape at exactly the same time."""
+        """Return the exact image under x → −x in a frame at rest, so that mirror images of orbits escape at the same time."""
         return replace(self, channel=channel, x=-self.x, curve=mirrored_curve(self.curve))
 
     def symmetrized(self) -> LyapunovOrbit:
-        """Return an orbit over a saddle on the y axis, with an exit curve that is exactly symmetric."""
+        """Return this orbit over a saddle on the y axis, with an exit curve that is exactly symmetric under x → −x."""
         return replace(self, curve=0.5 * (self.curve + mirrored_curve(self.curve)))

@@ -29,7 +29,7 @@ from engine.integrator.kernels import exit_geometry as geometry
 from engine.systems.merged_channels import MergedExit
 from engine.systems.potential import Potential
 
-# Reasons why an exit of several channels is not defined, by rank. If orbits fail for different reasons, the highest is reported.
+# Reasons why an exit of several channels is not defined, by rank. Of the reasons of all orbits found, the highest is reported.
 _NO_ORBIT, _SHARP_BEND, _RETURNS = range(3)
 _REASONS = {
     _NO_ORBIT: "no orbit at rest on both of its outer walls was found with all its saddles between; choose another energy",
@@ -99,7 +99,7 @@ def find_orbits_in_well_units(potential: Potential, energy: float) -> tuple[Lyap
 
 
 def find_known_exits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:
-    """Apply `find_lyapunov_orbits`, but return no orbits where the exits are not defined at the energy."""
+    """Apply `find_lyapunov_orbits`, but return no orbits if the exits are not defined at the energy."""
     try:
         return find_lyapunov_orbits(potential, energy)
     except UndefinedExitsError:
@@ -152,13 +152,12 @@ def _find_separate_orbits(potential: Potential, energy: float, follow: bool) -> 
 
 def _check_separate(potential: Potential, energy: float) -> None:
     """Raise an error if several channels form one exit."""
-    for merged in potential.well.merged_exits(energy):
-        raise _SearchError(
-            f"{_describe(potential, merged)}, which has no Lyapunov orbit in a rotating frame; choose a lower energy"
-        )
+    if merged_exits := potential.well.merged_exits(energy):
+        exit_text = _describe_merged_exit(potential, merged_exits[0])
+        raise _SearchError(f"{exit_text}, which has no Lyapunov orbit in a rotating frame; choose a lower energy")
 
 
-def _describe(potential: Potential, merged: MergedExit) -> str:
+def _describe_merged_exit(potential: Potential, merged: MergedExit) -> str:
     """Return which channels form an exit, and above which maximum of V, for messages."""
     # The mergers are sorted by energy.
     lowest = next(merger for merger in potential.well.channel_mergers if set(merger.channels) <= set(merged.channels))
@@ -170,7 +169,7 @@ def _describe(potential: Potential, merged: MergedExit) -> str:
 def _find_merged(potential: Potential, energy: float, merged: MergedExit) -> LyapunovOrbit:
     """Return the orbit between the outer walls of an exit of several channels."""
     if merged.closes_ring:
-        raise _SearchError(f"{_describe(potential, merged)}, and it leads all around the well; choose a lower energy")
+        raise _SearchError(f"{_describe_merged_exit(potential, merged)}, and it leads all around the well; choose a lower energy")
     axes, saddle = axes_between(potential, merged.channels), potential.saddles[merged.channels[0] - 1]
     reason = _NO_ORBIT
     for orbit in find_merged_orbits(potential, energy, merged.channels):
@@ -182,7 +181,7 @@ def _find_merged(potential: Potential, energy: float, merged: MergedExit) -> Lya
         if not has_returns(potential, energy, orbit, lyapunov_orbit.curve):
             return replace(lyapunov_orbit, others=merged.channels[1:])
         reason = _RETURNS
-    raise _SearchError(f"{_describe(potential, merged)}, and {_REASONS[reason]}")
+    raise _SearchError(f"{_describe_merged_exit(potential, merged)}, and {_REASONS[reason]}")
 
 
 def _check_exits_apart(orbits: tuple[LyapunovOrbit, ...]) -> None:

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from engine.exits.brake_orbits import Axes, saddle_axes
-from engine.exits.continuation import Steps, follow
+from engine.exits.continuation import StepLimits, follow
 from engine.exits.exit_shapes import ridge_bend
 from engine.integrator.kernels.dense_output import advance_states, sample_path, trace_pieces, trace_steps, transition_matrices
 from engine.systems.potential import Potential
@@ -27,13 +27,13 @@ _NODES = 8
 _POINTS_PER_NODE = 25
 _MOST_CORRECTIONS = 12
 # Relative size below which corrections that no longer decrease are rounding errors.
-_NEARLY_EXACT = 1e-6
-# Lower bound of this size, which matters near the saddle: a number of roundings of the energy, divided by σ².
-_ROUNDINGS = 64
+_CORRECTION_TOLERANCE = 1e-6
+# Near the saddle, the tolerance is instead the rounding error of the energy, divided by σ², times this number.
+_ENERGY_ROUNDINGS = 64
 # Largest relative change of a prediction by its corrections; a larger change can be a jump to another orbit.
 _LARGEST_CHANGE = 0.1
 # Number of orbits from which the next one is predicted.
-_PREDICTED_FROM = 4
+_PREDICTOR_ORBITS = 4
 # Smallest step of σ, in units of the final σ.
 _SMALLEST_STEP = 2.0**-10
 # Largest number of steps of σ.
@@ -46,7 +46,7 @@ _SHARPNESS = 50.0
 _LARGEST_GAP = 1e-10
 
 # The values of σ reached last, each with the unknowns of its orbit, see `_correct`.
-_Known = list[tuple[float, np.ndarray]]
+_KnownOrbits = list[tuple[float, np.ndarray]]
 
 
 class PeriodicOrbit(NamedTuple):
@@ -113,18 +113,18 @@ def find_orbit_in_rotating_frame(potential: Potential, energy: float, channel: i
     )
     # Trial orbits that diverge are rejected later.
     with np.errstate(all="ignore"):
-        unknowns = _follow(family, float(np.sqrt(energy - saddle_energy)))
-        return None if unknowns is None else _finish(family, energy, unknowns)
+        unknowns = _continue_to(family, float(np.sqrt(energy - saddle_energy)))
+        return None if unknowns is None else _complete_orbit(family, energy, unknowns)
 
 
-def multipliers_of(matrix: np.ndarray) -> np.ndarray:
-    """Return the complex eigenvalues of a monodromy matrix, of shape (4,), the largest modulus first."""
-    values = np.linalg.eigvals(matrix).astype(complex)
-    return values[np.argsort(-np.abs(values), kind="stable")]
+def floquet_multipliers(matrix: np.ndarray) -> np.ndarray:
+    """Return the complex eigenvalues of a monodromy matrix, of shape (4,), in order of decreasing modulus."""
+    eigenvalues = np.linalg.eigvals(matrix).astype(complex)
+    return eigenvalues[np.argsort(-np.abs(eigenvalues), kind="stable")]
 
 
 def monodromy_matrix(potential: Potential, start: np.ndarray, period: float) -> np.ndarray:
-    """Return the flow linearised along one period from a state (4,), of shape (4, 4), in units of the well."""
+    """Return the monodromy matrix, (4, 4), of an orbit that begins at a state (4,), in units of the well."""
     kernels = potential.well.kernels
     steps = trace_steps(kernels, start, period, len(potential.outcomes))
     durations = np.diff(steps[:, 4], append=period)
@@ -135,14 +135,15 @@ def monodromy_matrix(potential: Potential, start: np.ndarray, period: float) -> 
     return matrix
 
 
-def _follow(family: _Family, sigma: float) -> np.ndarray | None:
+def _continue_to(family: _Family, sigma: float) -> np.ndarray | None:
     """Return the unknowns of the orbit at σ, see `_correct`, followed from σ = 0 with an adaptive step; None if this fails."""
 
-    def advance(known: _Known, target: float) -> _Known | None:
+    def advance(known: _KnownOrbits, target: float) -> _KnownOrbits | None:
         corrected = _correct(family, target, _extrapolate(known, target))
-        return None if corrected is None else [*known, (target, corrected)][-_PREDICTED_FROM:]
+        return None if corrected is None else [*known, (target, corrected)][-_PREDICTOR_ORBITS:]
 
-    known = follow(advance, [(0.0, _small_oscillation(family))], 0.0, sigma, Steps(sigma, _SMALLEST_STEP * sigma, _MOST_STEPS))
+    limits = StepLimits(sigma, _SMALLEST_STEP * sigma, _MOST_STEPS)
+    known = follow(advance, [(0.0, _small_oscillation(family))], 0.0, sigma, limits)
     return None if known is None else known[-1][1]
 
 
@@ -167,7 +168,7 @@ def _small_oscillation(family: _Family) -> np.ndarray:
     return np.append(nodes, 2.0 * np.pi / frequency)
 
 
-def _extrapolate(known: _Known, target: float) -> np.ndarray:
+def _extrapolate(known: _KnownOrbits, target: float) -> np.ndarray:
     """Evaluate, at the target, the polynomial that interpolates the unknowns at known values of σ."""
     sigmas = np.array([sigma for sigma, _ in known])
     weights = [np.prod((target - np.delete(sigmas, k)) / (sigma - np.delete(sigmas, k))) for k, sigma in enumerate(sigmas)]
@@ -181,7 +182,7 @@ def _correct(family: _Family, sigma: float, predicted: np.ndarray) -> np.ndarray
     """
     unknowns: np.ndarray = predicted.copy()
     previous_size = np.inf
-    nearly_exact = max(_NEARLY_EXACT, _ROUNDINGS * float(np.spacing(abs(family.saddle_energy))) / sigma**2)
+    tolerance = max(_CORRECTION_TOLERANCE, _ENERGY_ROUNDINGS * float(np.spacing(abs(family.saddle_energy))) / sigma**2)
     for _ in range(_MOST_CORRECTIONS):
         correction = _newton_step(family, sigma, unknowns)
         if correction is None:
@@ -191,7 +192,7 @@ def _correct(family: _Family, sigma: float, predicted: np.ndarray) -> np.ndarray
         # `not … <` also rejects NaN.
         if not _relative_size(unknowns - predicted, unknowns) < _LARGEST_CHANGE:
             return None
-        if size < nearly_exact and size > 0.1 * previous_size:
+        if size < tolerance and size > 0.1 * previous_size:
             return unknowns
         previous_size = size
     return None
@@ -204,7 +205,13 @@ def _relative_size(change: np.ndarray, unknowns: np.ndarray) -> float:
 
 
 def _newton_step(family: _Family, sigma: float, unknowns: np.ndarray) -> np.ndarray | None:
-    """Return the least-squares solution of the linearised equations; None where the trial orbit cannot be integrated.
+    """Return the least-squares solution of the linearised equations; None if the trial orbit cannot be integrated."""
+    system = _linearise(family, sigma, unknowns)
+    return None if system is None else -np.linalg.lstsq(*system, rcond=None)[0]
+
+
+def _linearise(family: _Family, sigma: float, unknowns: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
+    """Return the Jacobian matrix and the residual of the equations; None if the trial orbit cannot be integrated.
 
     The equations: each part ends where the next part begins, the energy is σ² above the saddle, and q̇ = 0 at the start.
     """
@@ -224,9 +231,7 @@ def _newton_step(family: _Family, sigma: float, unknowns: np.ndarray) -> np.ndar
     jacobian[-2, :4] = np.array([*family.potential.gradient(start[0], start[1]), start[2], start[3]]) / sigma
     jacobian[-1, 2:4] = -outward[1], outward[0]
     residual[-1] = jacobian[-1, :4] @ unknowns[:4]
-    if not (np.isfinite(residual).all() and np.isfinite(jacobian).all()):
-        return None
-    return -np.linalg.lstsq(jacobian, residual, rcond=None)[0]
+    return (jacobian, residual) if np.isfinite(residual).all() and np.isfinite(jacobian).all() else None
 
 
 def _velocities(potential: Potential, states: np.ndarray) -> np.ndarray:
@@ -262,7 +267,7 @@ def _product(matrices: np.ndarray) -> np.ndarray:
     return functools.reduce(lambda earlier, matrix: matrix @ earlier, matrices)
 
 
-def _finish(family: _Family, energy: float, unknowns: np.ndarray) -> PeriodicOrbit | None:
+def _complete_orbit(family: _Family, energy: float, unknowns: np.ndarray) -> PeriodicOrbit | None:
     """Return the orbit with its path and edge; None if its parts do not join within `_LARGEST_GAP`."""
     sigma, period = float(np.sqrt(energy - family.saddle_energy)), float(unknowns[-1])
     states = family.saddle_state + sigma * unknowns[:-1].reshape(_NODES, 4)

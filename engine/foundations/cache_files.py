@@ -33,10 +33,10 @@ MOST_FILES = 4096
 """Largest number of files; each write lists all files, which takes 0.01 s."""
 
 # Suffix of the names of incomplete files.
-_PART = ".part"
+_INCOMPLETE_SUFFIX = ".part"
 # Number of bytes of the hash at the start of a file.
 _HASH_BYTES = hashlib.sha256().digest_size
-# User number of the superuser, who may own the files.
+# User number of the superuser, whose files are trusted.
 _SUPERUSER = 0
 
 log = logging.getLogger(__name__)
@@ -66,7 +66,7 @@ def read_cached(path: Path) -> bytes | None:
         return None
     try:
         with path.open("rb") as file:
-            if problem := _find_other_user(os.fstat(file.fileno())):
+            if problem := _describe_other_writer(os.fstat(file.fileno())):
                 log.warning("the compiled kernel %s is ignored: %s", path, problem)
                 return None
             content = file.read()
@@ -87,7 +87,7 @@ def read_or_make(path: Path, kind: str, make: Callable[[], bytes]) -> bytes:
     path
         The file.
     kind
-        What the file contains, for a warning if it is invalid.
+        What the file contains, a noun in the plural, for a warning if the file is invalid.
     make
         Returns the content. Its errors are raised, and nothing is written.
     """
@@ -123,9 +123,9 @@ def delete_cached(name: str) -> None:
 
 
 def _is_private_folder(folder: Path) -> bool:
-    """Return whether only this user can write to a folder, or the folder is missing; if not, log a warning."""
+    """Return whether only this user can write to a folder, or the folder cannot be examined; if not, log a warning."""
     try:
-        problem = _find_other_user(folder.stat())
+        problem = _describe_other_writer(folder.stat())
     except OSError:
         return True
     if problem:
@@ -133,8 +133,8 @@ def _is_private_folder(folder: Path) -> bool:
     return not problem
 
 
-def _find_other_user(status: os.stat_result) -> str:
-    """Describe who else may have written a file or folder, and the remedy; empty if only this user or the superuser could."""
+def _describe_other_writer(status: os.stat_result) -> str:
+    """Describe who else can write a file or folder, and the remedy; empty if only this user and the superuser can."""
     if os.name != "posix":
         return ""
     if status.st_uid not in (os.geteuid(), _SUPERUSER):
@@ -145,7 +145,7 @@ def _find_other_user(status: os.stat_result) -> str:
 
 
 def _mark_used(path: Path) -> None:
-    """Set the access time, which many file systems do not update when a file is read."""
+    """Set the access time to now, because many file systems do not update it when a file is read."""
     with contextlib.suppress(OSError):
         os.utime(path, ns=(time.time_ns(), path.stat().st_mtime_ns))
 
@@ -157,7 +157,7 @@ def _delete_least_recently_used(folder: Path, largest_size: int, most_files: int
         for entry in entries:
             # Another process may have deleted the file.
             with contextlib.suppress(FileNotFoundError):
-                if entry.name.endswith((SUFFIX, _PART)):
+                if entry.name.endswith((SUFFIX, _INCOMPLETE_SUFFIX)):
                     status = entry.stat()
                     files.append((status.st_atime_ns, status.st_size, entry.path))
     file_count, total_size = len(files), sum(size for _, size, _ in files)
@@ -169,14 +169,14 @@ def _delete_least_recently_used(folder: Path, largest_size: int, most_files: int
 
 
 def _write_atomically(path: Path, content: bytes) -> None:
-    """Write a temporary file in the same folder, and rename it."""
-    handle, part = tempfile.mkstemp(dir=path.parent, suffix=_PART)
+    """Write a temporary file in the same folder, and rename it, so that other processes never read an incomplete file."""
+    handle, incomplete = tempfile.mkstemp(dir=path.parent, suffix=_INCOMPLETE_SUFFIX)
     try:
         with os.fdopen(handle, "wb") as file:
             file.write(content)
-        os.replace(part, path)
+        os.replace(incomplete, path)
     except BaseException:
-        Path(part).unlink(missing_ok=True)
+        Path(incomplete).unlink(missing_ok=True)
         raise
 
 

@@ -18,15 +18,15 @@ from typing import Any
 
 import numpy as np
 
-# Smallest number of indices in a task, approximately.
-_LEAST_PART = 1000
+# Approximate smallest number of indices in a part of `run_parts`.
+_SMALLEST_PART = 1000
 # Nice value of compute threads, which under contention get about a tenth of the processor time of a normal thread. At idle
 # priority, another program could stop a thread that holds the interpreter lock, and all other threads would wait for the lock.
 _NICE_VALUE = 10
 # Time after which a progress bar appears, in seconds.
-_DELAY = 1.0
+_BAR_DELAY = 1.0
 # Format of a progress bar, for tqdm.
-_FORMAT = "{desc}: {percentage:3.0f}% |{bar}| {elapsed}<{remaining}"
+_BAR_FORMAT = "{desc}: {percentage:3.0f}% |{bar}| {elapsed}<{remaining}"
 # Set while a progress bar is shown, so that nested calls show no bar.
 _bar_is_shown = threading.Event()
 
@@ -40,7 +40,7 @@ def count_cores() -> int:
 
 @functools.cache
 def default_executor() -> ThreadPoolExecutor:
-    """Return the thread pool of this process, with one thread per core; kernels release the GIL."""
+    """Return the thread pool of this process, one thread per core. Kernels release the GIL, so threads run in parallel."""
     return create_thread_pool(count_cores())
 
 
@@ -50,7 +50,7 @@ if hasattr(os, "register_at_fork"):
 
 
 def create_thread_pool(threads: int) -> ThreadPoolExecutor:
-    """Return a thread pool for kernels, whose priority is lower than that of the other threads of this process."""
+    """Return a thread pool for kernels. Its threads have a lower priority than the other threads of this process."""
     return ThreadPoolExecutor(threads, thread_name_prefix="orbits", initializer=_lower_priority)
 
 
@@ -187,7 +187,7 @@ def run_parts(
     for other processes, and it should release the GIL.
     """
     # Two parts per worker, because parts differ in duration.
-    count = min(2 * execution.workers, math.ceil(indices.size / _LEAST_PART))
+    count = min(2 * execution.workers, math.ceil(indices.size / _SMALLEST_PART))
     parts = np.array_split(indices, count) if count else []
     futures = [execution.submit(work, *select(part)) for part in parts]
     for part, future in zip(parts, futures, strict=True):
@@ -199,7 +199,8 @@ def run_parts(
 def shows_progress[**P, T](label: str) -> Callable[[Callable[P, T]], Callable[P, T]]:
     """Decorate a function with a parameter ``execution`` to show a progress bar, unless the caller receives the progress.
 
-    In the main thread of a terminal or a notebook, a bar appears after a second. The environment variable ``TQDM_DISABLE=1``
+    The caller receives it by `Execution.on_progress`, or by a parameter ``on_progress`` or ``on_frame`` of the function. A bar
+    appears after a second, in the main thread of a terminal or a notebook only. The environment variable ``TQDM_DISABLE=1``
     disables all bars.
     """
 
@@ -208,7 +209,7 @@ def shows_progress[**P, T](label: str) -> Callable[[Callable[P, T]], Callable[P,
 
         @functools.wraps(function)
         def call(*args: P.args, **kwargs: P.kwargs) -> T:
-            given_arguments = _bind(signature, args, kwargs)
+            given_arguments = _arguments_by_name(signature, args, kwargs)
             execution = given_arguments.get("execution", DEFAULT_EXECUTION)
             if not isinstance(execution, Execution):
                 # The function itself raises the error.
@@ -227,7 +228,7 @@ def shows_progress[**P, T](label: str) -> Callable[[Callable[P, T]], Callable[P,
     return decorate
 
 
-def _bind(signature: inspect.Signature, args: Any, kwargs: Any) -> Mapping[str, Any]:
+def _arguments_by_name(signature: inspect.Signature, args: Any, kwargs: Any) -> Mapping[str, Any]:
     """Return the arguments of a call by name; if the call does not fit the signature, only an `execution` of None."""
     try:
         return signature.bind(*args, **kwargs).arguments
@@ -250,7 +251,7 @@ def _show_bar(label: str) -> Iterator[Callable[[float], None]]:
         warnings.simplefilter("ignore")
         from tqdm.auto import tqdm
 
-        bar = tqdm(total=1.0, desc=label, delay=_DELAY, leave=False, bar_format=_FORMAT)
+        bar = tqdm(total=1.0, desc=label, delay=_BAR_DELAY, leave=False, bar_format=_BAR_FORMAT)
 
     def report(share: float) -> None:
         bar.update(max(share - bar.n, 0.0))

@@ -32,7 +32,7 @@ def require_package(package: str, extra: str) -> None:
 
 @functools.cache
 def load_pictures(group: str = GROUP) -> ModuleType:
-    """Return the module of the entry point of a group, loaded at the first call, because drawing libraries are slow to import.
+    """Return the module of the first entry point of a group. It is loaded at the first call, because it is slow to import.
 
     Raises
     ------

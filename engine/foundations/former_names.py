@@ -33,7 +33,7 @@ FORMER_NAMES: Mapping[str, tuple[str, str]] = MappingProxyType(
         "trace_zero_velocity_curve": ("MapSpec.trace_zero_velocity_curve", "slices.limiting_curves:trace_zero_velocity_curve"),
     }
 )
-"""Former public names, each with its replacement in words and the "module:object" for which it still stands, if any."""
+"""Former public names, each with its replacement in words and the object to which it still refers, as "module:object", or ""."""
 
 
 def find_former_name(name: str, stacklevel: int = 2) -> Any:
@@ -56,12 +56,12 @@ def find_former_name(name: str, stacklevel: int = 2) -> Any:
 
 def with_former_fields[T](cls: type[T]) -> type[T]:
     """Add the `FORMER_FIELDS` to a dataclass, as attributes and as parameters; each use of a former name gives a warning."""
-    names = {each.name for each in fields(cls)}  # type: ignore[arg-type]
+    field_names = {field.name for field in fields(cls)}  # type: ignore[arg-type]
     for old, new in FORMER_FIELDS.items():
-        if hasattr(cls, new) or new in names:
+        if hasattr(cls, new) or new in field_names:
             setattr(cls, old, _former_attribute(old, new))
-    former = {old: new for old, new in FORMER_FIELDS.items() if new in names}
-    cls.__init__ = with_former_parameters(**former)(cls.__init__)  # type: ignore[method-assign]
+    former_parameters = {old: new for old, new in FORMER_FIELDS.items() if new in field_names}
+    cls.__init__ = with_former_parameters(**former_parameters)(cls.__init__)  # type: ignore[method-assign]
     return cls
 
 

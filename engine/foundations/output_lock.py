@@ -37,7 +37,7 @@ def hold_lock(path: Path) -> Iterator[None]:
     Raises
     ------
     BlockingIOError
-        When another process holds the lock; the message contains its number, its machine and the time at which it began.
+        When another process holds the lock; the message contains its number, its machine and the time at which it took the lock.
     OSError
         When the lock file cannot be written.
     """
@@ -81,7 +81,7 @@ def _acquire(lock: FileLock, file: Path, path: Path) -> None:
 
 
 def _read_holder(file: Path) -> str:
-    """Return the text that the holder has written; empty if there is none."""
+    """Return the text that the holder has written; empty if the file is missing."""
     try:
         return file.read_text(errors="replace")
     except FileNotFoundError:

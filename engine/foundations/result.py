@@ -82,7 +82,7 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
     """Name of the dimension of the columns in files; empty if the first column has distinct values and is the coordinate."""
 
     held_as: ClassVar[dict[str, str]] = {}
-    """{field: name in files} of fields stored under another name; for a field stored in several parts, the name of one part."""
+    """{field: name in files} of fields that the class stores itself; if a field is stored in parts, the name of one part."""
 
     @property
     def fate_labels(self) -> Sequence[str]:
@@ -173,8 +173,8 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
 
     @property
     def nbytes(self) -> int:
-        """Bytes held by the arrays."""
-        # Only the fields count: a cached value can be the object itself, as `in_well_units` of a potential whose units are 1.
+        """Number of bytes of the arrays."""
+        # Only the fields count, because a cached property can hold the object itself.
         values = (getattr(self, field.name) for field in fields(cast("Any", self)))
         return sum(int(getattr(value, "nbytes", 0)) for value in values)
 
@@ -234,13 +234,13 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
         file = Path(path)
         if file.suffix != ".nc":
             raise ValueError(f"path={path}: must end in .nc")
-        # If the call is interrupted, the file to be replaced remains unchanged.
-        part = file.with_name(f".{file.name}.{os.getpid()}.part")
+        # An existing file is replaced only by a complete file, even if the call is interrupted.
+        incomplete = file.with_name(f".{file.name}.{os.getpid()}.part")
         try:
-            self.to_xarray().to_netcdf(part)
-            part.replace(file)
+            self.to_xarray().to_netcdf(incomplete)
+            incomplete.replace(file)
         finally:
-            part.unlink(missing_ok=True)
+            incomplete.unlink(missing_ok=True)
 
     def _meaning(self, name: str, values: Any) -> dict[str, str]:
         """Return the attributes of a variable: the meanings of codes, or the unit 1 for other numbers."""

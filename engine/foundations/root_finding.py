@@ -7,11 +7,13 @@ from collections.abc import Callable
 
 import numpy as np
 
-# Largest number of steps; more than a continuous function needs.
+# Largest number of steps; far more than smooth functions need.
 _MOST_STEPS = 100
+# Smallest relative tolerance that rounding permits, the default of SciPy.
+_SMALLEST_RTOL = 4.0 * float(np.finfo(float).eps)
 
 
-def find_root(function: Callable[[float], float], low: float, high: float, *, absolute: float, relative: float) -> float:
+def find_root(function: Callable[[float], float], low: float, high: float, *, xtol: float, rtol: float = _SMALLEST_RTOL) -> float:
     """Find a root by Brent's method (Brent 1973, Algorithms for Minimization without Derivatives, chapter 4).
 
     The steps are those of `scipy.optimize.brentq`, which is not used because its import takes longer than a search.
@@ -22,12 +24,13 @@ def find_root(function: Callable[[float], float], low: float, high: float, *, ab
         Continuous function.
     low, high
         The ends of the bracket, at which the function has different signs.
-    absolute, relative
-        The result is within ``absolute + relative * abs(root)`` of a change of sign.
+    xtol, rtol
+        The result is within ``xtol + rtol * abs(root)`` of a change of sign, unless the number of steps is exhausted. By default
+        `rtol` is four times the spacing of doubles at 1.
 
     Returns
     -------
-    The root. After 100 steps, which a continuous function never needs, the last point.
+    The root. After 100 steps, far more than smooth functions need, the last point.
 
     Raises
     ------
@@ -56,7 +59,7 @@ def find_root(function: Callable[[float], float], low: float, high: float, *, ab
         if abs(opposite_value) < abs(value):
             previous_x, x, opposite_x = x, opposite_x, x
             previous_value, value, opposite_value = value, opposite_value, value
-        tolerance = (absolute + relative * abs(x)) / 2.0
+        tolerance = (xtol + rtol * abs(x)) / 2.0
         half_width = (opposite_x - x) / 2.0
         if value == 0.0 or abs(half_width) < tolerance:
             return x
@@ -91,7 +94,7 @@ def _interpolate(previous: tuple[float, float], present: tuple[float, float], op
 def bisect(
     is_beyond: Callable[[np.ndarray], np.ndarray], within: np.ndarray, beyond: np.ndarray, halvings: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Enclose many boundaries at once by halving intervals.
+    """Enclose many boundaries at once by bisection.
 
     Parameters
     ----------

@@ -33,11 +33,11 @@ def write_field(value: Any) -> Any:
         return value.value
     if isinstance(value, bool):
         return int(value)
-    return value if isinstance(value, int | float | str) else json.dumps(value, default=_plain)
+    return value if isinstance(value, int | float | str) else json.dumps(value, default=_to_json)
 
 
-def _plain(value: Any) -> Any:
-    """Convert a dataclass or an enumeration value to a value that JSON supports."""
+def _to_json(value: Any) -> Any:
+    """Convert a dataclass instance or an enumeration member to a value that JSON supports."""
     if is_dataclass(value):
         return {field.name: getattr(value, field.name) for field in fields(value)}
     if isinstance(value, Enum):
@@ -50,8 +50,8 @@ def read_field(hint: Any, content: Any) -> Any:
     if hint is np.ndarray:
         return read_only(np.array(content))
     hint = _without_none(hint)
-    plain = content if isinstance(content, str) else np.asarray(content).item()
-    return _build(hint, json.loads(plain) if get_origin(hint) is tuple or is_dataclass(hint) else plain)
+    scalar = content if isinstance(content, str) else np.asarray(content).item()
+    return _build(hint, json.loads(scalar) if get_origin(hint) is tuple or is_dataclass(hint) else scalar)
 
 
 def _without_none(hint: Any) -> Any:

@@ -120,7 +120,7 @@ def checked_between(name: str, value: Any, low: float, high: float) -> float:
 
 def checked_count(name: str, value: Any, least: int, most: int) -> int:
     """Return an integer from `least` to `most`; ValueError otherwise."""
-    # Values that are no integers become an integer out of range.
+    # A value that is not an integer is replaced by an integer out of range.
     try:
         count = operator.index(value) if not isinstance(value, bool) else least - 1
     except TypeError:
@@ -160,7 +160,7 @@ def checked_integers(name: str, value: Any) -> np.ndarray:
 def checked_t_max(
     t_max: float, longest: float = LONGEST_TIME, unit: Callable[[], float] = lambda: 1.0, *, name: str = "t_max"
 ) -> float:
-    """Return `t_max`, above 0 and at most `longest`, as a float; a `unit()` above 1 multiplies the limit."""
+    """Return `t_max`, above 0 and at most `longest` times the larger of `unit()` and 1, as a float; ValueError otherwise."""
     # Type checkers would report that the check of a float cannot fail.
     given_t_max: Any = t_max
     is_number = isinstance(given_t_max, int | float | np.number) and not isinstance(given_t_max, bool)
@@ -174,19 +174,19 @@ def checked_t_max(
 
 
 def checked_states(name: str, states: Any) -> np.ndarray:
-    """Return an array (n, 4) of x, y, px and py, each of at most `LARGEST_NUMBER` in magnitude."""
+    """Return an array (n, 4) of x, y, px and py, each at most `LARGEST_NUMBER` in magnitude."""
     array: np.ndarray = np.ascontiguousarray(checked_array(name, states))
     if array.ndim != 2 or array.shape[1] != 4:
         raise ValueError(f"{name} of shape {array.shape}: must be (n, 4) with columns x, y, px, py")
-    legal = (np.abs(array) <= LARGEST_NUMBER).all(axis=1)
-    if not legal.all():
-        row = int(np.argmin(legal))
+    is_legal = (np.abs(array) <= LARGEST_NUMBER).all(axis=1)
+    if not is_legal.all():
+        row = int(np.argmin(is_legal))
         raise ValueError(f"{name}: row {row} has a number that is not finite or larger than {LARGEST_NUMBER:g} in magnitude")
     return array
 
 
 def checked_state(name: str, state: Any) -> np.ndarray:
-    """Return an array of x, y, px and py, each of at most `LARGEST_NUMBER` in magnitude."""
+    """Return an array (4,) of x, y, px and py, each at most `LARGEST_NUMBER` in magnitude."""
     array = checked_array(name, state)
     if array.shape != (4,) or not np.all(np.abs(array) <= LARGEST_NUMBER):
         limit = f"at most {LARGEST_NUMBER:g} in magnitude"

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 # Largest width of the text of a result, in characters.
-_WIDTH = 100
+_TEXT_WIDTH = 100
 # Largest number of lines for each part of the text of a result.
 _MOST_LINES = 3
 _NO_BREAK_SPACE = "\u00a0"
@@ -36,7 +36,7 @@ def format_time(t: float, digits: int = 6) -> str:
 
 
 def format_number(value: float, digits: int = 4) -> str:
-    """Return a number to `digits` significant digits, with typographic signs, such as "1.9 × 10⁻¹²"."""
+    """Return a number to `digits` significant digits, with a typographic minus sign and exponent, such as "1.9 × 10⁻¹²"."""
     return _typeset(f"{value:.{digits}g}")
 
 
@@ -56,6 +56,7 @@ def format_share_range(low: float, high: float, decimals: int = 2) -> str:
 
 
 def _typeset(text: str) -> str:
+    """Return the text of a number, such as "-1e-05", with a typographic minus sign, exponent and infinity: "−10⁻⁵"."""
     mantissa, _, exponent = text.partition("e")
     number = mantissa.replace("-", "−").replace("inf", "∞")
     if not exponent:
@@ -71,7 +72,7 @@ def describe_codes(codes: type[IntEnum], labels: Sequence[str] = ()) -> dict[str
     default labels, "exit 1" and so on, the attribute omits them.
     """
     meanings = [f"{code.value}: {code.name.lower()}" for code in codes]
-    if any(label != _exit(code) for code, label in enumerate(labels, 1)):
+    if any(label != _default_label(code) for code, label in enumerate(labels, 1)):
         meanings += [f"{code}: {label}" for code, label in enumerate(labels, 1)]
     return {"codes": "; ".join(meanings)}
 
@@ -80,10 +81,10 @@ def name_code(codes: type[IntEnum], code: int, labels: Sequence[str] = ()) -> st
     """Return a code in words; `labels` name codes 1, 2 and so on that are not members, by default "exit 1" and so on."""
     if code in codes:
         return codes(code).name.lower().replace("_", " ")
-    return labels[code - 1] if 1 <= code <= len(labels) else _exit(code)
+    return labels[code - 1] if 1 <= code <= len(labels) else _default_label(code)
 
 
-def _exit(code: int) -> str:
+def _default_label(code: int) -> str:
     return f"exit {code}"
 
 
@@ -101,7 +102,7 @@ def _show(value: Any, codes: type[IntEnum] | None, labels: Sequence[str]) -> str
 
 
 def summarize(title: str, sentence: str, scalars: Mapping[str, str], arrays: Mapping[str, np.ndarray]) -> str:
-    """Return a text in three parts of at most three lines: a title with a sentence, the scalars, and the arrays."""
+    """Return a text in three parts of at most three lines each: a title with a sentence, the scalars, and the arrays."""
     lines = _wrap(f"{title}: {sentence}" if sentence else title, indent="")
     lines += _wrap_items(f"{name} {value}" for name, value in scalars.items())
     return "\n".join(lines + _wrap_items(_name_arrays(arrays)))
@@ -122,6 +123,6 @@ def _wrap_items(items: Iterable[str]) -> list[str]:
 
 def _wrap(text: str, indent: str = "  ") -> list[str]:
     return textwrap.wrap(
-        text, _WIDTH, initial_indent=indent, subsequent_indent="  ", max_lines=_MOST_LINES, placeholder=" …",
+        text, _TEXT_WIDTH, initial_indent=indent, subsequent_indent="  ", max_lines=_MOST_LINES, placeholder=" …",
         break_long_words=False,
     )  # fmt: skip

@@ -31,8 +31,8 @@ DEFAULT_CACHE_BYTES = 512 * 2**20
 DEFAULT_ORBITS = 4 * 2**20
 """Default limit on the number of orbits of all large running jobs. So many orbits take about 500 MiB."""
 
-# Number of coordinating threads, one for each running job. They mostly wait for the pool. Further jobs are queued.
-_COORDINATORS = 1024
+# Number of coordinating threads, one for each running job. They mostly wait for the executor. Further jobs are queued.
+_COORDINATING_THREADS = 1024
 
 log = logging.getLogger(__name__)
 
@@ -107,10 +107,11 @@ class Jobs:
         self._scheduler = FairScheduler(None if threads is None else create_thread_pool(threads), clock)
         # Numba compiles one function at a time, so more threads would only wait for each other.
         self._compilations = FairScheduler(create_thread_pool(1), clock)
-        self._limited_calls = FairScheduler(create_thread_pool(most_limited_calls), clock, one_each=True)
+        self._limited_calls = FairScheduler(create_thread_pool(most_limited_calls), clock, one_call_per_client=True)
         self._semaphore = OrbitSemaphore(most_orbits)
+        # Number of ended jobs by outcome.
         self._ended: Counter[str] = Counter()
-        self._coordinators = ThreadPoolExecutor(_COORDINATORS, thread_name_prefix="jobs")
+        self._coordinators = ThreadPoolExecutor(_COORDINATING_THREADS, thread_name_prefix="jobs")
         self._lock = threading.RLock()
         self._in_flight: dict[Job[Any], _Run] = {}
         self.cache = ResultCache(cache_bytes)
@@ -133,8 +134,8 @@ class Jobs:
         job
             The job.
         on_result
-            Called with the result and, if results have an attribute ``complete``, with partial results: in this thread if they
-            are at hand, otherwise from another thread.
+            Called with the result and, if results have an attribute ``complete``, with partial results: in this thread with
+            results that exist already, otherwise from another thread.
         on_error
             Called from another thread with the exception if the computation fails.
         client
@@ -172,7 +173,7 @@ class Jobs:
         """Return the current load, totals and memory."""
         return JobStats(
             in_flight=self.in_flight,
-            calls_waiting=sum(queue.pending_calls for queue in (self._scheduler, self._compilations, self._limited_calls)),
+            calls_waiting=sum(each.pending_calls for each in (self._scheduler, self._compilations, self._limited_calls)),
             done=self._ended["done"],
             failed=self._ended["failed"],
             cancelled=self._ended["cancelled"],
@@ -181,10 +182,11 @@ class Jobs:
             orbits_held=self._semaphore.held,
             orbits_limit=self._semaphore.limit,
             threads=count_workers(self._executor) if self._executor is not None else self._scheduler.threads,
-            computed=sum(queue.computed for queue in (self._scheduler, self._compilations)),
+            processor_time=sum(each.processor_time for each in (self._scheduler, self._compilations)),
         )
 
     def _map_priority(self) -> MapPriority:
+        """Return the priority of a map that is requested now."""
         return MapPriority(lambda: self._scheduler.first_frames_preferred, self._clock)
 
     def prefer_first_frames(self, preferred: bool) -> None:
@@ -192,7 +194,7 @@ class Jobs:
         self._scheduler.prefer_first_frames(preferred)
 
     def pause_background(self, paused: bool) -> None:
-        """Pause or resume all calls but first frames, long calls and limited calls; see `FairScheduler.pause_background`."""
+        """Pause or resume background calls, and slow down long calls and compilations; see `FairScheduler.pause_background`."""
         self._scheduler.pause_background(paused)
         self._compilations.pause_background(paused)
 
@@ -223,7 +225,7 @@ class Jobs:
             with self._semaphore.acquire(run.job.orbits_held, execution), charged_to(run.account):
                 execution.raise_if_cancelled()
                 run.executors = self._create_executors(run)
-                result = self._compute(run.job, run, partial(self._publish, run))
+                result = self._call_function(run.job, run, partial(self._publish, run))
         except CancelledError:
             pass
         except Exception as raised:
@@ -235,7 +237,7 @@ class Jobs:
             elif result is not ABSENT:
                 subscription.deliver(result, last=True)
 
-    def _compute(self, job: Job[Any], run: _Run, publish: Callable[[Any], None] | None) -> Any:
+    def _call_function(self, job: Job[Any], run: _Run, publish: Callable[[Any], None] | None) -> Any:
         """Call the function of a job: of the run's own job, or of a job whose result that job needs."""
         arguments = [self._find_result(run, value) if isinstance(value, Job) else value for value in job.arguments]
         executors: Mapping[Queue, Executor] = dict.fromkeys(Queue, self._executor) if self._executor else run.executors
@@ -253,10 +255,10 @@ class Jobs:
         return call()
 
     def _find_result[Result](self, run: _Run, job: Job[Result]) -> Result:
-        """Return the complete result of a job that the job of the run needs. A computed result is cached."""
+        """Return the complete result of a job that the job of the run needs, from the cache or computed and cached."""
         result: Any = self.cache.get(job, ABSENT)
         if not _is_complete(result):
-            result = self._compute(job, run, None)
+            result = self._call_function(job, run, None)
             self.cache.put(job, result)
         if not _is_complete(result):
             raise CancelledError
@@ -283,7 +285,8 @@ class Jobs:
                 self.cache.put(run.job, result)
             if self._in_flight.get(run.job) is run:
                 del self._in_flight[run.job]
-            self._ended["failed" if error else "cancelled" if run.cancel.is_set() else "done"] += 1
+            outcome = "cancelled" if run.cancel.is_set() else "done"
+            self._ended["failed" if error else outcome] += 1
             return run.release()
 
     def _publish(self, run: _Run, result: Any) -> None:
@@ -300,5 +303,5 @@ class Jobs:
 
 
 def _is_complete(result: Any) -> bool:
-    """Return whether a result is final; only results that arrive in parts have an attribute ``complete``."""
+    """Return whether there is a complete result. A result without an attribute ``complete`` is complete."""
     return result is not ABSENT and getattr(result, "complete", True)

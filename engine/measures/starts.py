@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Protocol
@@ -37,15 +38,15 @@ class Classified(Protocol):
 
     @property
     def escape_time(self) -> np.ndarray:
-        """Times of the escapes."""
+        """Times of the escapes, dimensionless; NaN for other orbits."""
 
     @property
     def crossings(self) -> np.ndarray:
-        """Numbers of crossings."""
+        """Numbers of upward crossings of y = 0, the start not counted."""
 
     @property
     def t_max(self) -> float:
-        """Integration time."""
+        """Integration time, dimensionless."""
 
     @property
     def outcomes(self) -> tuple[Outcome, ...]:
@@ -88,25 +89,25 @@ class Starts:
     made_by: Mapping[str, Any] = field(default_factory=dict)
     complete: bool = True
 
-    def place(self, window: Window) -> tuple[slice, slice]:
+    def pixel_slices(self, window: Window) -> tuple[slice, slice]:
         """Return the rows and columns of the pixels whose centres lie in a window, edges included; ValueError without a map."""
         if self.axes is None:
             raise ValueError(f"window={window}: must be None for orbits that are no map")
         x, ordinate = self.axes
-        rows = slice(*_find_range(ordinate, window.ordinate_low, window.ordinate_high))
-        return rows, slice(*_find_range(x, window.x_low, window.x_high))
+        return _find_slice(ordinate, window.ordinate_low, window.ordinate_high), _find_slice(x, window.x_low, window.x_high)
 
     def inside(self, window: Window) -> Starts:
-        """Return the starts in a window, see `place`."""
-        rows, columns = self.place(window)
+        """Return the starts in a window, see `pixel_slices`."""
+        rows, columns = self.pixel_slices(window)
         assert self.axes is not None
         x, ordinate = self.axes
         arrays = {name: getattr(self, name)[rows, columns] for name in ("fate", "escape_time", "crossings")}
         return replace(self, axes=(x[columns], ordinate[rows]), **arrays)
 
 
-def _find_range(centres: np.ndarray, low: float, high: float) -> tuple[int, int]:
-    return int(np.searchsorted(centres, low)), int(np.searchsorted(centres, high, "right"))
+def _find_slice(centres: np.ndarray, low: float, high: float) -> slice:
+    """Return the slice of increasing pixel centres from `low` to `high`, ends included."""
+    return slice(int(np.searchsorted(centres, low)), int(np.searchsorted(centres, high, "right")))
 
 
 def read_starts(name: str, value: Any) -> Starts:
@@ -132,7 +133,7 @@ def read_starts(name: str, value: Any) -> Starts:
 
 
 def read_complete_starts(name: str, value: Any) -> Starts:
-    """Return starts as `read_starts` does; ValueError unless all are computed, as measures of basins require."""
+    """Return starts as `read_starts` does; ValueError if the outcomes of some are not computed yet."""
     starts = read_starts(name, value)
     if not starts.complete:
         raise ValueError(f"{name}: the map is not complete; must be a complete map, only `compute_statistics` counts the others")
@@ -149,17 +150,18 @@ def checked_dataset(name: str, value: Any, arrays: Collection[str], legal: str) 
     value
         The dataset, of any version, or what was given instead of a dataset.
     arrays
-        The names of the arrays, of which the first is "fate".
+        The names of the required arrays, among them "fate".
     legal
         Description of what is legal, for messages.
     """
+    # Any other value counts as a dataset without arrays.
     dataset: Any = with_present_names(value) if hasattr(value, "data_vars") else {}
-    missing = [array for array in arrays if array not in dataset]
-    if "fate" in missing:
+    if "fate" not in dataset:
         raise ValueError(f"{name}={short_repr(value)}: must be {legal}")
+    missing = [array for array in arrays if array not in dataset]
     if missing:
         raise ValueError(f"{name}: a dataset of a map without {', '.join(missing)}; must have all arrays of the map")
-    if dataset["fate"].ndim > len(("rows", "columns")):
+    if dataset["fate"].ndim > 2:
         raise ValueError(f"{name}: a dataset of several maps; must be one of them, such as dataset.sel(h=…)")
     return dataset
 
@@ -175,11 +177,14 @@ def _read_dataset(dataset: xr.Dataset) -> Starts:
     if fate.ndim == 1:
         return starts
     ordinate, x = (np.asarray(dataset[dimension].values) for dimension in dataset["fate"].dims)
-    return replace(starts, axes=(x, ordinate), pixel_area=_spacing(x) * _spacing(ordinate))
+    x_low, x_high, ordinate_low, ordinate_high = made_by.get("window", (math.nan,) * 4)
+    pixel_area = _pixel_size(x, x_low, x_high) * _pixel_size(ordinate, ordinate_low, ordinate_high)
+    return replace(starts, axes=(x, ordinate), pixel_area=pixel_area)
 
 
-def _spacing(centres: np.ndarray) -> float:
-    return float(np.ptp(centres)) / max(centres.size - 1, 1)
+def _pixel_size(centres: np.ndarray, low: float, high: float) -> float:
+    """Return the distance of pixel centres; for a single pixel, the distance of the edges of the window."""
+    return float(np.ptp(centres)) / (centres.size - 1) if centres.size > 1 else high - low
 
 
 def exit_labels(fate: np.ndarray, *, bounded: bool) -> tuple[np.ndarray, np.ndarray]:

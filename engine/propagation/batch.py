@@ -26,13 +26,14 @@ STEP_BUDGET = 2_000_000
 Cancellation and progress are handled between calls.
 """
 
-# Number of active orbits below which too many lanes are empty. A worker returns fewer orbits, to be combined with other orbits.
-_FULL_LANES = LANES - 2 * VECTOR
+# Smallest number of active orbits with which few enough lanes are empty. A worker with fewer orbits returns them, so that they
+# are combined with other orbits.
+_LEAST_ACTIVE = LANES - 2 * VECTOR
 
 
 @dataclass
 class OrbitBatch:
-    """The states of n orbits; their propagation can be continued at any time. Methods take orbits by their `indices`.
+    """The states and results of n orbits; their propagation can be continued at any time. Methods take orbits by their `indices`.
 
     Attributes
     ----------
@@ -47,17 +48,17 @@ class OrbitBatch:
     fate
         (n,) int8 codes, see `Fate`.
     curve_row
-        (n,) the row of the exit curves array for the energy of this orbit.
+        (n,) the row of `curves` for the energy of the orbit, see `propagate_batch`.
     outside
-        (n,) int8: number of the exit beyond which the start lies; 0 for a start inside.
+        (n,) int8: number of the outcome beyond whose exit the start lies; 0 for a start inside.
     evidence
         (n,) int8 codes, see `Evidence`: why an orbit is bounded although it was not integrated to t_max; 0 for other orbits.
     remainder
         (n, 2) rounding errors of x and y of `state`, see `engine.integrator.kernels.propagate.Orbits`.
     tested
-        (n,) time on the orbit of the last test for evidence, dimensionless; 0 before the first test.
+        (n,) time on the orbit at which evidence was last searched for, dimensionless; 0 before the first search.
     digits
-        (n,) digits to which averages agreed in the last test, see `BoundedOrbitSearch`; infinite before the first test.
+        (n,) digits to which averages agreed in the last search, see `BoundedOrbitSearch`; infinite before the first search.
     """
 
     state: np.ndarray
@@ -121,18 +122,19 @@ class OrbitBatch:
 
         Returns the indices of the orbits that were tested: all, unless the test was cancelled.
         """
+        # An empty part, in case no part is tested.
         tested_parts = [indices[:0]]
-        for part, exits in run_parts(
+        for part, outcomes in run_parts(
             _find_outside, indices, lambda part: (potential, self.state[part], curves, self.curve_row[part]),
             execution=execution,
         ):  # fmt: skip
-            self.outside[part] = exits
-            self.fate[part[exits > 0]] = Fate.OUTSIDE
+            self.outside[part] = outcomes
+            self.fate[part[outcomes > 0]] = Fate.OUTSIDE
             tested_parts.append(part)
         return np.concatenate(tested_parts)
 
     def mark_bounded(self, indices: np.ndarray, evidence: np.ndarray | int) -> None:
-        """Store the evidence of some orbits; orbits with evidence become bounded."""
+        """Store the evidence of some orbits, (m,) or one code for all; orbits with evidence become bounded."""
         self.evidence[indices] = evidence
         self.fate[indices[self.evidence[indices] != Evidence.NONE]] = Fate.BOUNDED
 
@@ -186,7 +188,7 @@ class OrbitBatch:
 
 
 def _find_outside(potential: Potential, states: np.ndarray, curves: np.ndarray, curve_row: np.ndarray) -> np.ndarray:
-    """Return the number of the exit beyond which each start lies, 0 inside; int8, of shape (n,). Called in a worker."""
+    """Return the number of the outcome beyond whose exit each start lies, 0 inside; int8, of shape (n,). Called in a worker."""
     x, y = np.ascontiguousarray(states[:, :2].T)
     with np.errstate(invalid="ignore"):
         # At the centre of a body V = −∞, so a start of any energy has an infinite momentum there.
@@ -200,7 +202,7 @@ class Tile:
 
     Attributes
     ----------
-    orbits
+    indices
         (n,) indices of the orbits in the whole batch.
     batch
         A copy of these orbits.
@@ -208,14 +210,14 @@ class Tile:
         (n,) uint8: 1 for orbits that have neither escaped nor reached the horizon.
     """
 
-    orbits: np.ndarray
+    indices: np.ndarray
     batch: OrbitBatch
     active: np.ndarray
 
     @classmethod
-    def copy_from(cls, batch: OrbitBatch, orbits: np.ndarray) -> Tile:
-        """Return a tile of the orbits (indices), all active."""
-        return cls(orbits, batch.take(orbits), np.ones(orbits.size, np.uint8))
+    def copy_from(cls, batch: OrbitBatch, indices: np.ndarray) -> Tile:
+        """Return a tile of some orbits, all active."""
+        return cls(indices, batch.take(indices), np.ones(indices.size, np.uint8))
 
 
 def _advance_tile(
@@ -235,7 +237,7 @@ def _advance_tile(
     exits = Exits(gates, curves, tile.batch.curve_row)
     orbits = tile.batch.for_kernels(tile.active)
     potential.well.kernels.propagate(
-        np.arange(tile.orbits.size), horizon, final, tolerance, STEP_BUDGET, least_active, exits, orbits, NO_TRACE
+        np.arange(tile.indices.size), horizon, final, tolerance, STEP_BUDGET, least_active, exits, orbits, NO_TRACE
     )
     return tile
 
@@ -245,34 +247,34 @@ class OrbitPool:
 
     Parameters
     ----------
-    orbits
+    indices
         (n,) indices of all orbits to propagate.
     workers
         Number of workers.
+
+    Attributes
+    ----------
+    waiting
+        Indices of the waiting orbits.
     """
 
-    def __init__(self, orbits: np.ndarray, workers: int) -> None:
-        self._waiting, self._workers = orbits, workers
+    def __init__(self, indices: np.ndarray, workers: int) -> None:
+        self.waiting, self._workers = indices, workers
         # Number of orbits that are with workers.
         self._taken_count = 0
 
-    @property
-    def waiting(self) -> int:
-        """Number of waiting orbits."""
-        return self._waiting.size
-
     def take(self) -> np.ndarray:
-        """Remove a worker's share of the waiting orbits, in whole SIMD vectors and at most `LARGEST_TILE`, and return it."""
-        share = math.ceil((self._waiting.size + self._taken_count) / self._workers)
+        """Remove and return the indices of a worker's share of the waiting orbits: whole SIMD vectors, at most `LARGEST_TILE`."""
+        share = math.ceil((self.waiting.size + self._taken_count) / self._workers)
         size = min(fill_vectors(share), LARGEST_TILE)
-        orbits, self._waiting = np.split(self._waiting, [size])
-        self._taken_count += orbits.size
-        return orbits
+        indices, self.waiting = np.split(self.waiting, [size])
+        self._taken_count += indices.size
+        return indices
 
     def give_back(self, tile: Tile) -> None:
         """Queue the orbits of a tile that are still active."""
-        self._taken_count -= tile.orbits.size
-        self._waiting = np.concatenate([self._waiting, tile.orbits[tile.active != 0]])
+        self._taken_count -= tile.indices.size
+        self.waiting = np.concatenate([self.waiting, tile.indices[tile.active != 0]])
 
 
 def propagate_batch(
@@ -297,7 +299,7 @@ def propagate_batch(
     potential
         The potential in units of its well, `Potential.in_well_units`.
     curves
-        (energies, channels, columns) exit curves, see `exit_curves`.
+        (energies, outcomes, columns) exits, see `exit_curves`.
     batch
         The orbits.
     indices
@@ -311,7 +313,7 @@ def propagate_batch(
     on_tiles
         Called after each group of completed tiles.
     tolerance
-        Tolerance of the Taylor steps.
+        Tolerance of the Taylor steps, see `engine.integrator.source.recurrence.TOLERANCE`.
 
     Returns
     -------
@@ -325,10 +327,10 @@ def propagate_batch(
 
     def keep_workers_busy() -> None:
         # Tiles are queued ahead only while enough orbits for a full tile wait.
-        while pool.waiting and len(running) < (2 * workers if pool.waiting > LARGEST_TILE else workers):
+        while pool.waiting.size and len(running) < (2 * workers if pool.waiting.size > LARGEST_TILE else workers):
             tile = Tile.copy_from(batch, pool.take())
             # Without other orbits to combine with, a worker keeps its orbits.
-            least_active = _FULL_LANES if pool.waiting and tile.orbits.size > _FULL_LANES else 0
+            least_active = _LEAST_ACTIVE if pool.waiting.size and tile.indices.size > _LEAST_ACTIVE else 0
             running.add(execution.submit(_advance_tile, potential, curves, gates, tile, horizon, final, tolerance, least_active))
 
     keep_workers_busy()
@@ -338,7 +340,7 @@ def propagate_batch(
             tile = execution.collect(future)
             # None after a cancellation.
             if tile is not None:
-                batch.put(tile.orbits, tile.batch)
+                batch.put(tile.indices, tile.batch)
                 pool.give_back(tile)
         if not execution.is_cancelled:
             keep_workers_busy()

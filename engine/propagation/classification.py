@@ -141,6 +141,7 @@ def _share_done(batch: OrbitBatch, t_max: float) -> float:
 
 
 def _checked_states(potential: Potential, energy: float, states: Any) -> np.ndarray:
+    """Return the states as an array; ValueError unless all have the energy to within `ENERGY_TOLERANCE`."""
     energy = checked_number("energy", energy)
     array = checked_states("states", states)
     difference = np.abs(potential.energy(array) - energy)
@@ -154,7 +155,7 @@ def _checked_states(potential: Potential, energy: float, states: Any) -> np.ndar
 
 @dataclass(frozen=True, eq=False)
 class OrbitSteps:
-    """An orbit in units of the well.
+    """The steps and the outcome of an orbit, in units of the well.
 
     Attributes
     ----------
@@ -181,7 +182,7 @@ def record_orbit(potential: Potential, start: np.ndarray, curves: np.ndarray, t_
     start
         (4,) x, y, px, py.
     curves
-        (channels, columns) exit curves at the energy of the start, see `exit_curves`.
+        (outcomes, columns) exits at the energy of the start, see `exit_curves`.
     t_max
         Largest integration time, above 0, dimensionless.
     execution

@@ -20,7 +20,10 @@ CHAOS_THRESHOLD = 1e-7
 """A bounded orbit is chaotic if its SALI falls to this value or below (Skokos 2001; the criterion of Zotos 2014)."""
 
 MIN_REGULAR_TIME = 1000.0
-"""Shortest time, in units of the well, after which an orbit can show no sign of chaos; weak chaos takes this long to show."""
+"""Shortest integration time, in units of the well, after which a bounded orbit without signs of chaos may be called so.
+
+Weak chaos takes about this long to appear.
+"""
 
 
 class Fate(IntEnum):
@@ -77,7 +80,6 @@ _SENTENCES = {
     Fate.FAILED: "Unresolved: the steps became too short, as near a singularity of V or on the way to infinity in a finite time.",
 }
 
-
 _EVIDENCE_PHRASES = {
     Evidence.NONE: "",
     Evidence.INTEGRATED: "integrated to t_max",
@@ -97,7 +99,7 @@ def outcome_of(fate: int, outcomes: Sequence[Outcome] = ()) -> Outcome:
 
 
 def name_fate(fate: int, outcomes: Sequence[Outcome] = ()) -> str:
-    """Name a fate in a word or two: "channel 1", "bounded"."""
+    """Return the name of a fate in a word or two, such as "channel 1" or "bounded"."""
     if fate >= 1:
         return outcome_of(fate, outcomes).label
     return UNRESOLVED if fate == Fate.FAILED else name_code(Fate, fate)

@@ -10,14 +10,14 @@ from engine.propagation.tiles import map_tiles
 from engine.systems.potential import Potential
 
 DEVIATION_VECTORS = read_only(np.array([[1.0, 2.0, 3.0, 4.0], [4.0, -3.0, 2.0, -1.0]]) / np.sqrt(30.0))
-"""The initial vectors, (2, 4). They are fixed, so an orbit always has the same SALI.
+"""The initial deviation vectors, (2, 4), the same for all orbits, so that the SALI of an orbit is reproducible.
 
-They are orthonormal, and generic: no symmetry confines them to a subspace.
+They are orthonormal, and no symmetry of a potential confines them to a subspace.
 """
 
 
 def attach_deviations(states: np.ndarray) -> np.ndarray:
-    """Return n states with the initial deviation vectors, and infinity as the smallest SALI so far, of shape (n, 13)."""
+    """Return n states (n, 4), each with the initial deviation vectors and infinity as the smallest SALI, of shape (n, 13)."""
     vectors = np.broadcast_to(DEVIATION_VECTORS.ravel(), (len(states), DEVIATION_VECTORS.size))
     return np.column_stack([states, vectors, np.full(len(states), np.inf)])
 
@@ -34,11 +34,11 @@ def propagate_deviations(
     Parameters
     ----------
     potential
-        The `Potential`.
+        The potential in units of its well, `Potential.in_well_units`.
     orbits
         (n, 13) as returned by `attach_deviations`.
     duration
-        Integration time, dimensionless, rounded to at least one step.
+        Integration time, dimensionless, rounded to a number of steps, at least one.
     execution
         How the computation runs. When it is cancelled, orbits not processed yet get NaN.
 
@@ -72,7 +72,7 @@ def find_section_points(
     Parameters
     ----------
     potential
-        The `Potential`.
+        The potential in units of its well, `Potential.in_well_units`.
     states
         (n, 4) x, y, px, py, finite.
     count
@@ -90,7 +90,7 @@ def find_section_points(
 
 
 def trace_section_points(potential: Potential, tile: np.ndarray, count: int, duration: float) -> np.ndarray:
-    """Apply `find_section_points` to a tile (4, lanes) of whole SIMD vectors, and change the tile; called in a worker."""
+    """Apply `find_section_points` to a tile (4, lanes) of whole SIMD vectors, which is changed; called in a worker."""
     # x, px and time of each point.
     points = np.full((tile.shape[1], count, 3), np.nan)
     counts = np.zeros(tile.shape[1], np.int64)

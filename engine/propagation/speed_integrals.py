@@ -35,7 +35,7 @@ def integrate_speed(
     potential
         The potential in units of its well.
     curves
-        (energies, exits, columns) exit curves, see `exit_curves`.
+        (energies, outcomes, columns) exits, see `exit_curves`.
     states
         (n, 4) x, y, px, py inside the exits, finite.
     curve_row

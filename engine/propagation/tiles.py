@@ -39,7 +39,7 @@ def map_tiles(
     arguments
         Further arguments of `work`.
     shape
-        Shape of the result for one orbit.
+        Shape of the result of one orbit; () for a number.
     execution
         How the computation runs. When it is cancelled, no further tiles are submitted.
     tiles_per_task
@@ -99,7 +99,7 @@ def _run_on_tiles(work: Callable[..., Any], potential: Potential, tiles: list[np
 
 
 def _lanes_per_tile(count: int, workers: int) -> int:
-    """Return the number of lanes with which all workers have equally many tiles: whole SIMD vectors, at most `LANES`."""
+    """Return the number of lanes, in whole SIMD vectors and at most `LANES`, with which all workers have equally many tiles."""
     tiles_per_worker = max(1, math.ceil(count / (workers * LANES)))
     share = max(1, math.ceil(count / (tiles_per_worker * workers)))
     return fill_vectors(share)

@@ -2,7 +2,7 @@
 import {CountedValue} from "./counted_value.js"
 
 /**
- * A box for a number, which is sent when the box is left or Enter is pressed.
+ * A box for a number, which is sent when the box loses focus or Enter is pressed.
  *
  * @param {{model: any, el: HTMLElement}} component
  */
@@ -30,9 +30,9 @@ export function render({model, el}) {
   input.addEventListener("blur", finish)
   // Enter without a change of the number fires no change event.
   input.addEventListener("keydown", event => event.key === "Enter" && finish())
-  // Show a number of the page that the server has not received yet.
+  // Show a number that the server has not received yet, without the rounding errors in its last digits.
   const show = (/** @type {any} */ event) => {
-    if (!value.unsent) write(Number(event.detail.toPrecision(10)))
+    if (!value.isUnsent) write(Number(event.detail.toPrecision(10)))
   }
   if (model.shown_event) document.addEventListener(model.shown_event, show)
   model.on("lifecycle:remove", () => document.removeEventListener(model.shown_event, show))

@@ -17,18 +17,15 @@ from bokeh.models.dom import HTML
 from bokeh.plotting import figure
 
 from app.browser.javascript import callback_code
-from app.browser.module_files import NUMBERS
+from app.browser.module_files import NUMBERS_MODULE
 from app.state.help_texts import title_with_help
 from engine import Window
 from plots.pictures.axis_labels import find_offset
 from plots.pictures.histories import find_decades
 
-_OFFSET_LABEL = callback_code(Path(__file__).with_name("offset_ticks.js"), "offsetLabel(tick, base, unit)")
+_OFFSET_LABEL_CODE = callback_code(Path(__file__).with_name("offset_ticks.js"), "offsetLabel(tick, base, unit)")
 
-HOVER_TEXTS = Path(__file__).with_name("hover_texts.js")
-"""JavaScript module with the texts of hover tools."""
-
-HOVER_FORMATS = {name: callback_code(NUMBERS, f"{name}(value)") for name in ("number", "count", "percent")}
+HOVER_FORMATS = {name: callback_code(NUMBERS_MODULE, f"{name}(value)") for name in ("number", "count", "percent")}
 """JavaScript that formats a `value`: as a number of four digits, a whole number in groups of digits, or a percentage."""
 
 # A value in a hover text, with the name of its format.
@@ -117,7 +114,7 @@ def label_axes(plots: Iterable[figure], names: tuple[str, str], window: Window) 
         for axis, offset in zip((plot.below[0], plot.left[0]), offsets, strict=True):
             if offset is not None:
                 numbers = {"base": float(offset.base), "unit": 10.0**offset.exponent}
-                axis.formatter = CustomJSTickFormatter(args=numbers, code=_OFFSET_LABEL)
+                axis.formatter = CustomJSTickFormatter(args=numbers, code=_OFFSET_LABEL_CODE)
             elif isinstance(axis.formatter, CustomJSTickFormatter):
                 axis.formatter = BasicTickFormatter()
     return [f"Labels: {offset.describe(name)}" for name, offset in zip(names, offsets, strict=True) if offset is not None]
@@ -185,19 +182,19 @@ class LaterGlyphs:
 
     def __init__(self, add: Callable[[figure], object]) -> None:
         self._add = add
-        self._plots: list[figure] = []
+        self._waiting_plots: list[figure] = []
         self._is_drawn = False
 
-    def expect(self, plot: figure) -> None:
-        """Take a figure for the glyphs, which are added at once if other figures have them, otherwise by `draw`."""
+    def add_figure(self, plot: figure) -> None:
+        """Add the glyphs to a figure, at once if other figures have them, otherwise when `draw` is called."""
         if self._is_drawn:
             self._add(plot)
         else:
-            self._plots.append(plot)
+            self._waiting_plots.append(plot)
 
     def draw(self) -> None:
         """Add the glyphs to the figures that lack them, and to later figures."""
-        plots, self._plots, self._is_drawn = self._plots, [], True
+        plots, self._waiting_plots, self._is_drawn = self._waiting_plots, [], True
         document = plots[0].document if plots else None
         # With the models frozen, Bokeh searches the page once for all new models.
         with document.models.freeze() if document is not None else nullcontext():
@@ -205,14 +202,14 @@ class LaterGlyphs:
                 self._add(plot)
 
 
-def set_range(edges: Range1d, low: float, high: float) -> None:
+def set_range(axis_range: Range1d, low: float, high: float) -> None:
     """Set the ends of an axis, and the ends to which the reset tool returns."""
-    edges.update(start=low, end=high, reset_start=low, reset_end=high)
+    axis_range.update(start=low, end=high, reset_start=low, reset_end=high)
 
 
-def set_decades(edges: Range1d, low: float, high: float) -> None:
+def set_decades(axis_range: Range1d, low: float, high: float) -> None:
     """Set the ends of a logarithmic axis: the power of ten below `low`, and a number a little above `high`."""
-    set_range(edges, *find_decades(low, high))
+    set_range(axis_range, *find_decades(low, high))
 
 
 def moving_line(dimension: str, **options: Any) -> Span:

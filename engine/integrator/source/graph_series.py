@@ -33,7 +33,23 @@ _ROOT = 0.5
 
 
 class GraphSeries:
-    """Appends the operations for the series of all nodes of a graph along an orbit to a program."""
+    """Appends the operations for the series of all nodes of a graph along an orbit to a program.
+
+    Attributes
+    ----------
+    program, graph
+        The program and the graph, whose first two results are the slopes of V.
+    name
+        Name of the graph in keys (name, number) of the table.
+    rotates
+        Whether the frame rotates.
+    remainders
+        {kind: value}: the rounding errors of the nodes of kinds "x" and "y".
+    x, y
+        The coefficients of x and y.
+    series
+        The coefficients of each node.
+    """
 
     def __init__(
         self,
@@ -56,16 +72,16 @@ class GraphSeries:
         # Sums of series, see `_common_product`.
         self._common_sums: dict[tuple[int, int], list[Value]] = {}
         # Number of known coefficients of each node.
-        self._orders = 0
+        self._known_count = 0
 
     def advance_to(self, k: int) -> None:
-        """Find coefficients k of all nodes, unless they are known."""
-        if k >= self._orders:
+        """Append coefficients k of all nodes, unless they are known."""
+        if k >= self._known_count:
             self.advance(k)
 
     def advance(self, k: int) -> None:
-        """Find coefficients k of all nodes, and with them coefficient k + 2 of x and y."""
-        self._orders = k + 1
+        """Append coefficients k of all nodes, and with them coefficient k + 2 of x and y."""
+        self._known_count = k + 1
         for index, (node, planned) in enumerate(zip(self.graph.nodes, self._plan.nodes, strict=True)):
             if node.kind in ("x", "y"):
                 continue

@@ -1,4 +1,4 @@
-"""A mapping by name. Its error for an unknown name suggests similar names."""
+"""A mapping from names to values, whose error for an unknown name suggests similar names."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from engine.foundations.validation import short_repr
 
 # Smallest similarity, from 0 to 1, of a name that an error suggests.
-_LEAST_LIKENESS = 0.6
+_SMALLEST_SIMILARITY = 0.6
 
 
 class UnknownNameError(KeyError, ValueError):
@@ -29,7 +29,7 @@ class ByName[Value](Mapping[str, Value]):
     names
         The names.
     make
-        Returns the value of a name. It is called at each look-up.
+        Function that returns the value of a name. It is called at each look-up.
     titles
         Titles by name. For an unknown name that resembles a title, the error suggests the name with this title.
     """
@@ -41,7 +41,7 @@ class ByName[Value](Mapping[str, Value]):
 
     def __getitem__(self, name: str) -> Value:
         """Return the value of a name; for an unknown name, raise an `UnknownNameError` that suggests similar names."""
-        # Users may pass any object.
+        # The type is not checked statically, because users may pass any object.
         key: object = name
         if isinstance(key, str) and key in self._names:
             return self._make(key)
@@ -61,12 +61,12 @@ class ByName[Value](Mapping[str, Value]):
     def _find_similar(self, name: str) -> list[str]:
         """Return up to three names with similar spelling, the most similar first."""
         # Names by the plain spelling of the name and of its title.
-        spellings = {_plain(text): known for known in self._names for text in (known, self._titles.get(known, known))}
-        matches = difflib.get_close_matches(_plain(name), spellings, n=3, cutoff=_LEAST_LIKENESS)
+        spellings = {_plain_spelling(text): known for known in self._names for text in (known, self._titles.get(known, known))}
+        matches = difflib.get_close_matches(_plain_spelling(name), spellings, n=3, cutoff=_SMALLEST_SIMILARITY)
         return list(dict.fromkeys(spellings[match] for match in matches))
 
 
-def _plain(name: str) -> str:
+def _plain_spelling(name: str) -> str:
     """Return the letters and digits of a name in lower case, without accents."""
     decomposed = unicodedata.normalize("NFKD", name.casefold())
     return "".join(letter for letter in decomposed if letter.isalnum())

@@ -25,7 +25,7 @@ class PointKind(Enum):
 
 @dataclass(frozen=True)
 class CriticalPoint:
-    """A point (x, y) with ∇V = 0 and V = `energy`. `channel` is the number of the channel over this point, or 0."""
+    """A point (x, y) with ∇V = 0 and V = `energy`. `channel` is the number of the exit channel over this point; 0 without one."""
 
     x: float
     y: float
@@ -44,6 +44,7 @@ def classify_points(potential: Potential) -> tuple[CriticalPoint, ...]:
 
 
 def _kind(potential: Potential, x: float, y: float, index: float) -> PointKind:
+    """Return the kind of a critical point with an index, see `Well.critical_indices`."""
     if index == 0.0:
         return PointKind.DEGENERATE
     if index < 0.0:
@@ -67,13 +68,13 @@ def minima_of(points: tuple[CriticalPoint, ...]) -> list[CriticalPoint]:
     return [point for point in points if point.kind is PointKind.MINIMUM]
 
 
-def other_well(potential: Potential, points: tuple[CriticalPoint, ...]) -> tuple[float, float] | None:
-    """Return the nearest minimum if the clause ``well`` can move the axes there; otherwise None.
+def find_new_origin(potential: Potential, points: tuple[CriticalPoint, ...]) -> tuple[float, float] | None:
+    """Return (x, y) of the nearest minimum if the clause ``well`` can move the origin of the axes there; otherwise None.
 
     Axes can be moved only once, and neither in a rotating frame nor with an escape radius.
     """
     nearest = next(iter(minima_of(points)), None)
-    is_moved = any(potential.origin)
-    if nearest is None or nearest is point_at_origin(points) or is_moved or potential.rotation:
+    can_move = not any(potential.origin) and not potential.rotation and potential.escape_radius is None
+    if not can_move or nearest is None or nearest is point_at_origin(points):
         return None
-    return (nearest.x, nearest.y) if potential.escape_radius is None else None
+    return nearest.x, nearest.y

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from app.session.orbit_presenter import REMOVED, OrbitPresenter
+from app.session.orbit_presenter import ORBITS_REMOVED, OrbitPresenter
 from app.state.view_state import ViewState
 from app.views.maps.markers import Markers
 from app.views.maps.well import WellView
@@ -89,7 +89,7 @@ def test_an_orbit_opens_the_section_of_its_system_at_its_energy(
 ) -> None:
     session = begin(plane)
     session.state.add_start(start)
-    session.presenter.controls.open_plane.clicks += 1
+    session.presenter.controls.open_section.clicks += 1
     [(system, values)] = session.opened
     assert system == expected
     assert (values["plane"], values["energy"], values["starts"]) == (Plane.X_PX, energy, ((0.1, 0.0),))
@@ -100,7 +100,7 @@ def test_another_slice_removes_the_orbits_and_says_so(begin: Callable[[Slice], S
     session.state.add_start((-0.3, 0.0))
     session.state.show_slice(Plane.X_Y)
     note = session.presenter.controls.note
-    assert (note.visible, note.object) == (True, REMOVED)
+    assert (note.visible, note.object) == (True, ORBITS_REMOVED)
     session.state.add_start((0.1, 0.0))
     assert not note.visible
 

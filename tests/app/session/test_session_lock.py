@@ -7,6 +7,7 @@ change of a bare model that is not held, Bokeh raises an error, and the click is
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import panel as pn
@@ -15,8 +16,10 @@ import pytest
 from app.session.explorer import Explorer
 from app.state.view import Analysis
 from app.views.maps.map_toolbar import Drag
-from engine import Plane
+from app.views.panels.controls import LOCK_SCALE
+from engine import Plane, compute_map
 from plots.layers.table import LAYERS
+from plots.pictures.image_columns import map_columns
 from tests.app.browser_messages import send
 from tests.app.other_loop import run_on_new_loop
 from tests.app.session.opened_page import opened_page, run_callbacks
@@ -52,15 +55,33 @@ CHANGES: list[Callable[[Explorer], Any]] = [
 ]
 
 
-def with_page(change: Callable[[Explorer], Any]) -> None:
-    """Call a function with the explorer of a page that shows orbits, without the session's lock."""
+def show_orbits(explorer: Explorer) -> None:
+    """Show the panel and the player of orbits."""
+    explorer.orbits.inspector.follow(2, 2)
+    explorer.orbits.player.follow((0.0, 10.0))
 
-    def show_orbits(explorer: Explorer) -> None:
-        explorer.orbits.inspector.follow(2, 2)
-        explorer.orbits.player.follow((0.0, 10.0))
+
+def show_map(explorer: Explorer) -> None:
+    """Show a map, whose legends say whether the colour scale is locked."""
+    frame = compute_map(replace(explorer.state.map_spec(), resolution=(8, 8), t_max=10.0))
+    explorer.maps.map_arrived(frame, map_columns(frame))
+
+
+def lock_and_unlock_colours(explorer: Explorer) -> None:
+    """Open the section "Quality and colours", and turn its switch on and off."""
+    parts = pn.Column(*explorer.controls.layout())
+    [fold] = parts.select(lambda part: getattr(part, "label", "") == "▸ Quality and colours")
+    fold.clicks += 1
+    [lock] = parts.select(lambda part: getattr(part, "options", []) == [LOCK_SCALE])
+    for value in ([LOCK_SCALE], []):
+        lock.param.update(value=value)
+
+
+def with_page(change: Callable[[Explorer], Any], prepare: Callable[[Explorer], None] = show_orbits) -> None:
+    """Call a function with the explorer of a page, without the session's lock."""
 
     async def run() -> None:
-        async with opened_page(prepare=show_orbits) as (explorer, session):
+        async with opened_page(prepare=prepare) as (explorer, session):
             await run_callbacks(session)
             change(explorer)
             await run_callbacks(session)
@@ -70,6 +91,11 @@ def with_page(change: Callable[[Explorer], Any]) -> None:
 
 def test_widget_changes_need_no_lock(caplog: pytest.LogCaptureFixture) -> None:
     with_page(lambda explorer: [change(explorer) for change in CHANGES])
+    assert [record for record in caplog.records if record.exc_info] == []
+
+
+def test_the_switch_of_the_colour_scale_needs_no_lock(caplog: pytest.LogCaptureFixture) -> None:
+    with_page(lock_and_unlock_colours, prepare=show_map)
     assert [record for record in caplog.records if record.exc_info] == []
 
 

@@ -6,9 +6,9 @@ from collections.abc import Callable
 
 import pytest
 
-from engine.exits.continuation import Steps, follow
+from engine.exits.continuation import StepLimits, follow
 
-STEPS = Steps(first=0.5, smallest=2.0**-5, most=50)
+LIMITS = StepLimits(first=0.5, smallest=2.0**-5, attempts=50)
 
 
 def reached_with(longest: Callable[[float], float]) -> list[float] | None:
@@ -17,7 +17,7 @@ def reached_with(longest: Callable[[float], float]) -> list[float] | None:
     def advance(values: list[float], target: float) -> list[float] | None:
         return [*values, target] if target - values[-1] <= longest(values[-1]) else None
 
-    return follow(advance, [0.0], 0.0, 1.0, STEPS)
+    return follow(advance, [0.0], 0.0, 1.0, LIMITS)
 
 
 def test_steps_double_after_success_and_end_at_the_last_value() -> None:
@@ -34,4 +34,4 @@ def test_a_solution_that_ceases_to_exist_on_the_way_is_not_found() -> None:
 
 
 def test_the_number_of_steps_is_limited() -> None:
-    assert follow(lambda value, _target: value, 0.0, 0.0, 1.0, Steps(1e-9, 1e-9, 3)) is None
+    assert follow(lambda value, _target: value, 0.0, 0.0, 1.0, StepLimits(1e-9, 1e-9, 3)) is None

@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import brentq
 
 from engine import CASES, LyapunovOrbit, Potential, find_lyapunov_orbits
-from engine.exits.periodic_orbits import PeriodicOrbit, find_orbit_in_rotating_frame, monodromy_matrix, multipliers_of
+from engine.exits.periodic_orbits import PeriodicOrbit, find_orbit_in_rotating_frame, floquet_multipliers, monodromy_matrix
 from tests.engine.exits.rotating_systems import EARTH_MOON, at_jacobi_constant, hill, integrate, three_body
 from tests.peers.random_systems import random_well
 
@@ -31,7 +31,7 @@ def orbit_of(potential: Potential, energy: float, channel: int) -> PeriodicOrbit
 
 
 def multipliers(potential: Potential, orbit: PeriodicOrbit) -> np.ndarray:
-    return multipliers_of(monodromy_matrix(potential.in_well_units, orbit.path[:, 0], orbit.period))
+    return floquet_multipliers(monodromy_matrix(potential.in_well_units, orbit.path[:, 0], orbit.period))
 
 
 def path_of(potential: Potential, energy: float, channel: int) -> tuple[float, np.ndarray]:

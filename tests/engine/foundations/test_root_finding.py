@@ -23,14 +23,12 @@ FUNCTIONS: dict[str, tuple[Callable[[float], float], float, float]] = {
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_roots_agree_with_scipy_to_the_bit(name: str) -> None:
     function, low, high = FUNCTIONS[name]
-    assert find_root(function, low, high, absolute=1e-17, relative=1e-15) == optimize.brentq(
-        function, low, high, xtol=1e-17, rtol=1e-15
-    )
+    assert find_root(function, low, high, xtol=1e-17, rtol=1e-15) == optimize.brentq(function, low, high, xtol=1e-17, rtol=1e-15)
 
 
 def test_equal_signs_at_the_ends_are_refused() -> None:
     with pytest.raises(ValueError, match="different signs"):
-        find_root(lambda x: x * x + 1.0, -1.0, 1.0, absolute=1e-12, relative=1e-12)
+        find_root(lambda x: x * x + 1.0, -1.0, 1.0, xtol=1e-12, rtol=1e-12)
 
 
 def test_bisection_encloses_each_boundary_from_either_side() -> None:
@@ -49,4 +47,4 @@ def test_a_function_that_is_nan_is_refused(undefined: tuple[float, float]) -> No
         return math.nan if undefined[0] <= x <= undefined[1] else x - 1.6
 
     with pytest.raises(ValueError, match="the function is NaN at "):
-        find_root(function, 1.0, 2.0, absolute=1e-12, relative=1e-12)
+        find_root(function, 1.0, 2.0, xtol=1e-12, rtol=1e-12)

@@ -24,7 +24,7 @@ export function fateName(code, names, {ends}) {
  *
  * @param {number} pixel
  * @param {{maps: Columns, compared: Columns}} columns  of the maps, and of the map of the other view
- * @param {{bounded: number, first: number, firstEvidence: number}} codes  of bounded orbits, first difference, first evidence
+ * @param {{bounded: number, firstDifference: number, firstEvidence: number}} codes  of bounded orbits, first difference, first evidence
  * @param {{evidence: string[], layers: Record<string, string[]>, values: Record<string, string>, fates: string[]}} words
  *   of evidence and fates, by code; of layers, by column and code, or empty if the map has its own words; of numbers, by column
  */
@@ -47,7 +47,7 @@ export function pixelDetails(pixel, {maps, compared}, codes, words) {
     ...Object.entries(words.values).map(
       ([column, name]) => Number.isFinite(valueIn(maps[column][0])) && `${name} ${number(valueIn(maps[column][0]))}`,
     ),
-    valueIn(maps.difference[0]) >= codes.first &&
+    valueIn(maps.difference[0]) >= codes.firstDifference &&
       isSamePlace(maps, compared) &&
       `other view: ${fateName(valueIn(compared.fate[0]), words.fates, compared)}`,
   ]

@@ -2,9 +2,9 @@
 import assert from "node:assert/strict"
 import {test} from "node:test"
 
-import {coordinate, fateName, pixelDetails} from "../../../../app/views/components/hover_texts.js"
+import {coordinate, fateName, pixelDetails} from "../../../../app/views/maps/hover_texts.js"
 
-const CODES = {bounded: 4, first: 5, firstEvidence: 10}
+const CODES = {bounded: 4, firstDifference: 5, firstEvidence: 10}
 const WORDS = {
   evidence: ["integrated", "enclosed"],
   layers: {
