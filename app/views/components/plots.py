@@ -219,7 +219,8 @@ def moving_line(dimension: str, **options: Any) -> Span:
 
 def hover_html(text: str) -> str:
     """Return the HTML of a hover text in the type of the page, whose stylesheet does not reach into a tooltip."""
-    return f'<style>b {{ font-weight: 600 }}</style><div style="font-size:12px;line-height:16px;color:var(--ui-ink)">{text}</div>'
+    weighted = text.replace("<b>", '<b style="font-weight:600">')
+    return f'<div style="font-size:12px;line-height:16px;color:var(--ui-ink)">{weighted}</div>'
 
 
 def chart_hover(text: str, renderers: Sequence[GlyphRenderer], **options: Any) -> HoverTool:
