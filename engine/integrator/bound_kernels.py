@@ -42,32 +42,40 @@ _code_by_structure: dict[Structure, tuple[GeneratedCode, str, dict[str, Generate
 _outlines: set[tuple[Hashable, Setting]] = set()
 
 
-def load_kernels(
-    definition: Definition,
-    channels: int,
-    *,
-    sides: tuple[int, ...] = (),
-    rotation: float = 0.0,
-) -> ModuleType:
+@functools.lru_cache(maxsize=_BOUND_POTENTIALS)
+def load_kernels(definition: Definition, setting: Setting, rotation: float = 0.0) -> ModuleType:
     """Return the kernels of a potential: ``step``, ``fixed_step``, ``jets``, ``tangent``, ``propagate``, ``shoot``, …
 
     Parameters
     ----------
     definition
         ((i, j, c), …) of V = Σ c x^i y^j, or an expression.
-    channels
-        Number of exit channels, 0 or more.
-    sides
-        For each circle at which orbits end: −1 if they end inside it, 1 if they end outside.
+    setting
+        The facts besides V on which the generated code depends.
     rotation
-        Ω of the frame, finite, dimensionless.
+        Ω of the frame, finite, dimensionless; 0 unless ``setting.rotates``.
 
     Returns
     -------
     A module with these functions. Call them without the leading addresses and without `coefficients`. The first use of a kernel
     for this structure loads the generated functions that it calls from the cache, or compiles them within some seconds.
     """
-    return _load(definition, Setting(channels, sides, rotation != 0.0), rotation)
+    code, module_name, generated_functions = _find_or_generate(find_structure(definition, setting))
+    _outlines.add((_outline(definition), setting))
+    coefficients = code.tabulate(definition, rotation)
+    bound_module = ModuleType(module_name)
+    for name, function in generated_functions.items():
+        setattr(bound_module, name, _BoundKernel(function, (), coefficients))
+    for module in _KERNEL_MODULES:
+        for name, function in vars(module).items():
+            if isinstance(function, Dispatcher) and function.py_func.__module__ == module.__name__:
+                # Parameters for addresses have the names of the generated functions.
+                parameters = inspect.signature(function.py_func).parameters
+                callees = tuple(generated_functions[each] for each in parameters if each in generated_functions)
+                # Kernels without such parameters depend on no potential.
+                if callees:
+                    setattr(bound_module, name, _BoundKernel(function, callees, coefficients))
+    return bound_module
 
 
 def is_generated(definition: Definition, setting: Setting) -> bool:
@@ -135,26 +143,6 @@ class _BoundKernel:
 
     def __call__(self, *arguments: Any) -> Any:
         return self.function(*(callee.address for callee in self._callees), self._coefficients, *arguments)
-
-
-@functools.lru_cache(maxsize=_BOUND_POTENTIALS)
-def _load(definition: Definition, setting: Setting, rotation: float) -> ModuleType:
-    code, module_name, generated_functions = _find_or_generate(find_structure(definition, setting))
-    _outlines.add((_outline(definition), setting))
-    coefficients = code.tabulate(definition, rotation)
-    bound_module = ModuleType(module_name)
-    for name, function in generated_functions.items():
-        setattr(bound_module, name, _BoundKernel(function, (), coefficients))
-    for module in _KERNEL_MODULES:
-        for name, function in vars(module).items():
-            if isinstance(function, Dispatcher) and function.py_func.__module__ == module.__name__:
-                # Parameters for addresses have the names of the generated functions.
-                parameters = inspect.signature(function.py_func).parameters
-                callees = tuple(generated_functions[each] for each in parameters if each in generated_functions)
-                # Kernels without such parameters depend on no potential.
-                if callees:
-                    setattr(bound_module, name, _BoundKernel(function, callees, coefficients))
-    return bound_module
 
 
 def _find_or_generate(structure: Structure) -> tuple[GeneratedCode, str, dict[str, GeneratedFunction]]:
