@@ -37,7 +37,7 @@ _BOUND_POTENTIALS = 256
 # Held while code is generated.
 _lock = threading.Lock()
 # Code, module name and functions of each structure. Entries stay, because machine code is never unloaded.
-_code_by_structure: dict[Structure, tuple[GeneratedCode, str, dict[str, GeneratedFunction]]] = {}
+_code_by_structure: dict[Structure, tuple[GeneratedCode, str, dict[str, CompiledFunction]]] = {}
 # Outlines (see `_outline`) and settings of all potentials for which functions were generated.
 _outlines: set[tuple[Hashable, Setting]] = set()
 
@@ -84,8 +84,8 @@ def is_generated(definition: Definition, setting: Setting) -> bool:
     return (_outline(definition), setting) in _outlines and find_structure(definition, setting) in _code_by_structure
 
 
-class GeneratedFunction:
-    """A generated function. Its first use compiles it, for the types in `SIGNATURES` only."""
+class CompiledFunction:
+    """The machine code of a generated function, compiled at its first use, for the types in `SIGNATURES` only."""
 
     def __init__(self, dispatcher: Any) -> None:
         self._dispatcher = dispatcher
@@ -131,7 +131,7 @@ class GeneratedFunction:
 class _BoundKernel:
     """Calls a kernel with the addresses of generated functions and the coefficients of one potential as first arguments."""
 
-    def __init__(self, function: Any, callees: tuple[GeneratedFunction, ...], coefficients: np.ndarray) -> None:
+    def __init__(self, function: Any, callees: tuple[CompiledFunction, ...], coefficients: np.ndarray) -> None:
         self.function = function
         self._callees = callees
         self._coefficients = coefficients
@@ -145,7 +145,7 @@ class _BoundKernel:
         return self.function(*(callee.address for callee in self._callees), self._coefficients, *arguments)
 
 
-def _find_or_generate(structure: Structure) -> tuple[GeneratedCode, str, dict[str, GeneratedFunction]]:
+def _find_or_generate(structure: Structure) -> tuple[GeneratedCode, str, dict[str, CompiledFunction]]:
     """Return the entry of `_code_by_structure`, made if it is missing. For a known structure, a thread never waits for others."""
     if structure not in _code_by_structure:
         with _lock:
@@ -161,7 +161,7 @@ def _outline(definition: Definition) -> Hashable:
 
 
 @functools.cache
-def _define_module(code: GeneratedCode) -> tuple[str, dict[str, GeneratedFunction]]:
+def _define_module(code: GeneratedCode) -> tuple[str, dict[str, CompiledFunction]]:
     """Execute generated source as a module named after its hash. Return this name, and the functions, not compiled yet."""
     compiled_operations.add(code.digest, code.operations)
     name = f"kernels_{code.digest[:16]}"
@@ -175,4 +175,4 @@ def _define_module(code: GeneratedCode) -> tuple[str, dict[str, GeneratedFunctio
     vars(module).update(kernel=kernel, read_table=table_reader(len(code.entries)), **programs)
     setattr(module, DEFINE, partial(_define_module, code))
     exec(compile(source, f"<{name}>", "exec"), vars(module))
-    return name, {function.name: GeneratedFunction(getattr(module, function.name)) for function in code.functions}
+    return name, {function.name: CompiledFunction(getattr(module, function.name)) for function in code.functions}
