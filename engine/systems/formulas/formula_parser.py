@@ -12,7 +12,7 @@ import reprlib
 from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
-from functools import partial
+from functools import lru_cache, partial
 from typing import Any
 
 from engine.expressions.exact_polynomials import exact_terms
@@ -20,12 +20,13 @@ from engine.expressions.nodes import Expression
 from engine.expressions.polynomials import Powers
 from engine.expressions.text import monomial
 from engine.foundations.validation import checked_between, checks_types
+from engine.systems.forms.expression_form import as_form
 from engine.systems.forms.polynomial_form import COEFFICIENT_RANGE, MOST_TERMS
 from engine.systems.formulas.formula_grammar import Parser
 from engine.systems.formulas.formula_tokens import FormulaError, tokenize
 from engine.systems.formulas.formula_values import constant_of
-from engine.systems.formulas.formula_writer import by_degree, write_formula
-from engine.systems.formulas.outcome_clauses import Part, split_clauses
+from engine.systems.formulas.formula_writer import by_degree, write_form
+from engine.systems.formulas.outcome_clauses import Clauses, Part, split_clauses
 from engine.systems.outcomes import end_kinds
 from engine.systems.potential import Potential
 
@@ -103,31 +104,34 @@ def parse_formula(text: str, name: str | None = None, parameters: Mapping[str, f
     """
     if len(text) > LONGEST_TEXT:
         raise FormulaError(LONGEST_TEXT, f"the text has {len(text)} characters; at most {LONGEST_TEXT} characters are allowed")
-    values, clauses = _exact_values(text, parameters or {}), split_clauses(text)
+    clauses = split_clauses(text)
+    values = _exact_values(_letters_of(clauses), parameters or {})
     value = Parser(clauses.formula, values).parse()
     if isinstance(value, Expression):
-        potential = Potential(name or "", value)
+        form = as_form(value)
         # Check the size of the derivatives, which all further steps need.
-        if (problem := potential.form.limits_refusal()) is not None:
+        if (problem := form.limits_refusal()) is not None:
             raise FormulaError(0, problem)
     else:
         expanded = exact_terms(value)
         _check_expanded(expanded)
-        terms = tuple((i, j, float(expanded[i, j])) for i, j in sorted(expanded, key=by_degree))
-        potential = Potential(name or "", terms)
+        form = as_form(tuple((i, j, float(expanded[i, j])) for i, j in sorted(expanded, key=by_degree)))
     number_of = partial(_number_of, values=values)
     ends = [clause.evaluate(number_of) for clause in clauses.ends]
-    title = name or write_formula(potential)
-    potential = Potential(title, potential.form, ends=ends, mass=clauses.find_mass(number_of))
+    potential = Potential(name or write_form(form), form, ends=ends, mass=clauses.find_mass(number_of))
     if clauses.well is not None:
         potential = potential.at_minimum(*map(number_of, clauses.well))
     return replace(potential, exit_names=clauses.exits) if clauses.exits else potential
 
 
+@lru_cache(maxsize=64)
 def formula_letters(text: str) -> tuple[str, ...]:
     """Return the letters of a formula and its clauses in the order of the text; FormulaError for an unknown character."""
+    return _letters_of(split_clauses(text))
+
+
+def _letters_of(clauses: Clauses) -> tuple[str, ...]:
     letters: dict[str, int] = {}
-    clauses = split_clauses(text)
     for part in (Part(clauses.formula, 0), *clauses.numbers):
         for token in tokenize(part.text):
             if token.kind == "letter":
@@ -154,8 +158,7 @@ def checked_letter_value(name: str, value: float) -> float:
     return checked_between(name, value, -LARGEST_VALUE, LARGEST_VALUE)
 
 
-def _exact_values(text: str, parameters: Mapping[str, float]) -> dict[str, Fraction]:
-    letters = formula_letters(text)
+def _exact_values(letters: tuple[str, ...], parameters: Mapping[str, float]) -> dict[str, Fraction]:
     for name in parameters:
         if name not in letters:
             legal = f"its letters are {', '.join(letters)}" if letters else "it has no letters"
