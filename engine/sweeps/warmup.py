@@ -96,7 +96,12 @@ def prepare_for_maps(potential: Potential) -> None:
         return
     energy = _open_energy(potential)
     spec = small_map(potential, energy)
-    _for_maps.run(lambda: find_lyapunov_orbits(potential, energy), lambda: compute_map(spec, execution=_EXECUTION))
+    _for_maps.run(
+        # The first use of the kernels generates their code, and the calls of a search and of a map compile it.
+        lambda: potential.in_well_units.well.kernels,
+        lambda: find_lyapunov_orbits(potential, energy),
+        lambda: compute_map(spec, execution=_EXECUTION),
+    )
 
 
 def prepare_for_evidence(potential: Potential) -> None:

@@ -161,7 +161,7 @@ class Well(ReadOnlyArrays):
 
     @property
     def kernels(self) -> ModuleType:
-        """The compiled kernels, see `load_kernels`, for a potential in units of its well."""
+        """The kernels, see `load_kernels`, for a potential in units of its well. The first use generates their code."""
         return load_kernels(self.form.definition, self.setting, self.rotation)
 
     @property
