@@ -97,12 +97,11 @@ class AnalysisPresenter:
         self._explain_refusals()
 
     def _connect(self) -> None:
-        watch = self._state.param.watch
         self._results.param.watch(lambda event: self._follow_map(), "frame")
-        watch(self._switch_layers, "layers")
-        watch(lambda event: self._apply_settings(), "settings")
-        watch(lambda *events: self._stop_sweep(), ["system", "plane", "t_max"])
-        watch(lambda *events: self._show_curves(None), "system")
+        self._state.param.watch(self._switch_layers, "layers")
+        self._state.param.watch(lambda event: self._apply_settings(), "settings")
+        self._state.param.watch(lambda *events: self._stop_sweep(), ["system", "plane", "t_max"])
+        self._state.param.watch(lambda *events: self._show_curves(None), "system")
 
     def _layer_follow_up(self, layer: Layer) -> FollowUp:
         """Return the analysis of a layer, which is requested while the layer is on."""
