@@ -1,4 +1,5 @@
 // @ts-check
+import {hear, tell} from "../modules/energy_events.js"
 import {CountedValue} from "./counted_value.js"
 
 /**
@@ -39,8 +40,6 @@ export function render({model, el}) {
     number.hidden = model.note !== ""
     value.follow()
   }
-  const tell = (/** @type {string} */ event, /** @type {number} */ energy) =>
-    document.dispatchEvent(new CustomEvent(event, {detail: energy}))
   const drag = (/** @type {number} */ energy) => {
     name.textContent = `${model.label}: `
     number.hidden = false
@@ -67,15 +66,10 @@ export function render({model, el}) {
   rail.addEventListener("input", () => drag(value.read()))
   for (const event of ["change", "pointerup", "pointercancel"]) rail.addEventListener(event, release)
   rail.addEventListener("keydown", press)
-  const show = (/** @type {Event} */ event) => write(clamped(/** @type {CustomEvent} */ (event).detail))
-  document.addEventListener("energyshown", show)
+  const forgetShown = hear("energyshown", energy => write(clamped(energy)))
   // The engine may be loaded while the user holds the slider.
-  const answer = () => value.unsent && tell("energydragged", value.read())
-  document.addEventListener("energyasked", answer)
-  model.on("lifecycle:remove", () => {
-    document.removeEventListener("energyshown", show)
-    document.removeEventListener("energyasked", answer)
-  })
+  const forgetAsked = hear("energyasked", () => value.unsent && tell("energydragged", value.read()))
+  for (const forget of [forgetShown, forgetAsked]) model.on("lifecycle:remove", forget)
   model.on(["low", "high", "decimals", "label", "note", "disabled", "shown"], follow)
   follow()
 }

@@ -1,4 +1,5 @@
 // @ts-check
+import {hear} from "../modules/energy_events.js"
 import {CountedValue} from "./counted_value.js"
 
 /**
@@ -31,11 +32,10 @@ export function render({model, el}) {
   // Enter without a change of the number fires no change event.
   input.addEventListener("keydown", event => event.key === "Enter" && finish())
   // Show a number of the page that the server has not received yet.
-  const show = (/** @type {any} */ event) => {
-    if (!value.unsent) write(Number(event.detail.toPrecision(10)))
+  const show = (/** @type {number} */ number) => {
+    if (!value.unsent) write(Number(number.toPrecision(10)))
   }
-  if (model.shown_event) document.addEventListener(model.shown_event, show)
-  model.on("lifecycle:remove", () => document.removeEventListener(model.shown_event, show))
+  if (model.shown_event) model.on("lifecycle:remove", hear(model.shown_event, show))
   model.on(["step", "disabled", "shown"], follow)
   follow()
 }

@@ -1,6 +1,7 @@
 // @ts-check
 /** Connects the component on the page (`app/views/panels/engine_component.py`) with the modules. */
 
+import {hear, tell} from "./energy_events.js"
 import {Card} from "./gestures/card.js"
 import {Frames} from "./workers/frames.js"
 import {lightPixels} from "./painting/legend.js"
@@ -44,12 +45,10 @@ export function start(model, el) {
   const frames = new Frames(pool, workerCount(), (view, pixels, moving) => preview.show(view, pixels, moving))
   /** @type {Preview} */
   const preview = new Preview(find, findSource, frames, new Overlay(el))
-  const announceEnergy = (/** @type {number} */ energy) =>
-    document.dispatchEvent(new CustomEvent("energyshown", {detail: energy}))
   const player = new Player(
     energy => {
       preview.showEnergy(energy)
-      announceEnergy(energy)
+      tell("energyshown", energy)
     },
     energy => {
       preview.release()
@@ -62,8 +61,8 @@ export function start(model, el) {
     () => find("maps").data,
     () => model.view,
   )
-  document.addEventListener("energydragged", event => preview.showEnergy(/** @type {CustomEvent} */ (event).detail))
-  document.addEventListener("energyreleased", () => preview.release())
+  hear("energydragged", energy => preview.showEnergy(energy))
+  hear("energyreleased", () => preview.release())
   // The last system and its compiled modules.
   /** @type {{system: import("./engine/system.js").System, modules: import("./engine/integrator.js").Modules} | null} */
   let compiled = null
@@ -103,5 +102,5 @@ export function start(model, el) {
   receiveView()
   void receiveSystem()
   if (model.command.name === "play") runCommand()
-  document.dispatchEvent(new Event("energyasked"))
+  tell("energyasked")
 }
