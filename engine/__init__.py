@@ -1,7 +1,7 @@
 """Escapes in open Hamiltonian systems with two degrees of freedom and any smooth potential with a well.
 
-These are the public names of the library. All results show themselves in notebooks and have `plot`, `to_pandas`, `to_xarray` and
-`to_holoviews`, see `Result`; the classes of results that are not named here are in `results`. Names of other modules are for the
+These are the public names of the library. All results are displayed in notebooks and have `plot`, `to_pandas`, `to_xarray` and
+`to_holoviews`, see `Result`; the classes of results that are not listed here are in `results`. Names in other modules are for the
 programs of this repository, and may change with any version.
 
 - systems: `Potential`, `System`, `Centre`, `Outcome`, `CASES`, `POTENTIALS`, `parse_formula`, `FormulaError`, `write_formula`,

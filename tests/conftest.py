@@ -73,7 +73,7 @@ def pytest_collection_finish() -> None:
 def _unlimited_compiled_code() -> Iterator[None]:
     """After each test, remove the limit of compiled code that a server state has set, and stop counting the code of the test."""
     yield
-    compiled_operations.most = None
+    compiled_operations.limit = None
     compiled_operations.reserve(compiled_operations.codes)
 
 

@@ -79,7 +79,7 @@ class ProcessState:
     _turns: WeakKeyDictionary[asyncio.AbstractEventLoop, asyncio.Lock] = field(default_factory=WeakKeyDictionary, init=False)
 
     def __post_init__(self) -> None:
-        compiled_operations.most = self.settings.compiled_operations
+        compiled_operations.limit = self.settings.compiled_operations
         self.jobs = Jobs(
             cache_bytes=self.settings.cache_bytes,
             most_orbits=self.settings.most_orbits,
@@ -102,7 +102,7 @@ class ProcessState:
         return self._shares.setdefault(document, FairShare())
 
     def _processor_times(self) -> ProcessorTimes:
-        return processor_times(self.jobs.stats().computed, self.limited.computed + self.compiler.computed)
+        return processor_times(self.jobs.stats().processor_time, self.limited.computed + self.compiler.computed)
 
     def pages(self) -> Mapping[str, float]:
         """Return the number of pages by visitor, as `Capacity` counts them."""

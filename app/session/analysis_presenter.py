@@ -65,7 +65,11 @@ class AnalysisPresenter:
         state.param.watch(lambda event: self._cancel_box_measures(), "box")
         self._sweep_request = LatestRequest(jobs, self._show_curves, self._fail_sweep, locked)
         self._follow_ups = FollowUpRequests(state, jobs, self._list_follow_ups(), self._fail, locked)
-        self._connect()
+        self._results.param.watch(lambda event: self._follow_map(), "frame")
+        state.param.watch(self._switch_layers, "layers")
+        state.param.watch(lambda event: self._apply_settings(), "settings")
+        state.param.watch(lambda *events: self._stop_sweep(), ["system", "plane", "t_max"])
+        state.param.watch(lambda *events: self._show_curves(None), "system")
 
     def _list_follow_ups(self) -> list[FollowUp]:
         """Return the analyses of each complete map."""
@@ -88,20 +92,14 @@ class AnalysisPresenter:
             return
         self._map_spec = spec
         self._results_by_layer = {}
-        self._cancel_measures()
+        for request in self._measure_requests.values():
+            request.cancel()
         self._maps.overlays.begin(spec)
         self.measures.begin()
         if self._results.analyses != NO_ANALYSES:
             self._results.analyses = NO_ANALYSES
         self.show_notes(**dict.fromkeys(LAYERS, ""))
         self._explain_refusals()
-
-    def _connect(self) -> None:
-        self._results.param.watch(lambda event: self._follow_map(), "frame")
-        self._state.param.watch(self._switch_layers, "layers")
-        self._state.param.watch(lambda event: self._apply_settings(), "settings")
-        self._state.param.watch(lambda *events: self._stop_sweep(), ["system", "plane", "t_max"])
-        self._state.param.watch(lambda *events: self._show_curves(None), "system")
 
     def _layer_follow_up(self, layer: Layer) -> FollowUp:
         """Return the analysis of a layer, which is requested while the layer is on."""
@@ -202,10 +200,6 @@ class AnalysisPresenter:
         # Without this, the request would ignore another click for the same map.
         self._measure_requests[name].cancel()
         self.measures.show(name, result)
-
-    def _cancel_measures(self) -> None:
-        for request in self._measure_requests.values():
-            request.cancel()
 
     def _cancel_box_measures(self) -> None:
         """Cancel the slow measures that depend on the box."""

@@ -53,8 +53,8 @@ class MapPresenter:
                 tap=locked(self.add_start),
                 dive=locked(self._dive),
                 zoom=locked(self._zoom_to),
-                rest=locked(history.end_gesture),
-                box=locked(self._count_in),
+                end_gesture=locked(history.end_gesture),
+                count_in=locked(self._count_in),
             ),
             alone=alone,
         )

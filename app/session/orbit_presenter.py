@@ -68,7 +68,7 @@ class OrbitPresenter:
         actions = OrbitActions(
             add=locked(add_start),
             find_divergent_start=lambda: self._divergent_start_requests.search(),
-            open_plane=self._open_section,
+            open_section=self._open_section,
             show_all_times=lambda: self._brush(None),
             copy=context.copy,
         )

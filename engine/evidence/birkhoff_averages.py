@@ -39,16 +39,12 @@ REGULAR_DIGITS = 7.0
 _KAISER_SHAPE = 20.0
 # Largest change of the energy along an orbit whose averages count, in units of the well.
 _ENERGY_TOLERANCE = 1e-9
-# Largest number of digits, which stands for equal averages.
+# Largest number of digits, also for equal averages.
 _MOST_DIGITS = 16.0
 
 
 def count_agreeing_digits(
-    potential: Potential,
-    states: np.ndarray,
-    window: float,
-    *,
-    execution: Execution = DEFAULT_EXECUTION,
+    potential: Potential, states: np.ndarray, window: float, *, execution: Execution = DEFAULT_EXECUTION
 ) -> np.ndarray:
     """Count the digits to which weighted averages of x² and y² agree over two consecutive windows and a window between them.
 
@@ -73,11 +69,7 @@ def count_agreeing_digits(
 
 
 def compare_averages(
-    potential: Potential,
-    states: np.ndarray,
-    window: float,
-    *,
-    execution: Execution = DEFAULT_EXECUTION,
+    potential: Potential, states: np.ndarray, window: float, *, execution: Execution = DEFAULT_EXECUTION
 ) -> np.ndarray:
     """Return the digits to which the first two averages of each orbit agree, and the digits to which all three agree, (n, 2).
 
@@ -106,7 +98,7 @@ def compare_halves(x: np.ndarray, y: np.ndarray) -> float:
 
 
 def _agreeing_digits(potential: Potential, tile: np.ndarray, window: float) -> np.ndarray:
-    """Return the digits of the orbits in a tile (4, lanes), of shape (lanes, 2)."""
+    """Return the result of `compare_averages` for the orbits of a tile (4, lanes), of shape (lanes, 2)."""
     initial_energy = potential.energy(tile.T)
     step = potential.well.fixed_step
     averages = np.zeros((3, 2, tile.shape[1]))
@@ -125,7 +117,7 @@ def _digits(averages: np.ndarray) -> np.ndarray:
     with np.errstate(all="ignore"):
         difference = np.array([np.ptp(averages[:count], axis=0) / np.abs(averages).max(axis=0) for count in (2, 3)])
         digits = -np.log10(np.maximum(difference.max(axis=1), 10.0**-_MOST_DIGITS))
-    # NaN, for an observable that is always 0, becomes 0 digits.
+    # An observable that is always 0 has the digits NaN, which count as 0.
     return np.where(np.isfinite(digits), np.maximum(digits, 0.0), 0.0)
 
 

@@ -24,9 +24,9 @@ from engine.systems.potential import Potential
 _PROMISING_DIGITS = 3.5
 # Largest cost of a test with a window that takes longer than the time left, as a share of the work left. Such a window is used
 # for the few most promising orbits alone, because their curves can enclose other orbits.
-_MAX_WORK_SHARE = 0.15
+_LARGEST_WORK_SHARE = 0.15
 # Largest number of these most promising orbits in a round.
-_MAX_SEEDS = 2 * LANES
+_MOST_SEEDS = 2 * LANES
 # Distances in pixels between the orbits of successive rounds.
 _LATTICE_STRIDES = (16, 8, 4, 2, 1)
 # Smallest number of candidates on a coarse lattice; a round with fewer orbits would not keep all workers busy.
@@ -36,11 +36,11 @@ _CURVE_POINTS = 800
 # Time to collect these points, in units of the well.
 _CURVE_TIME = 8000.0
 # Largest number of orbits of a round for which an invariant curve is computed.
-_MAX_CURVES_PER_ROUND = 192
+_MOST_CURVES_PER_ROUND = 192
 # Time to find the first section point of an orbit, in units of the well.
 _FIRST_POINT_TIME = 30.0
-# Up to this number of points, one worker applies barriers faster than several workers, which each need a copy of the barriers.
-_FEW_POINTS = 2000
+# Largest number of points to which one worker applies barriers faster than several workers, which each need a copy of them.
+_MOST_POINTS_OF_ONE_WORKER = 2000
 
 
 class BoundedOrbitSearch:
@@ -91,10 +91,10 @@ class BoundedOrbitSearch:
         self.evidence = np.zeros(len(states), np.int8)
         self.digits = np.full(len(states), np.inf) if digits is None else digits.copy()
         self._entry_points = () if energy is None else find_entry_points(potential, energy)
-        self._use_curves = bool(self._entry_points) and all(map(len, self._entry_points))
-        if self._use_curves:
-            self._points = find_section_points(potential, states, 1, _FIRST_POINT_TIME, execution=self._execution)[:, 0]
-            self._on_section = np.isfinite(self._points).all(axis=1)
+        self._uses_curves = bool(self._entry_points) and all(map(len, self._entry_points))
+        if self._uses_curves:
+            self._section_points = find_section_points(potential, states, 1, _FIRST_POINT_TIME, execution=self._execution)[:, 0]
+            self._reaches_section = np.isfinite(self._section_points).all(axis=1)
             self._separated = np.zeros((len(states), len(self._entry_points)), bool)
 
     def run(self, on_round: Callable[[], None]) -> bool:
@@ -110,24 +110,24 @@ class BoundedOrbitSearch:
             ).T
             self.digits[tested] = digits_of_two
             self.evidence[tested[digits_of_three >= TORUS_DIGITS]] = Evidence.QUASI_PERIODIC
-            if self._use_curves:
+            if self._uses_curves:
                 # Two averages suffice here, because the invariant curve is itself evidence of a torus.
                 self._find_enclosed(tested[digits_of_two >= TORUS_DIGITS])
             on_round()
         return not self._execution.is_cancelled
 
     def _rounds(self) -> Iterator[tuple[float, np.ndarray]]:
-        """Yield (window, orbits) for each round; orbits for which a round finds evidence are left out of the next round."""
+        """Yield the window and the indices of the tested orbits of each round; orbits with evidence are left out."""
         for window in WINDOWS:
             is_promising = self.digits >= _PROMISING_DIGITS
             duration = 2.0 * window
             if self._tested_for < duration <= self._time_left:
                 yield from ((window, tested) for tested in self._lattices(is_promising))
-            elif duration > self._time_left and self._use_curves:
+            elif duration > self._time_left and self._uses_curves:
                 yield from ((window, tested) for tested in self._most_promising(is_promising, duration))
 
     def _lattices(self, is_candidate: np.ndarray) -> Iterator[np.ndarray]:
-        """Yield groups of candidates, a coarse lattice first, because the curves of a few orbits can enclose many others."""
+        """Yield groups of candidates, those on a coarse lattice first, because the curves of a few orbits can enclose many."""
         for stride in _LATTICE_STRIDES:
             on_lattice = np.all(self.grid_indices % stride == stride // 2, axis=1)
             group = np.flatnonzero(self._without_evidence() & is_candidate & on_lattice)
@@ -139,10 +139,10 @@ class BoundedOrbitSearch:
         is_candidate = is_candidate.copy()
         while True:
             count_before = np.count_nonzero(self._without_evidence())
-            most_affordable = int(_MAX_WORK_SHARE * count_before * self._time_left / duration) // LANES * LANES
+            most_affordable = int(_LARGEST_WORK_SHARE * count_before * self._time_left / duration) // LANES * LANES
             candidates = np.flatnonzero(self._without_evidence() & is_candidate)
             best_first = candidates[np.argsort(-self.digits[candidates], kind="stable")]
-            group = best_first[: min(most_affordable, _MAX_SEEDS)]
+            group = best_first[: min(most_affordable, _MOST_SEEDS)]
             if not group.size:
                 return
             is_candidate[group] = False
@@ -156,32 +156,32 @@ class BoundedOrbitSearch:
         """Return whether there is no evidence yet for each orbit, of shape (n,)."""
         return self.evidence == Evidence.NONE
 
-    def _find_enclosed(self, regular: np.ndarray) -> None:
-        """Mark all orbits that the invariant curves of some of the `regular` orbits enclose."""
-        on_section = regular[self._on_section[regular]]
-        seeds = on_section[:: max(1, math.ceil(on_section.size / _MAX_CURVES_PER_ROUND))]
+    def _find_enclosed(self, torus_orbits: np.ndarray) -> None:
+        """Mark all orbits that invariant curves enclose. The curves are those of some of `torus_orbits`, (k,) indices."""
+        on_section = torus_orbits[self._reaches_section[torus_orbits]]
+        seeds = on_section[:: max(1, math.ceil(on_section.size / _MOST_CURVES_PER_ROUND))]
         arguments = (self.potential.well.mirror_in_x, self._entry_points)
         tiles = run_tiles(_find_barriers, self.potential, self.states[seeds], *arguments, execution=self._execution)
         all_barriers = [barrier for _, tile_barriers in tiles for barrier in tile_barriers]
         if self._execution.is_cancelled:
             return
-        barriers = _without_enclosed(all_barriers, self._points[seeds], self._separated[seeds])
-        remaining = np.flatnonzero(self._on_section & ~self._separated.all(axis=1))
-        if remaining.size <= _FEW_POINTS:
-            self._separated[remaining] = _separated_by_any(barriers, self._points[remaining], self._separated[remaining])
+        barriers = _without_enclosed(all_barriers, self._section_points[seeds], self._separated[seeds])
+        remaining = np.flatnonzero(self._reaches_section & ~self._separated.all(axis=1))
+        if remaining.size <= _MOST_POINTS_OF_ONE_WORKER:
+            self._separated[remaining] = _separated_by_any(barriers, self._section_points[remaining], self._separated[remaining])
         else:
             self._separate_in_parallel(barriers, remaining)
         self.evidence[self._separated.all(axis=1) & self._without_evidence()] = Evidence.ENCLOSED
 
     def _separate_in_parallel(self, barriers: list[_Barrier], orbits: np.ndarray) -> None:
-        """Apply `_separated_by_any` to some orbits in several workers."""
+        """Apply `_separated_by_any` to orbits, (k,) indices, in several workers."""
         # Prepared polygons must not be used by two threads at once, so each task unpickles its own copies.
         pickled_barriers = pickle.dumps(barriers)
 
-        def select(part: np.ndarray) -> tuple[Any, ...]:
-            return pickled_barriers, self._points[part], self._separated[part]
+        def select_arguments(part: np.ndarray) -> tuple[Any, ...]:
+            return pickled_barriers, self._section_points[part], self._separated[part]
 
-        for part, separated in run_parts(_separated_by_pickled, orbits, select, self._execution):
+        for part, separated in run_parts(_separated_by_pickled, orbits, select_arguments, self._execution):
             self._separated[part] = separated
 
 
@@ -210,37 +210,37 @@ class _Barrier:
 
 
 def _find_barriers(
-    potential: Potential, tile: np.ndarray, mirror: bool, entry_points: tuple[np.ndarray, ...]
+    potential: Potential, tile: np.ndarray, has_mirror_image: bool, entry_points: tuple[np.ndarray, ...]
 ) -> list[_Barrier | None]:
     """Return the barrier of each orbit in a tile (4, lanes), or None for an orbit without a curve; called in a worker."""
     barriers: list[_Barrier | None] = []
     for points in trace_section_points(potential, tile, _CURVE_POINTS, _CURVE_TIME):
         curve = find_invariant_curve(points[np.isfinite(points).all(axis=1)])
-        barriers.append(None if curve is None else _Barrier(curve, _exit_sides(curve, mirror, entry_points)))
+        barriers.append(None if curve is None else _Barrier(curve, _exit_sides(curve, has_mirror_image, entry_points)))
     return barriers
 
 
-def _exit_sides(curve: InvariantCurve, mirror: bool, entry_points: tuple[np.ndarray, ...]) -> dict[float, np.ndarray]:
+def _exit_sides(curve: InvariantCurve, has_mirror_image: bool, entry_points: tuple[np.ndarray, ...]) -> dict[float, np.ndarray]:
     """Return `_Barrier.exit_sides`: the side on which all entry points of an exit lie."""
     exit_sides = {}
-    for sign in (1.0, -1.0) if mirror else (1.0,):
+    for sign in (1.0, -1.0) if has_mirror_image else (1.0,):
         entry_sides = [curve.find_side(sign * points) for points in entry_points]
         exit_sides[sign] = np.array([sides.min() if sides.min() == sides.max() else 0 for sides in entry_sides])
     return exit_sides
 
 
 def _without_enclosed(barriers: list[_Barrier | None], points: np.ndarray, separated: np.ndarray) -> list[_Barrier]:
-    """Return the barriers of the orbits at `points` (n, 2), except of orbits that earlier barriers of the result enclose.
+    """Return the barriers of the orbits at `points` (n, 2), except of orbits that barriers earlier in the result enclose.
 
     An orbit is enclosed if it is separated from all exits. `separated`, (n, channels), holds the separations of earlier rounds.
     """
-    result = []
+    kept_barriers = []
     for index in _alternating_by_size([0.0 if barrier is None else barrier.curve.area for barrier in barriers]):
         barrier = barriers[index]
         if barrier is not None and not separated[index].all():
-            result.append(barrier)
+            kept_barriers.append(barrier)
             separated = separated | barrier.find_separated(points)
-    return result
+    return kept_barriers
 
 
 def _separated_by_pickled(barriers: bytes, points: np.ndarray, separated: np.ndarray) -> np.ndarray:

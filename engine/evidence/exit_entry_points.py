@@ -16,11 +16,11 @@ from engine.slices.planes import SECTION
 from engine.systems.potential import Potential
 
 # Samples of the path of a Lyapunov orbit at which orbits start: every tenth, except near its ends.
-_POSITIONS = slice(10, -10, 10)
+_PATH_SAMPLES = slice(10, -10, 10)
 # Angles of the velocities of these orbits to the inward direction, in radians.
-_ANGLES = np.radians([-60.0, -30.0, 0.0, 30.0, 60.0])
+_VELOCITY_ANGLES = np.radians([-60.0, -30.0, 0.0, 30.0, 60.0])
 # Longest time to the first crossing of the section, in units of the well.
-_MAX_ENTRY_TIME = 30.0
+_LONGEST_ENTRY_TIME = 30.0
 
 
 @functools.lru_cache(maxsize=256)
@@ -35,7 +35,7 @@ def find_entry_points(potential: Potential, energy: float) -> tuple[np.ndarray, 
     potential
         The potential in units of its well, `Potential.in_well_units`.
     energy
-        h, finite, dimensionless.
+        h in units of the well, finite.
 
     Returns
     -------
@@ -53,16 +53,16 @@ def find_entry_points(potential: Potential, energy: float) -> tuple[np.ndarray, 
 def _entry_points(potential: Potential, energy: float, orbit: LyapunovOrbit) -> np.ndarray:
     states = _inward_states(potential, energy, orbit)
     execution = DEFAULT_EXECUTION.in_this_thread()
-    points: np.ndarray = find_section_points(potential, states, 1, _MAX_ENTRY_TIME, execution=execution)[:, 0]
+    points: np.ndarray = find_section_points(potential, states, 1, _LONGEST_ENTRY_TIME, execution=execution)[:, 0]
     return read_only(points[_is_interior(potential, energy, points)])
 
 
 def _inward_states(potential: Potential, energy: float, orbit: LyapunovOrbit) -> np.ndarray:
     """Return states on the path of a Lyapunov orbit with inward momenta, of shape (n, 4)."""
-    x, y = np.repeat(orbit.half_path[_POSITIONS], _ANGLES.size, axis=0).T
+    x, y = np.repeat(orbit.half_path[_PATH_SAMPLES], _VELOCITY_ANGLES.size, axis=0).T
     speed = np.sqrt(2.0 * np.maximum(energy - potential.value(x, y), 0.0))
     inward = -orbit.outward
-    angle = np.arctan2(inward[1], inward[0]) + np.tile(_ANGLES, x.size // _ANGLES.size)
+    angle = np.arctan2(inward[1], inward[0]) + np.tile(_VELOCITY_ANGLES, x.size // _VELOCITY_ANGLES.size)
     return np.column_stack([x, y, speed * np.cos(angle), speed * np.sin(angle)])
 
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import shapely
 
 MOST_ISLANDS = 24
-"""Largest number of islands of a chain that is searched for."""
+"""Largest number of islands of a chain whose curves are searched."""
 
 LEAST_POINTS = 40
 """Smallest number of points of a loop."""
@@ -29,8 +29,8 @@ LEAST_POINTS = 40
 # bunches with wide gaps between them. At the edge of a bunch, the polygon turns only by θ/2, the angle between the curve and the
 # gap. Even then, the curve stays within a quarter of the margin.
 _MARGIN_FACTOR = 8.0
-# Largest margin accepted, relative to the square root of the enclosed area.
-_MAX_RELATIVE_MARGIN = 0.1
+# Largest accepted margin, relative to the square root of the enclosed area.
+_LARGEST_RELATIVE_MARGIN = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,21 +102,21 @@ def find_invariant_curve(points: np.ndarray) -> InvariantCurve | None:
     A curve with one loop per island, or one loop for an orbit around a fixed point. None if there are too few points, or if the
     points do not lie densely enough on smooth curves without self-intersections.
     """
-    for islands in range(1, MOST_ISLANDS + 1):
-        if len(points) < islands * LEAST_POINTS:
+    for island_count in range(1, MOST_ISLANDS + 1):
+        if len(points) < island_count * LEAST_POINTS:
             break
-        loops = _find_loops(points, islands)
+        loops = _find_loops(points, island_count)
         if loops:
             polygons, margins = zip(*loops, strict=True)
             return InvariantCurve(polygons, margins)
     return None
 
 
-def _find_loops(points: np.ndarray, islands: int) -> list[tuple[shapely.Polygon, float]]:
-    """Return the loop around each island of a chain with its margin; an empty list if any loop is not closed."""
+def _find_loops(points: np.ndarray, island_count: int) -> list[tuple[shapely.Polygon, float]]:
+    """Return the loop around each island of a chain, with its margin; an empty list if any loop is not closed or not smooth."""
     loops = []
-    for first in range(islands):
-        loop = _find_loop(np.ascontiguousarray(points[first::islands]))
+    for island in range(island_count):
+        loop = _find_loop(np.ascontiguousarray(points[island::island_count]))
         if loop is None:
             return []
         loops.append(loop)
@@ -124,7 +124,7 @@ def _find_loops(points: np.ndarray, islands: int) -> list[tuple[shapely.Polygon,
 
 
 def _find_loop(points: np.ndarray) -> tuple[shapely.Polygon, float] | None:
-    """Return the loop through successive points of a rotation and its margin; None if the points are not on a closed curve."""
+    """Return the loop through successive points of a rotation and its margin; None if they are not on a smooth closed curve."""
     import shapely
 
     loop = np.empty_like(points)
@@ -134,5 +134,5 @@ def _find_loop(points: np.ndarray) -> tuple[shapely.Polygon, float] | None:
         return None
     margin = _MARGIN_FACTOR * height
     polygon = shapely.Polygon(loop)
-    is_smooth = margin <= _MAX_RELATIVE_MARGIN * np.sqrt(polygon.area) and polygon.is_valid
+    is_smooth = margin <= _LARGEST_RELATIVE_MARGIN * np.sqrt(polygon.area) and polygon.is_valid
     return (polygon, margin) if is_smooth else None

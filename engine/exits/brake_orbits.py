@@ -64,8 +64,6 @@ _LARGEST_MISMATCH = 1e-8
 _OVERLAP = 0.05
 # The path of half a period has one point more.
 _INTERVALS_PER_HALF_PERIOD = 100
-# Relative tolerance of roots that are found to rounding.
-_ROUNDING = 4.0 * float(np.finfo(float).eps)
 # Largest number of integrator steps of a trial orbit.
 _MOST_STEPS = 400
 
@@ -235,7 +233,7 @@ def _time_at(q: float, shot: _Shot, axes: Axes) -> float:
     def distance(time: float) -> float:
         return float(axes.coordinates(shot.positions(np.array([time])))[1][0]) - q
 
-    return find_root(distance, 0.0, shot.half_period, xtol=1e-15, rtol=_ROUNDING)
+    return find_root(distance, 0.0, shot.half_period, xtol=1e-15)
 
 
 def _next_orbit(potential: Potential, energy: float, channel: int, previous: BrakeOrbit) -> BrakeOrbit | None:
@@ -283,7 +281,7 @@ class _Trials:
 
     def solve(self, bracket: tuple[float, float], largest_speed: float) -> _Shot | None:
         """Return the orbit that starts between two offsets and ends slower than `largest_speed`; None if no orbit does."""
-        u = find_root(self.outward_velocity, *bracket, xtol=1e-17, rtol=_ROUNDING)
+        u = find_root(self.outward_velocity, *bracket, xtol=1e-17)
         velocity, half_period, count = self._kernels.shoot(u, *self._arguments)
         if not (np.isfinite(half_period) and abs(velocity) < largest_speed):
             return None

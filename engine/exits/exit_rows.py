@@ -63,10 +63,10 @@ def exit_curves_at(potential: Potential, energies: np.ndarray, execution: Execut
     return curves
 
 
-def exits_of_orbit(potential: Potential, energy: float) -> tuple[np.ndarray, str]:
-    """Return the `exit_curves` for one orbit, and the reason why the exits over saddles are unknown; empty if they are known.
+def exit_curves_if_known(potential: Potential, energy: float) -> tuple[np.ndarray, str]:
+    """Return the `exit_curves`, and the reason why the exits over saddles are unknown; empty if they are known.
 
-    Unknown exits over saddles count as absent: no orbit crosses them. Other ends remain.
+    Unknown exits over saddles are returned as absent, so that no orbit crosses them. Other ends remain.
     """
     try:
         return exit_curves(potential, energy), ""

@@ -205,7 +205,13 @@ def _relative_size(change: np.ndarray, unknowns: np.ndarray) -> float:
 
 
 def _newton_step(family: _Family, sigma: float, unknowns: np.ndarray) -> np.ndarray | None:
-    """Return the least-squares solution of the linearised equations; None where the trial orbit cannot be integrated.
+    """Return the least-squares solution of the linearised equations; None if the trial orbit cannot be integrated."""
+    system = _linearise(family, sigma, unknowns)
+    return None if system is None else -np.linalg.lstsq(*system, rcond=None)[0]
+
+
+def _linearise(family: _Family, sigma: float, unknowns: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
+    """Return the Jacobian matrix and the residual of the equations; None if the trial orbit cannot be integrated.
 
     The equations: each part ends where the next part begins, the energy is σ² above the saddle, and q̇ = 0 at the start.
     """
@@ -225,9 +231,7 @@ def _newton_step(family: _Family, sigma: float, unknowns: np.ndarray) -> np.ndar
     jacobian[-2, :4] = np.array([*family.potential.gradient(start[0], start[1]), start[2], start[3]]) / sigma
     jacobian[-1, 2:4] = -outward[1], outward[0]
     residual[-1] = jacobian[-1, :4] @ unknowns[:4]
-    if not (np.isfinite(residual).all() and np.isfinite(jacobian).all()):
-        return None
-    return -np.linalg.lstsq(jacobian, residual, rcond=None)[0]
+    return (jacobian, residual) if np.isfinite(residual).all() and np.isfinite(jacobian).all() else None
 
 
 def _velocities(potential: Potential, states: np.ndarray) -> np.ndarray:

@@ -33,26 +33,26 @@ _DERIVATIVES = 4096
 def derivative(expression: Expression, axis: int) -> Expression:
     """Return ∂/∂x (axis 0) or ∂/∂y (axis 1)."""
     match expression:
-        case Coordinate(own):
-            return number(1.0 if own == axis else 0.0)
+        case Coordinate(own_axis):
+            return number(1.0 if own_axis == axis else 0.0)
         case Sum(_, terms):
             return linear_combination((c, derivative(part, axis)) for part, c in terms)
         case Product(factors):
             return linear_combination((n, _differentiate_factor(factors, k, axis)) for k, (_, n) in enumerate(factors))
-        case Function("log", argument) if (inverse_root := _of_inverse_hyperbolic_sine(argument, axis)) is not None:
-            return inverse_root
+        case Function("log", argument) if (special_derivative := _inverse_hyperbolic_sine_derivative(argument, axis)) is not None:
+            return special_derivative
         case Function(name, argument):
             return multiply(_outer_derivative(name, argument), derivative(argument, axis))
     raise TypeError(expression)
 
 
 def slopes(expression: Expression) -> tuple[Expression, Expression]:
-    """Return the derivatives along x and y."""
+    """Return the first derivatives along x and y."""
     return derivative(expression, 0), derivative(expression, 1)
 
 
 def curvatures(expression: Expression) -> tuple[Expression, Expression, Expression]:
-    """Return the second derivatives: twice along x, along x and y, and twice along y."""
+    """Return the second derivatives ∂²/∂x², ∂²/∂x∂y and ∂²/∂y²."""
     along_x, along_y = slopes(expression)
     return derivative(along_x, 0), derivative(along_x, 1), derivative(along_y, 1)
 
@@ -76,7 +76,7 @@ def _outer_derivative(name: str, argument: Expression) -> Expression:
     return linear_combination([(-1.0, apply_function("sin", argument))])
 
 
-def _of_inverse_hyperbolic_sine(argument: Expression, axis: int) -> Expression | None:
+def _inverse_hyperbolic_sine_derivative(argument: Expression, axis: int) -> Expression | None:
     """Return (p'/c) b^(−½), the derivative of log(p + c b^½) if c² b' = 2 p' p with a number p' ≠ 0; None for other arguments.
 
     Where p < 0, the terms of u = p + c b^½ cancel, and the usual derivative u'/u would lose digits.
@@ -108,7 +108,7 @@ def substitute(expression: Expression, x: Expression, y: Expression) -> Expressi
 
 
 def replace_parts(expression: Expression, parts: Mapping[Expression, Expression]) -> Expression:
-    """Replace the parts of an expression that are keys of `parts` by their values."""
+    """Replace each part of an expression that is a key of `parts` by its value there."""
     if expression in parts:
         return parts[expression]
     match expression:

@@ -5,36 +5,32 @@ from __future__ import annotations
 import math
 from collections import Counter
 
-from engine.expressions.nodes import Expression, Product, Sum, linear_combination, multiply, power
+from engine.expressions.nodes import Expression, Product, Sum, as_sum, linear_combination, multiply, power
 
-Terms = tuple[tuple[Expression, float], ...]
+SumTerms = tuple[tuple[Expression, float], ...]
 """The terms (m, c) of a sum Σ c m."""
 
 
 # Mantissa that `math.frexp` returns for powers of two.
-_MANTISSA_OF_POWERS = 0.5
+_MANTISSA_OF_POWERS_OF_TWO = 0.5
 
 
-def factor_out(terms: Terms) -> Terms:
-    """Factor out the most common factors of the products of Σ c m. The constants of new sums are 0.
+def factor_out(terms: SumTerms) -> SumTerms:
+    """Factor out the most common factors of the products of Σ c m. New sums have no constants.
 
     Sums among the factors are scaled to a first coefficient of 1 where the scaling is exact. Then u (2x + 1) + v (x + ½) has a
     common factor.
     """
-    terms = _terms_of(linear_combination(_with_unit_sums(part, c) for part, c in terms))
+    terms = as_sum(linear_combination(_with_unit_sums(part, c) for part, c in terms)).terms
     while (factor := _most_common_factor(terms)) is not None:
         inverse = power(factor, -1.0)
-        have_factor = [_contains(part, factor) for part, _ in terms]
+        are_multiples = [_contains(part, factor) for part, _ in terms]
         inner_sum = linear_combination(
-            (c, multiply(part, inverse)) for (part, c), has in zip(terms, have_factor, strict=True) if has
+            (c, multiply(part, inverse)) for (part, c), is_multiple in zip(terms, are_multiples, strict=True) if is_multiple
         )
-        other_terms = [(c, part) for (part, c), has in zip(terms, have_factor, strict=True) if not has]
-        terms = _terms_of(linear_combination([_with_unit_sums(multiply(factor, inner_sum), 1.0), *other_terms]))
+        other_terms = [(c, part) for (part, c), is_multiple in zip(terms, are_multiples, strict=True) if not is_multiple]
+        terms = as_sum(linear_combination([_with_unit_sums(multiply(factor, inner_sum), 1.0), *other_terms])).terms
     return terms
-
-
-def _terms_of(total: Expression) -> Terms:
-    return total.terms if isinstance(total, Sum) else ((total, 1.0),)
 
 
 def _with_unit_sums(part: Expression, c: float) -> tuple[float, Expression]:
@@ -42,14 +38,14 @@ def _with_unit_sums(part: Expression, c: float) -> tuple[float, Expression]:
     factors = []
     for base, n in part.factors if isinstance(part, Product) else ():
         scale = base.terms[0][1] if isinstance(base, Sum) and n == int(n) else 1.0
-        if abs(math.frexp(scale)[0]) != _MANTISSA_OF_POWERS:
+        if abs(math.frexp(scale)[0]) != _MANTISSA_OF_POWERS_OF_TWO:
             scale = 1.0
         c *= scale**n
         factors.append(power(linear_combination([(1.0 / scale, base)]), n))
     return c, multiply(*factors) if factors else part
 
 
-def _most_common_factor(terms: Terms) -> Expression | None:
+def _most_common_factor(terms: SumTerms) -> Expression | None:
     """Find the most common factor, and return the product of all factors that the products with this factor share.
 
     None if no factor is common. Among several most common factors, the first is used, so that graphs do not depend on hashes.
@@ -68,7 +64,7 @@ def _contains(part: Expression, factor: Expression) -> bool:
 
 
 def _factors(part: Expression) -> tuple[Expression, ...]:
-    """Return the factors of a product in order; empty if the product is its only factor.
+    """Return the factors of a product in order; empty for a single factor, such as b^−1.
 
     A positive integer power of b has the factor b.
     """

@@ -37,15 +37,11 @@ class Operations[Value]:
 
 
 def node_values[Value](graph: Graph, numbers: Sequence[float], x: Value, y: Value, operations: Operations[Value]) -> list[Value]:
-    """Return the values of all nodes of a graph."""
+    """Return the values of all nodes of a graph at x and y."""
+    coordinates = {"x": x, "y": y}
     values: list[Value] = []
     for node in graph.nodes:
-        if node.kind == "x":
-            values.append(x)
-        elif node.kind == "y":
-            values.append(y)
-        else:
-            values.append(_value(node, values, numbers, operations))
+        values.append(coordinates[node.kind] if node.kind in coordinates else _value(node, values, numbers, operations))
     return values
 
 
@@ -78,15 +74,15 @@ _ARRAYS = Operations[np.ndarray](_linear, operator.mul, np.power, {"exp": np.exp
 
 
 def evaluate(graph: Graph, numbers: Sequence[float], x: Any, y: Any) -> list[np.ndarray]:
-    """Evaluate the expressions at x and y, which broadcast. The result is NaN or infinite where an expression is not defined."""
+    """Evaluate the expressions at x and y, which broadcast. Values are NaN or infinite where an expression is not defined."""
     x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
     with np.errstate(all="ignore"):
         values = node_values(graph, numbers, x, y, _ARRAYS)
-    return [_fill(values[index], x.shape) for index in graph.results]
+    return [_broadcast(values[index], x.shape) for index in graph.results]
 
 
-def _fill(value: Any, shape: tuple[int, ...]) -> np.ndarray:
-    """Return a value as an array of a shape. The value of a constant expression is a single number."""
+def _broadcast(value: Any, shape: tuple[int, ...]) -> np.ndarray:
+    """Return a value as an array of the given shape. The value of a constant expression is a single number."""
     return np.asarray(value) if np.shape(value) == shape else np.full(shape, value)
 
 

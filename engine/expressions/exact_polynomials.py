@@ -31,7 +31,7 @@ def exact_constant(value: Fraction) -> fmpq_mpoly:
 
 
 def exact_terms(polynomial: fmpq_mpoly) -> dict[Powers, Fraction]:
-    """Return the terms {(i, j): c} of a polynomial of FLINT; none for 0."""
+    """Return the terms {(i, j): c} of a polynomial of FLINT; empty for 0."""
     return {(int(i), int(j)): Fraction(int(c.p), int(c.q)) for (i, j), c in polynomial.to_dict().items()}
 
 
@@ -39,19 +39,19 @@ def limited_product(a: fmpq_mpoly, b: fmpq_mpoly) -> fmpq_mpoly:
     """Return a · b; raise `TooLargeError`, before multiplying if the degree would be too high."""
     if a and b and a.total_degree() + b.total_degree() > HIGHEST_DEGREE:
         raise TooLargeError(f"degree {a.total_degree() + b.total_degree()}; the highest degree is {HIGHEST_DEGREE}")
-    return limited(a * b)
+    return checked_size(a * b)
 
 
 def limited_power(a: fmpq_mpoly, exponent: int) -> fmpq_mpoly:
-    """Return a to an integer power from 0 to `HIGHEST_DEGREE`; raise `TooLargeError` if the power is too large."""
+    """Return a^exponent for an exponent from 0 to `HIGHEST_DEGREE`; raise `TooLargeError` if the power is too large."""
     total = RING.constant(1)
     for _ in range(exponent):
         total = limited_product(total, a)
     return total
 
 
-def limited(polynomial: fmpq_mpoly) -> fmpq_mpoly:
-    """Return the polynomial itself; raise `TooLargeError` if a number has too many digits."""
+def checked_size(polynomial: fmpq_mpoly) -> fmpq_mpoly:
+    """Return the polynomial itself; raise `TooLargeError` if one of its numbers has too many digits."""
     for c in polynomial.coeffs():
         if max(int(c.p).bit_length(), int(c.q).bit_length()) > _MOST_BITS:
             raise TooLargeError("a number of more than 300 digits")

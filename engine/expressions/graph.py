@@ -1,4 +1,4 @@
-"""Expressions as a list of operations without repeated parts. This form is evaluated, compiled and sent to the browser.
+"""Expressions as a list of operations without repeated parts. The list is evaluated, and kernels are generated from it.
 
 The graph of an expression refers to numbers by position. Expressions that differ only in their numbers have the same graph, and
 share compiled code. The graph has few products and powers, because the series of a product or power needs a sum over all lower
@@ -13,8 +13,8 @@ from typing import Any, NamedTuple
 from engine.expressions.common_factors import factor_out
 from engine.expressions.nodes import Coordinate, Expression, Function, Product, Sum, as_terms
 
-# Number of cached graphs, of some kB each.
-_GRAPHS = 256
+# Number of cached graphs. Each has a few kB.
+_CACHED_GRAPHS = 256
 
 
 class Node(NamedTuple):
@@ -54,7 +54,7 @@ class Graph(NamedTuple):
         return sum(node.kind not in ("x", "y", "sum", "shift") for node in self.nodes)
 
 
-@lru_cache(maxsize=_GRAPHS)
+@lru_cache(maxsize=_CACHED_GRAPHS)
 def make_graph(expressions: tuple[Expression, ...]) -> tuple[Graph, tuple[float, ...]]:
     """Return the common graph of expressions, and the numbers to which the graph refers."""
     builder = _Builder()
@@ -89,9 +89,8 @@ class _Builder:
                 return self._append(Node("xy"[axis]))
             case Sum(constant, terms) if constant and (len(terms) > 1 or (terms and terms[0][1] == 1.0)):
                 # Sums that differ only in their constants share a node.
-                if len(terms) == 1:
-                    return self._append(Node("shift", (self.add(terms[0][0]),), self._add_numbers([constant])))
-                return self._append(Node("shift", (self.add(Sum(0.0, terms)),), self._add_numbers([constant])))
+                without_constant = terms[0][0] if len(terms) == 1 else Sum(0.0, terms)
+                return self._append(Node("shift", (self.add(without_constant),), self._add_numbers([constant])))
             case Sum(constant, terms):
                 terms = factor_out(terms)
                 operands = tuple(self.add(part) for part, _ in terms)
@@ -100,35 +99,38 @@ class _Builder:
             case Product(factors):
                 # Polynomials come last, so that the forces of a centre along x and y share the product of the other factors.
                 ordered = sorted(factors, key=lambda factor: _is_polynomial(*factor))
-                index, *other_indices = (self._power(self.add(base), n) for base, n in ordered)
+                index, *other_indices = (self._add_power(self.add(base), n) for base, n in ordered)
                 for other in other_indices:
-                    index = self._node(Node("product", (index, other)))
+                    index = self._add_node(Node("product", (index, other)))
                 return index
             case Function("sin" | "cos" as name, argument):
-                return self._sine_and_cosine(name, argument)
+                return self._add_sine_and_cosine(name, argument)
             case Function(name, argument):
                 return self._append(Node(name, (self.add(argument),)))
         raise TypeError(expression)
 
-    def _power(self, base: int, exponent: float) -> int:
-        """Return the index of a power. Positive integer powers are products, whose series are regular where the base is 0."""
+    def _add_power(self, base: int, exponent: float) -> int:
+        """Add a power of the node `base` and return its index.
+
+        Positive integer powers are products, because series of products are regular where the base is 0.
+        """
         if exponent == 1.0:
             return base
         if exponent != int(exponent):
-            return self._real_power(base, exponent)
+            return self._add_real_power(base, exponent)
         if exponent < 0.0:
-            return self._power(self._node(Node("power", (base,), exponent=-1.0)), -exponent)
-        half = self._power(base, float(int(exponent) // 2))
-        square = self._node(Node("product", (half, half)))
-        return square if int(exponent) % 2 == 0 else self._node(Node("product", (square, base)))
+            return self._add_power(self._add_node(Node("power", (base,), exponent=-1.0)), -exponent)
+        half = self._add_power(base, float(int(exponent) // 2))
+        square = self._add_node(Node("product", (half, half)))
+        return square if int(exponent) % 2 == 0 else self._add_node(Node("product", (square, base)))
 
-    def _real_power(self, base: int, exponent: float) -> int:
-        """Return the index of a non-integer power.
+    def _add_real_power(self, base: int, exponent: float) -> int:
+        """Add a non-integer power of the node `base` and return its index.
 
         The next higher power is an operand if it is a node. For an inverse root, the root is added as a node.
         """
         if exponent == -0.5:
-            self._real_power(base, 0.5)
+            self._add_real_power(base, 0.5)
         key = base, exponent
         if key not in self._powers:
             higher = self._powers.get((base, exponent + 1.0))
@@ -141,7 +143,8 @@ class _Builder:
         self.numbers += values
         return tuple(range(first, first + len(values)))
 
-    def _sine_and_cosine(self, name: str, argument: Expression) -> int:
+    def _add_sine_and_cosine(self, name: str, argument: Expression) -> int:
+        """Add the sine and the cosine of an argument, and return the index of the one called `name`."""
         angle = self.add(argument)
         # The next node is the cosine.
         sine = self._append(Node("sin", (angle, len(self.nodes) + 1)))
@@ -149,12 +152,13 @@ class _Builder:
         self._indices |= {Function("sin", argument): sine, Function("cos", argument): cosine}
         return sine if name == "sin" else cosine
 
-    def _node(self, node: Node) -> int:
+    def _add_node(self, node: Node) -> int:
         """Add a node if it is new, and return its index."""
         if node not in self._indices:
             self._indices[node] = self._append(node)
         return self._indices[node]
 
     def _append(self, node: Node) -> int:
+        """Add a node and return its index."""
         self.nodes.append(node)
         return len(self.nodes) - 1

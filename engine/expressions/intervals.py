@@ -17,10 +17,10 @@ import numpy as np
 from engine.expressions.evaluation import Operations, node_values
 from engine.expressions.graph import Graph, Node
 
-# Relative widening of an end, four units in the last place, which covers the rounding error of an operation.
-_RELATIVE = 4.0 * 2.0**-52
+# Relative widening of an end by four units in the last place, which covers the rounding error of an operation.
+_ROUNDING = 4.0 * 2.0**-52
 # Absolute widening of an end, which covers underflow.
-_ABSOLUTE = 1e-300
+_UNDERFLOW = 1e-300
 # Largest angle of a sine, in radians. For larger angles, the position within a period is not accurate enough.
 _LARGEST_ANGLE = 1e8
 
@@ -33,7 +33,7 @@ class Interval:
     high: np.ndarray
 
     @property
-    def size(self) -> np.ndarray:
+    def magnitude(self) -> np.ndarray:
         """The largest magnitudes, of shape (n,)."""
         return np.maximum(np.abs(self.low), np.abs(self.high))
 
@@ -50,38 +50,38 @@ class Enclosure:
     ----------
     values
         An interval for each expression.
-    defined
+    defined_everywhere
         Whether all expressions are defined and bounded on the whole box, of shape (n,).
-    nowhere
+    defined_nowhere
         Whether at least one expression is undefined on the whole box, of shape (n,).
     """
 
     values: list[Interval]
-    defined: np.ndarray
-    nowhere: np.ndarray
+    defined_everywhere: np.ndarray
+    defined_nowhere: np.ndarray
 
 
 def enclose(graph: Graph, numbers: Sequence[float], x: Interval, y: Interval) -> Enclosure:
     """Return intervals of the expressions of a graph on boxes x × y."""
-    nowhere = np.zeros(x.low.shape, bool)
-    defined = np.ones(x.low.shape, bool)
+    defined_nowhere = np.zeros(x.low.shape, bool)
+    defined_everywhere = np.ones(x.low.shape, bool)
     with np.errstate(all="ignore"):
         intervals = node_values(graph, numbers, x, y, _OPERATIONS)
     for node in graph.nodes:
         if node.kind in ("power", "log"):
             base = intervals[node.operands[0]]
             if _needs_positive(node):
-                nowhere |= base.high < 0.0
-                defined &= base.low > 0.0
+                defined_nowhere |= base.high < 0.0
+                defined_everywhere &= base.low > 0.0
             else:
-                nowhere |= (base.low == 0.0) & (base.high == 0.0)
-                defined &= base.excludes_zero()
+                defined_nowhere |= (base.low == 0.0) & (base.high == 0.0)
+                defined_everywhere &= base.excludes_zero()
     # A constant has one interval for all boxes.
     results = [intervals[index] for index in graph.results]
     values = [Interval(*np.broadcast_arrays(result.low, result.high, x.low)[:2]) for result in results]
     for value in values:
-        defined &= np.isfinite(value.low) & np.isfinite(value.high)
-    return Enclosure(values, defined & ~nowhere, nowhere)
+        defined_everywhere &= np.isfinite(value.low) & np.isfinite(value.high)
+    return Enclosure(values, defined_everywhere & ~defined_nowhere, defined_nowhere)
 
 
 def _needs_positive(node: Node) -> bool:
@@ -90,7 +90,7 @@ def _needs_positive(node: Node) -> bool:
 
 
 Ends = tuple[np.ndarray, np.ndarray]
-"""Lower and upper ends."""
+"""Lower and upper ends of the values on n boxes, each of shape (n,)."""
 
 
 def _interval(ends: Ends) -> Interval:
@@ -100,13 +100,13 @@ def _interval(ends: Ends) -> Interval:
 
 
 def _widen(operation: Callable[..., Ends]) -> Callable[..., Interval]:
-    """Decorate an operation on intervals so that the rounding error widens its result."""
+    """Decorate an operation on intervals so that its result is widened by the rounding error."""
 
     @functools.wraps(operation)
     def widened(*operands: Any) -> Interval:
         interval = _interval(operation(*operands))
         low, high = interval.low, interval.high
-        return Interval(low - _RELATIVE * np.abs(low) - _ABSOLUTE, high + _RELATIVE * np.abs(high) + _ABSOLUTE)
+        return Interval(low - _ROUNDING * np.abs(low) - _UNDERFLOW, high + _ROUNDING * np.abs(high) + _UNDERFLOW)
 
     return widened
 
@@ -116,8 +116,8 @@ def _linear(constant: float, coefficients: Sequence[float], operands: Sequence[I
     magnitude = np.abs(low)
     for c, operand in zip(coefficients, operands, strict=True):
         first, last = (operand.low, operand.high) if c >= 0.0 else (operand.high, operand.low)
-        low, high, magnitude = low + c * first, high + c * last, magnitude + abs(c) * operand.size
-    error = _RELATIVE * len(operands) * magnitude + _ABSOLUTE
+        low, high, magnitude = low + c * first, high + c * last, magnitude + abs(c) * operand.magnitude
+    error = _ROUNDING * len(operands) * magnitude + _UNDERFLOW
     return _interval((low - error, high + error))
 
 
@@ -132,7 +132,7 @@ def _product(one: Interval, other: Interval) -> Ends:
 
 def _square(base: Interval) -> Ends:
     least = np.where((base.low <= 0.0) & (base.high >= 0.0), 0.0, np.minimum(np.abs(base.low), np.abs(base.high)))
-    return least**2, base.size**2
+    return least**2, base.magnitude**2
 
 
 @_widen
@@ -162,13 +162,13 @@ def _log(argument: Interval) -> Ends:
 def _sine(angle: Interval, shift: float = 0.0) -> Ends:
     """Return sin(angle + shift)."""
     first, last = angle.low + shift, angle.high + shift
-    margin = _RELATIVE * (np.abs(first) + np.abs(last) + 1.0)
+    margin = _ROUNDING * (np.abs(first) + np.abs(last) + 1.0)
     # The comparison is also False for NaN.
     is_known = np.maximum(np.abs(first), np.abs(last)) < _LARGEST_ANGLE
     # Whether the interval contains a maximum of the sine, 2πk + π/2, or a minimum, 2πk − π/2.
     has_maximum, has_minimum = (
-        np.floor((last + margin - at) / (2.0 * np.pi)) > np.floor((first - margin - at) / (2.0 * np.pi))
-        for at in (0.5 * np.pi, -0.5 * np.pi)
+        np.floor((last + margin - extremum) / (2.0 * np.pi)) > np.floor((first - margin - extremum) / (2.0 * np.pi))
+        for extremum in (0.5 * np.pi, -0.5 * np.pi)
     )
     low = np.where(~is_known | has_minimum, -1.0, np.minimum(np.sin(first) - margin, np.sin(last) - margin))
     high = np.where(~is_known | has_maximum, 1.0, np.maximum(np.sin(first) + margin, np.sin(last) + margin))

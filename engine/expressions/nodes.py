@@ -23,7 +23,8 @@ class Expression:
     Attributes
     ----------
     key
-        A tuple that is unique to each expression, used for comparisons and for the order of the parts of sums and products.
+        A tuple that differs between unequal expressions, used for comparisons and for the order of the parts of sums and
+        products.
     """
 
     @cached_property
@@ -114,12 +115,17 @@ def as_number(expression: Expression) -> float | None:
     return expression.constant if isinstance(expression, Sum) and not expression.terms else None
 
 
+def as_sum(expression: Expression) -> Sum:
+    """Return a sum itself, or any other expression as a sum with one term."""
+    return expression if isinstance(expression, Sum) else Sum(0.0, ((expression, 1.0),))
+
+
 def linear_combination(parts: Iterable[tuple[float, Expression]]) -> Expression:
     """Return Σ c e over the pairs (c, e)."""
     constant = 0.0
     coefficients: dict[Expression, float] = {}
     for c, part in parts:
-        inner = part if isinstance(part, Sum) else Sum(0.0, ((part, 1.0),))
+        inner = as_sum(part)
         constant += c * inner.constant
         for each, d in inner.terms:
             coefficients[each] = coefficients.get(each, 0.0) + c * d
@@ -130,7 +136,7 @@ def linear_combination(parts: Iterable[tuple[float, Expression]]) -> Expression:
 
 
 def multiply(*factors: Expression) -> Expression:
-    """Return the product of expressions. Sums are not expanded."""
+    """Return the product of expressions. Sums are not expanded; powers of the same base are joined."""
     coefficient = 1.0
     exponents: dict[Expression, float] = {}
     for factor in factors:
@@ -154,7 +160,7 @@ def multiply(*factors: Expression) -> Expression:
 
 
 def expand(factor: Expression, total: Expression) -> Expression:
-    """Multiply a factor by each term of a sum."""
+    """Return the product of a factor and a sum, multiplied term by term."""
     if not isinstance(total, Sum):
         return multiply(factor, total)
     terms = ((c, multiply(factor, part)) for part, c in total.terms)
@@ -162,41 +168,42 @@ def expand(factor: Expression, total: Expression) -> Expression:
 
 
 def power(base: Expression, exponent: float) -> Expression:
-    """Return a real power; ArithmeticError or ValueError if a power of a number is not a finite real number."""
+    """Return a power with a real exponent; ArithmeticError or ValueError if a power of a number is not a finite real number."""
     coefficient, rest = _split_coefficient(base)
     is_integer = exponent == int(exponent)
     if exponent == 0.0:
         return number(1.0)
+    # A negative coefficient cannot leave a root: the power of the whole base may be real.
     if coefficient < 0.0 and not is_integer:
         coefficient, rest = 1.0, base
     if as_number(rest) is not None:
-        return number(_finite(math.pow(coefficient * rest.constant, exponent)))  # type: ignore[attr-defined]
+        return number(_checked_finite(math.pow(coefficient * rest.constant, exponent)))  # type: ignore[attr-defined]
     if isinstance(rest, Product) and (is_integer or (len(rest.factors) == 1 and _keeps_domain(rest.factors[0][1]))):
         power_of_rest: Expression = multiply(*(Product(((b, n * exponent),)) for b, n in rest.factors))
     else:
         power_of_rest = rest if exponent == 1.0 else Product(((rest, float(exponent)),))
-    return linear_combination([(_finite(math.pow(coefficient, exponent)), power_of_rest)])
+    return linear_combination([(_checked_finite(math.pow(coefficient, exponent)), power_of_rest)])
 
 
 def _keeps_domain(inner: float) -> bool:
-    """Return whether (b^inner)^a is rewritten as b^(inner a). An even `inner` forbids this, because √(b²) is |b|."""
-    return inner != int(inner) or (int(inner) % 2 != 0 and abs(inner) == 1.0)
+    """Return whether (b^inner)^a is rewritten as b^(inner a). For other integers, value or domain could change: √(b²) is |b|."""
+    return inner != int(inner) or abs(inner) == 1.0
 
 
 def apply_function(name: str, argument: Expression) -> Expression:
     """Return a function of an expression; ArithmeticError or ValueError for a number outside its domain."""
     value = as_number(argument)
-    return Function(name, argument) if value is None else number(_finite(FUNCTIONS[name](value)))
+    return Function(name, argument) if value is None else number(_checked_finite(FUNCTIONS[name](value)))
 
 
 def from_terms(terms: Terms) -> Expression:
-    """Return a polynomial {(i, j): c} as an expression."""
+    """Return the polynomial Σ c x^i y^j, given as {(i, j): c}, as an expression."""
     return linear_combination((c, multiply(power(X, i), power(Y, j))) for (i, j), c in terms.items())
 
 
 def as_terms(expression: Expression) -> dict[Powers, float] | None:
     """Return {(i, j): c} of an expanded polynomial; None for other expressions."""
-    total = expression if isinstance(expression, Sum) else Sum(0.0, ((expression, 1.0),))
+    total = as_sum(expression)
     terms = {(0, 0): total.constant} if total.constant else {}
     for part, c in total.terms:
         powers = powers_of(part)
@@ -233,7 +240,7 @@ def _order(part: Expression) -> tuple[Any, ...]:
     return (1, part.key) if powers is None else (0, sum(powers), powers[1])
 
 
-def _finite(value: float) -> float:
+def _checked_finite(value: float) -> float:
     if not math.isfinite(value):
         raise OverflowError
     return value

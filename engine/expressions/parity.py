@@ -21,14 +21,14 @@ _PARITIES = 1024
 
 @lru_cache(maxsize=_PARITIES)
 def parity(expression: Expression, axis: int) -> int:
-    """Return the parity under a change of sign of a coordinate: `EVEN`, `ODD` or `NEITHER`.
+    """Return the parity under a change of sign of x (axis 0) or y (axis 1): `EVEN`, `ODD` or `NEITHER`.
 
     A sum whose terms are exchanged by the reflection, such as the terms of two equal bodies, is `NEITHER`: in floating point its
     values at mirror images can differ in the last bit.
     """
     match expression:
-        case Coordinate(own):
-            return ODD if own == axis else EVEN
+        case Coordinate(own_axis):
+            return ODD if own_axis == axis else EVEN
         case Sum(constant, terms):
             signs = {parity(part, axis) for part, _ in terms} | ({EVEN} if constant or not terms else set())
             return signs.pop() if len(signs) == 1 else NEITHER
@@ -46,6 +46,7 @@ def parity(expression: Expression, axis: int) -> int:
 
 
 def _power_parity(sign: int, exponent: float) -> int:
+    """Return the parity of a power of a base with the parity `sign`."""
     if sign != ODD:
         return sign
     if exponent != int(exponent):

@@ -14,7 +14,7 @@ Terms = Mapping[Powers, float]
 """The polynomial Σ c x^i y^j as {(i, j): c}."""
 
 HIGHEST_DEGREE = 12
-"""Highest degree of a potential. The search for critical points is not tested beyond, and Taylor steps would be slow."""
+"""Highest degree of a potential. For higher degrees, the search for critical points is untested, and Taylor steps are slow."""
 
 
 def degree(terms: Mapping[Powers, object]) -> int:
@@ -23,7 +23,7 @@ def degree(terms: Mapping[Powers, object]) -> int:
 
 
 def largest_coefficients(*polynomials: Terms) -> dict[int, float]:
-    """Return {n: largest magnitude of a coefficient of degree n}."""
+    """Return, for each degree n, the largest magnitude of the coefficients of the terms of this degree."""
     largest: dict[int, float] = {}
     for terms in polynomials:
         for (i, j), c in terms.items():
@@ -42,7 +42,7 @@ def evaluate(terms: Terms, x: Any, y: Any) -> Any:
 
 
 def _power(x: np.ndarray, i: int) -> np.ndarray:
-    """Return x^i with exactly equal magnitudes for x and −x. Powers of NumPy above 3 do not ensure this."""
+    """Return x^i with exactly equal magnitudes for x and −x. NumPy does not ensure this for exponents above 3."""
     if i < 4:
         return x**i
     return np.abs(x) ** i if i % 2 == 0 else x * np.abs(x) ** (i - 1)
@@ -56,7 +56,7 @@ def derivative(terms: Terms, axis: int) -> dict[Powers, float]:
 
 
 def multiply[C: (float, complex)](a: Mapping[Powers, C], b: Mapping[Powers, C]) -> dict[Powers, C]:
-    """Return a · b. Terms that cancel remain as zeros."""
+    """Return the product of two polynomials. Terms that cancel remain as zeros."""
     total: dict[Powers, C] = {}
     for (i, j), c in a.items():
         for (k, m), d in b.items():

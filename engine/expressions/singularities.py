@@ -12,6 +12,7 @@ def singular_bases(expression: Expression) -> tuple[Expression, ...]:
 
 
 def _bases(expression: Expression) -> list[Expression]:
+    """Return the result of `singular_bases` with repetitions."""
     match expression:
         case Sum(_, terms):
             return [base for part, _ in terms for base in _bases(part)]
@@ -24,11 +25,12 @@ def _bases(expression: Expression) -> list[Expression]:
 
 
 def has_central_part(expression: Expression) -> bool:
-    """Return whether a singular base is a multiple of x² + y²."""
+    """Return whether one of the singular bases is a multiple of x² + y²."""
     return any(_is_central(base) for base in singular_bases(expression))
 
 
 def _is_central(base: Expression) -> bool:
+    """Return whether an expression is c (x² + y²)."""
     terms = as_terms(base)
     if terms is None:
         return False
@@ -37,7 +39,7 @@ def _is_central(base: Expression) -> bool:
 
 
 def oblique_gradients(expression: Expression) -> tuple[tuple[float, float], ...]:
-    """Return (a, b) of each base of a power and argument of a function that is a x + b y + c with a, b ≠ 0, each once."""
+    """Return the gradients (a, b), each once, of the bases of powers and arguments of functions a x + b y + c with a, b ≠ 0."""
     polynomials = (as_terms(part) for part in dict.fromkeys(_inner_parts(expression)))
     gradients = ((terms.get((1, 0), 0.0), terms.get((0, 1), 0.0)) for terms in polynomials if terms and degree(terms) == 1)
     return tuple(dict.fromkeys((a, b) for a, b in gradients if a and b))

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from engine.expressions.nodes import Coordinate, Expression, Function, Product, Sum, powers_of
+from engine.expressions.nodes import Coordinate, Expression, Function, Product, as_sum, powers_of
 
 _TO_SUPERSCRIPT = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 # Largest denominator of a number that is written as a fraction.
 _LARGEST_DENOMINATOR = 1000
-# Largest denominator of a fraction where decimals would also be exact: ½, ¼, ⅛, but 0.55125 in place of 441/800.
+# Largest denominator of a fraction whose decimals are finite: ½, ¼, ⅛, but 0.55125 in place of 441/800.
 _LARGEST_OF_DECIMALS = 8
 
 
@@ -30,7 +30,7 @@ def write_expression(expression: Expression, digits: int | None = None) -> str:
 
     digits: number of significant digits; None for as many as the parser needs to read the numbers exactly.
     """
-    total = expression if isinstance(expression, Sum) else Sum(0.0, ((expression, 1.0),))
+    total = as_sum(expression)
     parts: list[tuple[float, str]] = [(c, _term(part, abs(c), digits)) for part, c in total.terms]
     if total.constant or not parts:
         parts.append((total.constant, monomial_term(0, 0, abs(total.constant), digits)))
@@ -38,7 +38,7 @@ def write_expression(expression: Expression, digits: int | None = None) -> str:
 
 
 def join_signed(parts: list[tuple[float, str]]) -> str:
-    """Join texts to a sum. The number in each pair gives the sign of its text."""
+    """Return a sum as text, given the texts of its terms, each with a number whose sign precedes the text."""
     text = ""
     for c, part in parts:
         sign = ("−" if c < 0 else "") if not text else (" − " if c < 0 else " + ")
@@ -78,7 +78,7 @@ def write_ratio(magnitude: float, digits: int | None) -> tuple[str, str]:
 
 
 def write_power(name: str, exponent: float) -> str:
-    """Return a base to a power, with superscripts if the exponent is an integer."""
+    """Return a power of a base called `name` as text, with superscripts if the exponent is an integer."""
     if exponent == 1.0:
         return name
     if exponent == int(exponent):
@@ -87,16 +87,17 @@ def write_power(name: str, exponent: float) -> str:
 
 
 def _product(expression: Expression, digits: int | None) -> str:
-    """Return a factor or a product as text: coordinates first, then brackets, then functions."""
+    """Return a product, or its only factor, as text: coordinates first, then brackets, then functions."""
     factors = expression.factors if isinstance(expression, Product) else ((expression, 1.0),)
     text = ""
-    for base, exponent in sorted(factors, key=lambda factor: _place(factor[0])):
+    for base, exponent in sorted(factors, key=lambda factor: _rank(factor[0])):
         space = " " if text and isinstance(base, Function) else ""
         text += f"{space}{_factor(base, exponent, digits)}"
     return text
 
 
-def _place(base: Expression) -> int:
+def _rank(base: Expression) -> int:
+    """Return the rank of a factor in the text of a product."""
     return 0 if isinstance(base, Coordinate) else 2 if isinstance(base, Function) else 1
 
 

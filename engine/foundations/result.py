@@ -82,7 +82,7 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
     """Name of the dimension of the columns in files; empty if the first column has distinct values and is the coordinate."""
 
     held_as: ClassVar[dict[str, str]] = {}
-    """{field: name in files} of fields stored under another name; for a field stored in several parts, the name of one part."""
+    """{field: name in files} of fields that the class stores itself; if a field is stored in parts, the name of one part."""
 
     @property
     def fate_labels(self) -> Sequence[str]:

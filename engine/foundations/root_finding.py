@@ -9,9 +9,11 @@ import numpy as np
 
 # Largest number of steps; far more than smooth functions need.
 _MOST_STEPS = 100
+# Smallest relative tolerance that rounding permits, the default of SciPy.
+_SMALLEST_RTOL = 4.0 * float(np.finfo(float).eps)
 
 
-def find_root(function: Callable[[float], float], low: float, high: float, *, xtol: float, rtol: float) -> float:
+def find_root(function: Callable[[float], float], low: float, high: float, *, xtol: float, rtol: float = _SMALLEST_RTOL) -> float:
     """Find a root by Brent's method (Brent 1973, Algorithms for Minimization without Derivatives, chapter 4).
 
     The steps are those of `scipy.optimize.brentq`, which is not used because its import takes longer than a search.

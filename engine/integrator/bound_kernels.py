@@ -33,23 +33,23 @@ from engine.integrator.source.series import Setting
 
 _KERNEL_MODULES = (propagate, periodic_shooting, fixed_step, orbit_lanes, interior)
 # Number of potentials whose bound kernels are cached. Binding another potential of a known structure takes milliseconds.
-_BOUND_POTENTIALS = 256
+_CACHED_POTENTIALS = 256
 # Held while code is generated.
-_lock = threading.Lock()
+_generation_lock = threading.Lock()
 # Code, module name and functions of each structure. Entries stay, because machine code is never unloaded.
 _code_by_structure: dict[Structure, tuple[GeneratedCode, str, dict[str, CompiledFunction]]] = {}
 # Outlines (see `_outline`) and settings of all potentials for which functions were generated.
 _outlines: set[tuple[Hashable, Setting]] = set()
 
 
-@functools.lru_cache(maxsize=_BOUND_POTENTIALS)
+@functools.lru_cache(maxsize=_CACHED_POTENTIALS)
 def load_kernels(definition: Definition, setting: Setting, rotation: float = 0.0) -> ModuleType:
     """Return the kernels of a potential: ``step``, ``fixed_step``, ``jets``, ``tangent``, ``propagate``, ``shoot``, …
 
     Parameters
     ----------
     definition
-        ((i, j, c), …) of V = Σ c x^i y^j, or an expression.
+        Terms ((i, j, c), …) of the polynomial V = Σ c x^i y^j, dimensionless, or an expression.
     setting
         The facts besides V on which the generated code depends.
     rotation
@@ -57,61 +57,51 @@ def load_kernels(definition: Definition, setting: Setting, rotation: float = 0.0
 
     Returns
     -------
-    A module with these functions. Call them without the leading addresses and without `coefficients`. The first use of a kernel
-    for this structure loads the generated functions that it calls from the cache, or compiles them within some seconds.
+    A module with these functions, bound to the potential: they are called without the leading addresses and `coefficients`. The
+    first use of a kernel for this structure loads the generated functions that it calls from the disk cache, or compiles them,
+    which takes seconds.
     """
-    code, module_name, generated_functions = _find_or_generate(find_structure(definition, setting))
+    code, module_name, functions = _find_or_generate(find_structure(definition, setting))
     _outlines.add((_outline(definition), setting))
     coefficients = code.tabulate(definition, rotation)
     bound_module = ModuleType(module_name)
-    for name, function in generated_functions.items():
+    for name, function in functions.items():
         setattr(bound_module, name, _BoundKernel(function, (), coefficients))
-    for module in _KERNEL_MODULES:
-        for name, function in vars(module).items():
-            if isinstance(function, Dispatcher) and function.py_func.__module__ == module.__name__:
-                # Parameters for addresses have the names of the generated functions.
-                parameters = inspect.signature(function.py_func).parameters
-                callees = tuple(generated_functions[each] for each in parameters if each in generated_functions)
-                # Kernels without such parameters depend on no potential.
-                if callees:
-                    setattr(bound_module, name, _BoundKernel(function, callees, coefficients))
+    _bind_kernels(bound_module, functions, coefficients)
     return bound_module
 
 
 def is_generated(definition: Definition, setting: Setting) -> bool:
     """Return whether functions were generated for the structure of a potential. Generating them takes up to 0.3 s."""
-    # Outlines are compared first, because finding the structure of a new formula takes up to 0.2 s.
+    # Outlines are compared first, because it takes up to 0.2 s to find the structure of a new formula.
     return (_outline(definition), setting) in _outlines and find_structure(definition, setting) in _code_by_structure
 
 
 class CompiledFunction:
-    """The machine code of a generated function, compiled at its first use, for the types in `SIGNATURES` only."""
+    """A generated function that is compiled on first use, for the types in `SIGNATURES`."""
 
     def __init__(self, dispatcher: Any) -> None:
         self._dispatcher = dispatcher
         self._signature = SIGNATURES[dispatcher.__name__]
         self._address: int | None = None
-        self._compiling = threading.Lock()
+        self._lock = threading.Lock()
 
     @property
     def signatures(self) -> list[Any]:
-        """Argument types compiled so far."""
+        """Argument types for which the function has been compiled."""
         return list(self._dispatcher.signatures)
 
     @property
     def address(self) -> int:
-        """Address of the machine code, for calls from other kernels."""
-        return self._ensure_compiled() if self._address is None else self._address
-
-    def _ensure_compiled(self) -> int:
-        """Compile the function unless it is compiled, and return the address of the machine code."""
+        """Address of the machine code, for calls from other kernels. The first use compiles the function."""
         if self._address is None:
-            with self._compiling:
+            with self._lock:
                 if self._address is None:
                     self._address = self._compile()
         return self._address
 
     def _compile(self) -> int:
+        """Compile the function, and return the address of its machine code."""
         self._dispatcher.compile(self._signature)
         self._dispatcher.disable_compile()
         result = self._dispatcher.get_compile_result(self._signature)
@@ -123,8 +113,9 @@ class CompiledFunction:
         return self._dispatcher.py_func
 
     def __call__(self, *arguments: Any) -> Any:
-        """Call the function with arguments that can be cast to the types of its signature; TypeError for other arguments."""
-        self._ensure_compiled()
+        """Call the function. Raises TypeError if the arguments cannot be cast to the types of its signature."""
+        # The first use of the address compiles the function.
+        _ = self.address
         return self._dispatcher(*arguments)
 
 
@@ -138,17 +129,30 @@ class _BoundKernel:
 
     @property
     def signatures(self) -> list[Any]:
-        """Argument types compiled so far."""
+        """Argument types for which the kernel has been compiled."""
         return list(self.function.signatures)
 
     def __call__(self, *arguments: Any) -> Any:
         return self.function(*(callee.address for callee in self._callees), self._coefficients, *arguments)
 
 
+def _bind_kernels(bound_module: ModuleType, functions: dict[str, CompiledFunction], coefficients: np.ndarray) -> None:
+    """Add the kernels that call generated functions to the module of a potential."""
+    for module in _KERNEL_MODULES:
+        for name, function in vars(module).items():
+            if isinstance(function, Dispatcher) and function.py_func.__module__ == module.__name__:
+                # Parameters for addresses have the names of the generated functions.
+                parameters = inspect.signature(function.py_func).parameters
+                callees = tuple(functions[each] for each in parameters if each in functions)
+                # Kernels without such parameters depend on no potential.
+                if callees:
+                    setattr(bound_module, name, _BoundKernel(function, callees, coefficients))
+
+
 def _find_or_generate(structure: Structure) -> tuple[GeneratedCode, str, dict[str, CompiledFunction]]:
-    """Return the entry of `_code_by_structure`, made if it is missing. For a known structure, a thread never waits for others."""
+    """Return the entry of `_code_by_structure`, made if it is missing. For a known structure, no thread waits for the lock."""
     if structure not in _code_by_structure:
-        with _lock:
+        with _generation_lock:
             if structure not in _code_by_structure:
                 code = generate(structure)
                 _code_by_structure[structure] = code, *_define_module(code)
@@ -156,19 +160,22 @@ def _find_or_generate(structure: Structure) -> tuple[GeneratedCode, str, dict[st
 
 
 def _outline(definition: Definition) -> Hashable:
-    """Return a quick key that identifies most structures: the powers of a polynomial, or the graph of an expression."""
+    """Return a key that is cheap to compute and that most structures do not share.
+
+    It consists of the powers of a polynomial, or of the graph of an expression.
+    """
     return make_graph((definition,))[0] if isinstance(definition, Expression) else frozenset((i, j) for i, j, _ in definition)
 
 
 @functools.cache
 def _define_module(code: GeneratedCode) -> tuple[str, dict[str, CompiledFunction]]:
-    """Execute generated source as a module named after its hash. Return this name, and the functions, not compiled yet."""
+    """Define a module of generated functions, named after the hash of the code. Return its name and the uncompiled functions."""
     compiled_operations.add(code.digest, code.operations)
     name = f"kernels_{code.digest[:16]}"
     module = ModuleType(name)
     # Numba finds the module of a kernel here when it loads the kernel from the cache.
     sys.modules[name] = module
-    source = "\n\n".join(function.kernel for function in code.functions)
+    source = "\n\n".join(function.source for function in code.functions)
     # Numba reads the source of a function through this cache.
     linecache.cache[f"<{name}>"] = (len(source), None, source.splitlines(keepends=True), f"<{name}>")
     programs = {function.program.name: straight_line(function.program) for function in code.functions}

@@ -19,7 +19,7 @@ from numba.core.typing.templates import Signature
 from engine.foundations.cache_files import SUFFIX, cache_folder, read_or_make
 from engine.integrator.jit.disk_cache import program_digest
 from engine.integrator.jit.kernel_module import SETTINGS, lower_kernels
-from engine.integrator.jit.webassembly import PAIR
+from engine.integrator.jit.webassembly import VECTOR_LANES
 from engine.integrator.kernels import (
     dense_output,
     ensemble,
@@ -30,7 +30,7 @@ from engine.integrator.kernels import (
     slice_starts,
 )
 
-# Types of arguments: numbers, arrays of doubles and integers by their dimensions, tuples of arrays, and sequences of arguments.
+# Types of arguments: numbers; arrays of doubles and integers, by their dimensions; named tuples; and sequences of arguments.
 _void, _address, _number, _count, _flag = types.void, types.int64, types.float64, types.int64, types.boolean
 _f1, _f2, _f3 = types.float64[::1], types.float64[:, ::1], types.float64[:, :, ::1]
 _i1, _i2, _codes, _flags = types.int64[::1], types.int64[:, ::1], types.int8[::1], types.uint8[::1]
@@ -74,7 +74,7 @@ def module_digest() -> str:
 
 
 def kernel_module() -> bytes:
-    """Return the module of `KERNELS`, from the cache or built in some seconds, see `jit.kernel_module.lower_kernels`."""
+    """Return the module of `KERNELS`, from the cache or built, which takes seconds, see `jit.kernel_module.lower_kernels`."""
     with _building:
         return _load_or_build()
 
@@ -85,15 +85,15 @@ def _load_or_build() -> bytes:
 
 
 def _build() -> bytes:
-    # This calls `_main` in another process.
+    """Build the module in another process, which calls `_main`."""
     command = [sys.executable, "-m", __name__]
     return subprocess.run(command, env=os.environ | SETTINGS, stdout=subprocess.PIPE, check=True).stdout
 
 
 def _main() -> None:
     """Build the module and write it to the standard output."""
-    # WebAssembly computes pairs of lanes.
-    propagate.VECTOR = PAIR
+    # A vector of WebAssembly has two lanes. The kernels are compiled after this assignment.
+    propagate.VECTOR = VECTOR_LANES
     sys.stdout.buffer.write(lower_kernels(KERNELS))
 
 

@@ -8,11 +8,11 @@ from typing import Any
 
 from cachetools import LRUCache
 
-# Size of a result without arrays, in bytes.
+# Size at which a result without arrays is counted, in bytes.
 _SMALL_SIZE = 1024
 
 ABSENT: Any = object()
-"""Stands for a missing result where None is a possible result."""
+"""The value that marks a missing result where None is a possible result."""
 
 
 class ResultCache:
@@ -21,8 +21,8 @@ class ResultCache:
     Parameters
     ----------
     limit
-        Largest total size in bytes, 0 or more. A larger result is not stored. The size of a result is its attribute ``nbytes``; a
-        result without arrays counts as small.
+        Largest total size in bytes, 0 or more. A larger result is not stored. The size of a result is its attribute ``nbytes``;
+        results without this attribute, or with 0 bytes, count as 1 KiB.
     """
 
     def __init__(self, limit: int) -> None:

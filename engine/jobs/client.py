@@ -1,4 +1,4 @@
-"""A client of the job manager: it shares the threads fairly with other clients, and has a limit on its requests."""
+"""A client of the job manager. Threads are shared fairly among clients, and the open requests of each client are limited."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from engine.jobs.manager import Jobs
 from engine.jobs.subscription import Subscription
 
 MOST_REQUESTS = 32
-"""Default limit on the open requests of one client: more than all controls of a page together can cause."""
+"""Default limit on the open requests of one client. All controls of a page together cause fewer requests."""
 
 # Largest legal limit on the open requests of one client.
 _LARGEST_LIMIT = 1000
@@ -24,7 +24,7 @@ class JobClient:
     jobs
         The job manager.
     most_requests
-        Most requests open at the same time, 1 to 1000.
+        Largest number of requests open at the same time, 1 to 1000.
     account
         The account of the client, see `Jobs.request`.
     """
@@ -38,9 +38,9 @@ class JobClient:
         self, job: Job[Result], on_result: Callable[[Result], None], on_error: Callable[[Exception], None]
     ) -> Subscription:
         """Request a result as `Jobs.request` does; `on_error` receives a ValueError if too many requests are open."""
-        refusal = self._refuse(on_error)
-        if refusal is not None:
-            return refusal
+        refused_subscription = self._refuse_above_limit(on_error)
+        if refused_subscription is not None:
+            return refused_subscription
         subscription = self._jobs.request(job, on_result, on_error, client=self, account=self._account)
         self._subscriptions.append(subscription)
         return subscription
@@ -51,7 +51,7 @@ class JobClient:
             subscription.cancel()
         self._subscriptions.clear()
 
-    def _refuse(self, on_error: Callable[[Exception], None]) -> Subscription | None:
+    def _refuse_above_limit(self, on_error: Callable[[Exception], None]) -> Subscription | None:
         """Return None if another request is allowed, otherwise a closed subscription whose error has been reported."""
         self._subscriptions = [subscription for subscription in self._subscriptions if subscription.open]
         if len(self._subscriptions) < self._most_requests:
@@ -67,4 +67,4 @@ class JobClient:
 
 
 JobSubmitter = Jobs | JobClient
-"""What accepts requests: the job manager itself, or one of its clients."""
+"""An object that accepts requests: the job manager itself, or one of its clients."""

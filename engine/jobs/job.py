@@ -14,19 +14,22 @@ from engine.jobs.cache import ResultCache
 
 
 class Queue(Enum):
-    """The kind of the calls of a job, which decides in which queue calls wait for a thread."""
+    """The queue in which the calls of a job wait for a thread. It depends on the kind of the calls."""
 
     FIRST_FRAME = "first frame"
-    """The function submits many short calls. Until its first result, they precede all other calls."""
+    """The function submits many short calls. Until its first result, these calls precede all other calls."""
 
     BACKGROUND = "background"
     """The function submits many short calls."""
 
     LONG_CALL = "long call"
-    """The function itself is one call of up to seconds."""
+    """The function itself is one call, which takes up to some seconds."""
 
     LIMITED = "limited"
-    """The function itself is one call on a visitor's text. `Jobs` limits its resources if it can, and runs one per account."""
+    """The function itself is one call that evaluates a visitor's text, with limited resources if `Jobs` has `run_limited`.
+
+    Only one such call of an account runs at a time.
+    """
 
     COMPILATION = "compilation"
     """The function itself is one call that compiles kernels. Only one such call runs at a time in the process."""
@@ -42,8 +45,8 @@ class Job[Result]:
     Attributes
     ----------
     function
-        The function, which returns the result. When cancelled, it raises CancelledError or returns a result whose ``complete`` is
-        False.
+        The function, which returns the result. If its execution is cancelled, it raises CancelledError or returns a result whose
+        ``complete`` is False.
     arguments
         Positional arguments of the function. A job among them is replaced by its result, which must be complete.
     options
@@ -74,7 +77,7 @@ class Job[Result]:
         return {**{name: value for name, value in offered.items() if name in names}, **dict(self.options)}
 
 
-def run_job[Result](job: Job[Result], execution: Execution, known: Mapping[Job[Any], Any]) -> Result:
+def run_job[Result](job: Job[Result], execution: Execution, known_results: Mapping[Job[Any], Any]) -> Result:
     """Compute a job in this thread.
 
     Parameters
@@ -83,17 +86,17 @@ def run_job[Result](job: Job[Result], execution: Execution, known: Mapping[Job[A
         The job.
     execution
         Execution of the job, and of the jobs among its arguments.
-    known
-        Known results, by job.
+    known_results
+        Results that are not computed again, by job.
 
     Raises
     ------
     concurrent.futures.CancelledError
         When cancelled.
     """
-    if job in known:
-        return known[job]
-    arguments = [run_job(value, execution, known) if isinstance(value, Job) else value for value in job.arguments]
+    if job in known_results:
+        return known_results[job]
+    arguments = [run_job(value, execution, known_results) if isinstance(value, Job) else value for value in job.arguments]
     result = job.function(*arguments, **job.keywords({"execution": execution}))
     execution.raise_if_cancelled()
     return result

@@ -31,8 +31,8 @@ DEFAULT_CACHE_BYTES = 512 * 2**20
 DEFAULT_ORBITS = 4 * 2**20
 """Default limit on the number of orbits of all large running jobs. So many orbits take about 500 MiB."""
 
-# Number of coordinating threads, one for each running job. They mostly wait for the pool. Further jobs are queued.
-_COORDINATORS = 1024
+# Number of coordinating threads, one for each running job. They mostly wait for the executor. Further jobs are queued.
+_COORDINATING_THREADS = 1024
 
 log = logging.getLogger(__name__)
 
@@ -107,10 +107,11 @@ class Jobs:
         self._scheduler = FairScheduler(None if threads is None else create_thread_pool(threads), clock)
         # Numba compiles one function at a time, so more threads would only wait for each other.
         self._compilations = FairScheduler(create_thread_pool(1), clock)
-        self._limited_calls = FairScheduler(create_thread_pool(most_limited_calls), clock, one_each=True)
+        self._limited_calls = FairScheduler(create_thread_pool(most_limited_calls), clock, one_call_per_client=True)
         self._semaphore = OrbitSemaphore(most_orbits)
+        # Number of ended jobs by outcome.
         self._ended: Counter[str] = Counter()
-        self._coordinators = ThreadPoolExecutor(_COORDINATORS, thread_name_prefix="jobs")
+        self._coordinators = ThreadPoolExecutor(_COORDINATING_THREADS, thread_name_prefix="jobs")
         self._lock = threading.RLock()
         self._in_flight: dict[Job[Any], _Run] = {}
         self.cache = ResultCache(cache_bytes)
@@ -133,8 +134,8 @@ class Jobs:
         job
             The job.
         on_result
-            Called with the result and, if results have an attribute ``complete``, with partial results: in this thread if they
-            are at hand, otherwise from another thread.
+            Called with the result and, if results have an attribute ``complete``, with partial results: in this thread with
+            results that exist already, otherwise from another thread.
         on_error
             Called from another thread with the exception if the computation fails.
         client
@@ -181,7 +182,7 @@ class Jobs:
             orbits_held=self._semaphore.held,
             orbits_limit=self._semaphore.limit,
             threads=count_workers(self._executor) if self._executor is not None else self._scheduler.threads,
-            computed=sum(queue.computed for queue in (self._scheduler, self._compilations)),
+            processor_time=sum(queue.processor_time for queue in (self._scheduler, self._compilations)),
         )
 
     def _map_priority(self) -> MapPriority:
@@ -192,7 +193,7 @@ class Jobs:
         self._scheduler.prefer_first_frames(preferred)
 
     def pause_background(self, paused: bool) -> None:
-        """Pause or resume all calls but first frames, long calls and limited calls; see `FairScheduler.pause_background`."""
+        """Pause or resume background calls, and slow down long calls and compilations; see `FairScheduler.pause_background`."""
         self._scheduler.pause_background(paused)
         self._compilations.pause_background(paused)
 
@@ -253,7 +254,7 @@ class Jobs:
         return call()
 
     def _find_result[Result](self, run: _Run, job: Job[Result]) -> Result:
-        """Return the complete result of a job that the job of the run needs. A computed result is cached."""
+        """Return the complete result of a job that the job of the run needs, from the cache or computed and cached."""
         result: Any = self.cache.get(job, ABSENT)
         if not _is_complete(result):
             result = self._compute(job, run, None)
@@ -283,7 +284,8 @@ class Jobs:
                 self.cache.put(run.job, result)
             if self._in_flight.get(run.job) is run:
                 del self._in_flight[run.job]
-            self._ended["failed" if error else "cancelled" if run.cancel.is_set() else "done"] += 1
+            outcome = "cancelled" if run.cancel.is_set() else "done"
+            self._ended["failed" if error else outcome] += 1
             return run.release()
 
     def _publish(self, run: _Run, result: Any) -> None:
@@ -300,5 +302,5 @@ class Jobs:
 
 
 def _is_complete(result: Any) -> bool:
-    """Return whether a result is final; only results that arrive in parts have an attribute ``complete``."""
+    """Return whether there is a complete result. A result without an attribute ``complete`` is complete."""
     return result is not ABSENT and getattr(result, "complete", True)

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from engine.jobs.scheduler import Clock, Priority
 
 REST_SECONDS = 1.0
-"""Time after the request of a map, in seconds, during which the map is often replaced: its user is still searching."""
+"""Time after the request of a map, in seconds, during which users often replace the map by another."""
 
 CROWDED_REST_SECONDS = 3.0
 """The same time while the process is crowded, in seconds. Most maps are then replaced before a second frame is computed."""
@@ -36,7 +36,7 @@ class MapPriority:
         self._horizon = 0.0
 
     def add_frame(self, horizon: float) -> None:
-        """Note that a frame is complete up to `horizon`, as in `EscapeMap`."""
+        """Record that a frame was delivered, given its `EscapeMap.horizon`."""
         if self._first_horizon is None:
             self._first_horizon = horizon
         self._horizon = horizon
@@ -45,9 +45,9 @@ class MapPriority:
         """Return the priority of the next call."""
         if self._first_horizon is None:
             return Priority.FIRST_FRAME
-        return Priority.UNSETTLED if self._may_be_replaced(self._first_horizon) else Priority.BACKGROUND
+        return Priority.UNSETTLED if self._is_likely_replaced(self._first_horizon) else Priority.BACKGROUND
 
-    def _may_be_replaced(self, first_horizon: float) -> bool:
+    def _is_likely_replaced(self, first_horizon: float) -> bool:
         """Return whether the map is likely to be replaced before the results of its calls are seen."""
         seconds = self._clock.monotonic() - self._request_time
         if self._is_crowded():

@@ -22,6 +22,13 @@ class OrbitSemaphore:
     ----------
     limit
         Largest number of orbits held at the same time. A job with more orbits runs when no other large job runs.
+
+    Attributes
+    ----------
+    limit
+        The same limit.
+    held
+        Number of orbits held by large jobs at present.
     """
 
     def __init__(self, limit: int) -> None:

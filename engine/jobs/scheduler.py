@@ -25,7 +25,7 @@ _KNOWN_CLIENTS = 1000
 
 
 class Clock(Protocol):
-    """The functions of the module `time` that jobs use. Tests replace them by a clock that is set by hand."""
+    """The functions of the module `time` that jobs use. In tests, another clock can replace them."""
 
     def monotonic(self) -> float:
         """Return seconds since a fixed moment."""
@@ -76,7 +76,7 @@ class _Call(NamedTuple):
 class FairScheduler:
     """Chooses the next call when a thread is free: by priority, then by the time since the last turn of its client.
 
-    Clients with many calls are thus served in turn. A client without recent calls is served before them.
+    Clients with many calls are thus served in turn, and a client without recent calls is served before them.
 
     Parameters
     ----------
@@ -84,21 +84,23 @@ class FairScheduler:
         The threads; None for the default pool of this process.
     clock
         The clock; by default the clock of this process.
-    one_each
+    one_call_per_client
         Whether a client may run only one call at a time, which leaves the other threads to other clients.
 
     Attributes
     ----------
-    computed
+    threads
+        Number of threads of the pool.
+    processor_time
         Processor time of the calls that have ended, in seconds.
     first_frames_preferred
         Whether `prefer_first_frames` is in force.
     """
 
-    def __init__(self, pool: ThreadPoolExecutor | None = None, clock: Clock = time, *, one_each: bool = False) -> None:
+    def __init__(self, pool: ThreadPoolExecutor | None = None, clock: Clock = time, *, one_call_per_client: bool = False) -> None:
         self._pool = pool or default_executor()
         self._clock = clock
-        self._one_each = one_each
+        self._one_call_per_client = one_call_per_client
         self.threads = count_workers(self._pool)
         self._lock = threading.Lock()
         # Queues of calls by client, then by executor, oldest first. Clients without pending calls are removed.
@@ -113,7 +115,7 @@ class FairScheduler:
         self._running_by_client: Counter[Hashable] = Counter()
         self._background_paused = False
         self.first_frames_preferred = False
-        self.computed = 0.0
+        self.processor_time = 0.0
         # Earliest start of the next long call while background calls are paused, on the monotonic clock.
         self._next_long_call = 0.0
 
@@ -142,7 +144,8 @@ class FairScheduler:
         called, so call it about every 0.1 s during the pause.
         """
         with self._lock:
-            resumed, self._background_paused = self._background_paused and not paused, paused
+            resumed = self._background_paused and not paused
+            self._background_paused = paused
         if resumed or paused:
             self._start_threads(self.threads if resumed else 1)
 
@@ -154,7 +157,8 @@ class FairScheduler:
         called, so call it about every 0.1 s.
         """
         with self._lock:
-            ended, self.first_frames_preferred = self.first_frames_preferred and not preferred, preferred
+            ended = self.first_frames_preferred and not preferred
+            self.first_frames_preferred = preferred
         if ended or preferred:
             self._start_threads(self.threads if ended else 1)
 
@@ -198,13 +202,17 @@ class FairScheduler:
     def _end_call(self, client: Hashable, priority: Priority, duration: float, processor_time: float) -> None:
         with self._lock:
             self._running_by_priority[priority] -= 1
-            self.computed += processor_time
+            self.processor_time += processor_time
+            # This subtraction also removes clients without running calls.
             self._running_by_client -= Counter([client])
             if priority is Priority.LONG_CALL:
                 self._next_long_call = self._clock.monotonic() + _PAUSE_PER_LONG_CALL * duration
 
     def _take_next(self) -> tuple[_Call, Priority] | None:
-        """Remove the next call that may start from its queue, and return it; without such a call, count the thread as ended."""
+        """Remove the next call that may start from its queue, and return it with its priority.
+
+        If no call may start, return None, and count the thread as no longer active.
+        """
         with self._lock:
             chosen = self._find_next()
             if chosen is None:
@@ -224,15 +232,16 @@ class FairScheduler:
 
     def _find_next(self) -> tuple[QueueExecutor, Priority] | None:
         """Return the executor of the next call that may start, and its priority; None if there is no such call."""
-        allowed = [client for client in self._pending if not (self._one_each and self._running_by_client[client])]
+        allowed = [client for client in self._pending if not (self._one_call_per_client and self._running_by_client[client])]
         allowed.sort(key=lambda client: self._last_turns.get(client, 0))
         candidates = [(executor, executor.priority()) for client in allowed for executor in self._pending[client]]
-        priority = min((priority for _, priority in candidates if self._may_start(priority)), default=None)
-        return next((candidate for candidate in candidates if candidate[1] is priority), None)
+        startable = [candidate for candidate in candidates if self._may_start(candidate[1])]
+        # The first of equal minima, which belongs to the client whose last turn is longest ago.
+        return min(startable, key=lambda candidate: candidate[1], default=None)
 
     def _forget_if_empty(self, client: Hashable) -> None:
-        # The default keeps an absent client from being deleted.
-        if not self._pending.get(client, True):
+        """Remove a client without pending calls."""
+        if client in self._pending and not self._pending[client]:
             del self._pending[client]
 
     def _may_start(self, priority: Priority) -> bool:

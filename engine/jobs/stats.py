@@ -20,11 +20,11 @@ class JobStats:
     cache_bytes, cache_limit
         Size of the cached results and its limit, in bytes.
     orbits_held, orbits_limit
-        Number of orbits of large running jobs, and its limit.
+        Number of orbits that large running jobs hold in memory, and its limit.
     threads
         Number of worker threads.
-    computed
-        Processor time of calls that have ended, without limited calls, in seconds.
+    processor_time
+        Processor time of ended calls in seconds. Limited calls do not count, nor do calls in an executor of the caller.
     """
 
     in_flight: int
@@ -37,4 +37,4 @@ class JobStats:
     orbits_held: int
     orbits_limit: int
     threads: int
-    computed: float
+    processor_time: float

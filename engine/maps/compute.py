@@ -1,4 +1,4 @@
-"""Computation of escape maps: all pixels at once, or in blocks of rows if all orbits need too much memory."""
+"""Computation of escape maps: all pixels at once, line by line along a parameter, or in blocks of rows for large maps."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import numpy as np
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.validation import checks_types
 from engine.maps.analyses.rounded_share import with_rounded_share
-from engine.maps.parameter_map import LineStack
+from engine.maps.parameter_map import LinewiseRun
 from engine.maps.result import PIXEL_ARRAYS, EscapeMap, collect_map, empty_arrays
 from engine.maps.run import MapRun
 from engine.maps.spec import MapSpec
@@ -69,8 +69,8 @@ def compute_map(
     >>> escapes.complete, round(sum(escapes.fractions().values()), 12)
     (True, 1.0)
     """
-    fields_by_name: dict[str, Any] = {"cancel": cancel, "executor": executor, "on_progress": on_progress}
-    execution = replace(execution, **{name: value for name, value in fields_by_name.items() if value is not None})
+    overrides: dict[str, Any] = {"cancel": cancel, "executor": executor, "on_progress": on_progress}
+    execution = replace(execution, **{name: value for name, value in overrides.items() if value is not None})
     if resume is not None:
         _check_resumable(spec, resume)
     work, restore = _begin_computation(spec, resume, coarse_first=on_frame is not None)
@@ -83,15 +83,15 @@ def compute_map(
 
 def _begin_computation(
     spec: MapSpec, resume: EscapeMap | None, *, coarse_first: bool
-) -> tuple[MapRun | LineStack | BlockStack, Callable[[EscapeMap], EscapeMap]]:
+) -> tuple[MapRun | LinewiseRun | BlockwiseRun, Callable[[EscapeMap], EscapeMap]]:
     """Return the computation of a map, and a function that converts its maps to the units of the request."""
     keeps_states = spec.resolution[0] * spec.resolution[1] <= LARGEST_RUN
     if spec.plane.parameter is not None:
         # Each line has its own units, so its maps are converted already.
-        return LineStack(spec, resume, keeps_states=keeps_states), lambda stacked: stacked
+        return LinewiseRun(spec, resume, keeps_states=keeps_states), lambda linewise: linewise
     restore = partial(EscapeMap.restored, spec=spec)
     if not keeps_states:
-        return BlockStack(spec.in_well_units(), LARGEST_RUN), restore
+        return BlockwiseRun(spec.in_well_units(), LARGEST_RUN), restore
     earlier = None if resume is None else resume.in_well_units()
     return MapRun(spec.in_well_units(), earlier, coarse_first=coarse_first), restore
 
@@ -113,7 +113,7 @@ def row_blocks(spec: MapSpec, max_pixels: int) -> Iterator[np.ndarray]:
     spec
         The map.
     max_pixels
-        Largest number of pixels in a block, at least 1. A block has at least one row and its mirror image.
+        Largest number of pixels in a block, at least 1. A larger block contains only one row and its mirror image.
 
     Yields
     ------
@@ -122,7 +122,8 @@ def row_blocks(spec: MapSpec, max_pixels: int) -> Iterator[np.ndarray]:
     columns, rows = spec.resolution
     height = max(max_pixels // columns, 1)
     mirrored_axes = spec.plane.mirrored_axes
-    if mirrored_axes is None or not mirrored_axes[1]:
+    has_mirrored_rows = mirrored_axes is not None and mirrored_axes[1]
+    if not has_mirrored_rows:
         yield from (np.arange(begin, min(begin + height, rows)) for begin in range(0, rows, height))
         return
     half_height = max(height // 2, 1)
@@ -131,7 +132,7 @@ def row_blocks(spec: MapSpec, max_pixels: int) -> Iterator[np.ndarray]:
         yield np.union1d(lower_rows, rows - 1 - lower_rows)
 
 
-class BlockStack:
+class BlockwiseRun:
     """Computes a map of one potential block by block, because all its orbits together need too much memory.
 
     Parameters
@@ -144,27 +145,27 @@ class BlockStack:
 
     def __init__(self, spec: MapSpec, max_pixels: int) -> None:
         self.spec, self._max_pixels = spec, max_pixels
-        self._done_rows, self._horizon = 0, 0.0
+        self._done_row_count, self._horizon = 0, 0.0
         self._arrays = empty_arrays(PIXEL_ARRAYS, spec.resolution[::-1])
 
     def stages(self, execution: Execution, _on_change: OnChange) -> Iterator[Stage]:
         """Yield the stages, see `Staged`. Each stage computes a block."""
         for rows in row_blocks(self.spec, self._max_pixels):
-            yield partial(self._compute, rows, replace(execution, on_progress=None))
+            yield partial(self._compute_block, rows, replace(execution, on_progress=None))
 
-    def _compute(self, rows: np.ndarray, execution: Execution) -> None:
-        """Compute the block of some rows."""
+    def _compute_block(self, rows: np.ndarray, execution: Execution) -> None:
+        """Compute the block with these rows."""
         run = MapRun(self.spec, rows=rows)
         run_stages(run, execution)
         block = run.frame()
         for name, array in self._arrays.items():
             array[rows] = getattr(block, name)
-        self._done_rows += rows.size
+        self._done_row_count += rows.size
         self._horizon = block.horizon
 
     def progress(self) -> float:
         """Return the share of the rows that are done."""
-        return self._done_rows / self.spec.resolution[1]
+        return self._done_row_count / self.spec.resolution[1]
 
     def frame(self) -> EscapeMap:
         """Return the map so far, with views of the arrays, because copies would need too much memory."""

@@ -25,7 +25,7 @@ _VERBS = {"origin": "entered", "fate": "leaves"}
 
 @dataclass(frozen=True, eq=False, repr=False)
 class OriginFateMap(PixelAnalysis):
-    """The past and the future of the orbit through each pixel.
+    """The outcomes, backward and forward in time, of the orbit through each pixel.
 
     Attributes
     ----------
@@ -57,18 +57,17 @@ class OriginFateMap(PixelAnalysis):
         return np.bincount(pair_codes, minlength=size * size).reshape(size, size)
 
     def describe(self) -> str:
-        """Describe the shares of the passages in one sentence."""
+        """Return the shares of orbits that enter and leave, of those that do so alike, and of bounded orbits, in one sentence."""
         counts = self.count_passages()
         total = max(int(counts.sum()), 1)
         has_only_exits = all(outcome.kind is Exit for outcome in self.spec.outcomes)
         verb, manner = (
             ("enter and leave", "through the same exit") if has_only_exits else ("end in both time directions", "alike")
         )
-        passing, same, bounded = (
-            format_share(count / total) for count in (counts[1:, 1:].sum(), np.trace(counts[1:, 1:]), counts[0, 0])
-        )
+        ended_twice = counts[1:, 1:]
+        both, alike, bounded = (format_share(count / total) for count in (ended_twice.sum(), np.trace(ended_twice), counts[0, 0]))
         return (
-            f"{passing} of the interior starts lie on orbits that {verb}, {same} {manner}; "
+            f"{both} of the interior starts lie on orbits that {verb}, {alike} {manner}; "
             f"{bounded} are bounded in both time directions, the rest in one."
         )
 

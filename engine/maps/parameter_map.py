@@ -51,21 +51,22 @@ class Line:
         The map of the line.
     place
         The index of the line in the arrays of the whole map.
-    numbers
-        (outcomes + 1,) for each fate of the line, the fate on the whole map; entry 0 is 0.
+    map_fates
+        (outcomes + 1,) for each fate 0, 1, … of the line, the fate on the whole map; entry 0 is 0.
     """
 
     spec: MapSpec
     place: Place
-    numbers: np.ndarray
+    map_fates: np.ndarray
 
     def extract(self, escape_map: EscapeMap) -> EscapeMap:
-        """Return this line of a map, with the outcome numbers of the line, and with the integration state if the map has one."""
-        line_numbers = np.zeros(int(self.numbers.max(initial=0)) + 1, np.int8)
-        line_numbers[self.numbers] = np.arange(self.numbers.size)
+        """Return this line of a map, with the fates of the line, and with the integration state if the map has one."""
+        # The inverse of `map_fates`.
+        line_fates = np.zeros(int(self.map_fates.max(initial=0)) + 1, np.int8)
+        line_fates[self.map_fates] = np.arange(self.map_fates.size)
         arrays: dict[str, Any] = {name: getattr(escape_map, name)[self.place] for name in PIXEL_ARRAYS}
         for name in _OUTCOME_ARRAYS:
-            arrays[name] = renumber(arrays[name], line_numbers)
+            arrays[name] = renumber(arrays[name], line_fates)
         x, ordinate = self.spec.pixel_centres()
         line = replace(escape_map, spec=replace(self.spec, t_max=escape_map.spec.t_max), x=x, ordinate=ordinate, **arrays)
         if escape_map.batch is None:
@@ -81,11 +82,12 @@ def find_lines(spec: MapSpec) -> list[Line | None]:
     assert axis is not None
     assert axis_index is not None
     window, family = spec.find_window(), parameter_family(axis)
-    return [_line(spec, window, family.member, k, value) for k, value in enumerate(spec.pixel_centres()[axis_index].tolist())]
+    values = spec.pixel_centres()[axis_index].tolist()
+    return [_make_line(spec, window, family.member, k, value) for k, value in enumerate(values)]
 
 
-def _line(spec: MapSpec, window: Window, find_member: Callable[[float], Any], k: int, value: float) -> Line | None:
-    """Return line number k, at a value of the parameter; None if the system has no potential there."""
+def _make_line(spec: MapSpec, window: Window, find_member: Callable[[float], Any], k: int, value: float) -> Line | None:
+    """Return the line with index k, at a value of the parameter; None if the system has no potential there."""
     try:
         member = find_member(value)
     except ManyExitsError:
@@ -94,21 +96,23 @@ def _line(spec: MapSpec, window: Window, find_member: Callable[[float], Any], k:
     except ValueError:
         return None
     columns, rows = spec.resolution
-    # Across the line, only the middle of the window matters.
+    # Across the line, only the middle of the window matters: it is the value of the only pixel.
     edges = value - 0.5, value + 0.5
-    place: Place
     if spec.plane.parameter_axis == 0:
-        place, resolution = np.s_[:, k : k + 1], (1, rows)
-        line_window = Window(*edges, window.ordinate_low, window.ordinate_high)
+        resolution, line_window = (1, rows), Window(*edges, window.ordinate_low, window.ordinate_high)
     else:
-        place, resolution = np.s_[k : k + 1, :], (columns, 1)
-        line_window = Window(window.x_low, window.x_high, *edges)
+        resolution, line_window = (columns, 1), Window(window.x_low, window.x_high, *edges)
     line_spec = replace(spec, potential=member.potential, plane=spec.plane.line(value), resolution=resolution, window=line_window)
-    return Line(line_spec, place, member.numbers_at(highest_energy(spec.energy)))
+    return Line(line_spec, _find_place(spec, k), member.numbers_at(highest_energy(spec.energy)))
 
 
-class LineStack:
-    """Computes the lines of a map along a parameter.
+def _find_place(spec: MapSpec, k: int) -> Place:
+    """Return the place of the line with index k, a column if the parameter is the first axis."""
+    return np.s_[:, k : k + 1] if spec.plane.parameter_axis == 0 else np.s_[k : k + 1, :]
+
+
+class LinewiseRun:
+    """Computes a map along a parameter line by line, each line in units of its own well.
 
     Parameters
     ----------
@@ -123,47 +127,48 @@ class LineStack:
     def __init__(self, spec: MapSpec, resume: EscapeMap | None = None, *, keeps_states: bool = True) -> None:
         self.spec, self._keeps_states = spec, keeps_states
         lines = find_lines(spec)
-        self._line_count, self._lines = len(lines), {k: line for k, line in enumerate(lines) if line is not None}
-        # The maps of the lines so far.
+        self._line_count = len(lines)
+        # The lines with a potential, and their maps so far, by index.
+        self._lines = {k: line for k, line in enumerate(lines) if line is not None}
         self._line_maps: dict[int, EscapeMap] = {}
         self._stride, self._horizon = _STRIDES[0], 0.0
         self._arrays = empty_arrays(PIXEL_ARRAYS, spec.resolution[::-1])
         for k in range(self._line_count):
             if k not in self._lines:
-                # The system has no potential at this value.
-                index = (slice(None), k) if spec.plane.parameter_axis == 0 else k
-                self._arrays["fate"][index], self._arrays["started"][index] = Fate.FORBIDDEN, True
+                place = _find_place(spec, k)
+                self._arrays["fate"][place], self._arrays["started"][place] = Fate.FORBIDDEN, True
             elif resume is not None:
                 self._put(k, self._lines[k].extract(resume))
 
     def stages(self, execution: Execution, on_change: OnChange) -> Iterator[Stage]:
         """Yield the stages, see `Staged`. Each stage integrates the orbits of some lines to a horizon."""
         first, last = _FIRST_HORIZON * self.spec.potential.units.time, self.spec.t_max
+        # A second horizon continues from the states at the first. An earlier map already gives an overview.
         has_two_horizons = first < last and self._keeps_states and not self._line_maps
         for horizon in (first, last) if has_two_horizons else (last,):
-            for stride, lines in self._refinements():
-                yield partial(self._advance, stride, lines, horizon, execution, on_change)
+            for stride, indices in self._refinements():
+                yield partial(self._advance, stride, indices, horizon, execution, on_change)
             self._horizon = horizon
 
     def _refinements(self) -> Iterator[tuple[int, list[int]]]:
-        """Yield (stride, lines), coarse to fine, with each line once."""
+        """Yield each stride with the indices of its additional lines, coarse to fine; each line appears once."""
         yielded: set[int] = set()
         for stride in _STRIDES:
-            numbers = [k for k in np.unique(representative_indices(self._line_count, stride)).tolist() if k not in yielded]
-            yielded |= set(numbers)
-            yield stride, [k for k in numbers if k in self._lines]
+            representatives = set(representative_indices(self._line_count, stride).tolist())
+            yield stride, sorted(k for k in representatives - yielded if k in self._lines)
+            yielded |= representatives
 
-    def _advance(self, stride: int, lines: list[int], horizon: float, execution: Execution, on_change: OnChange) -> None:
-        """Integrate the orbits of some lines up to a time."""
-        continued_lines = [k for k in lines if _continues(self._line_maps.get(k))]
-        arguments = [(self._lines[k], horizon, self._line_maps.get(k)) for k in continued_lines]
-        with _coordinating_threads() as threads:
+    def _advance(self, stride: int, indices: list[int], horizon: float, execution: Execution, on_change: OnChange) -> None:
+        """Integrate the orbits of some lines to a horizon."""
+        continued_indices = [k for k in indices if _can_change(self._line_maps.get(k))]
+        arguments = [(self._lines[k], horizon, self._line_maps.get(k)) for k in continued_indices]
+        with _create_coordinating_threads() as threads:
             if horizon <= _FIRST_HORIZON * self.spec.potential.units.time:
                 futures = [execution.submit(_compute_line, *each) for each in arguments]
             else:
                 silent_execution = replace(execution, on_progress=None)
                 futures = [threads.submit(_compute_line, *each, silent_execution) for each in arguments]
-            for k, line_map in _as_finished(dict(zip(futures, continued_lines, strict=True)), execution):
+            for k, line_map in _as_finished(dict(zip(futures, continued_indices, strict=True)), execution):
                 self._put(k, line_map)
                 on_change(False)
         if not execution.is_cancelled:
@@ -175,9 +180,9 @@ class LineStack:
         self._line_maps[k] = line_map if self._keeps_states else replace(line_map, batch=None)
         for name, array in self._arrays.items():
             values = getattr(line_map, name)
-            array[line.place] = renumber(values, line.numbers) if name in _OUTCOME_ARRAYS else values
+            array[line.place] = renumber(values, line.map_fates) if name in _OUTCOME_ARRAYS else values
         if line_map.spec.t_max < self.spec.t_max:
-            # Orbits that are bounded only until this shorter time are undecided on the whole map.
+            # Orbits that are bounded only until this shorter time stay undecided on the whole map.
             is_undecided = (line_map.fate == Fate.BOUNDED) & (line_map.evidence == Evidence.INTEGRATED)
             for name, value in (("fate", Fate.NOT_COMPUTED), ("evidence", Evidence.NONE)):
                 array = self._arrays[name]
@@ -199,13 +204,13 @@ class LineStack:
         frame = self.frame()
         if not self._keeps_states:
             return frame
-        numbers = np.arange(frame.fate.size).reshape(frame.fate.shape)
-        # The empty first items serve a map without lines.
+        pixel_numbers = np.arange(frame.fate.size).reshape(frame.fate.shape)
+        # A map without lines has only these empty items, because `concatenate` needs at least one.
         pixels, batches = [np.zeros(0, int)], [OrbitBatch.empty(np.zeros(0, np.int64))]
         for k, line in self._lines.items():
             line_map = self._line_maps.get(k)
             if line_map is not None and line_map.batch is not None:
-                pixels.append(numbers[line.place].ravel()[line_map.continued_pixels])
+                pixels.append(pixel_numbers[line.place].ravel()[line_map.continued_pixels])
                 batches.append(line_map.batch)
         names = [field.name for field in fields(OrbitBatch)]
         joined = OrbitBatch(**{name: np.concatenate([getattr(batch, name) for batch in batches]) for name in names})
@@ -230,12 +235,12 @@ def analyse_map[Analysis: PixelAnalysis](
         Returns the computation that analyses a map of one potential, or a line with its place.
     kind
         The class of the analysis, for a map along a parameter.
-    **choices
-        Fields of the analysis that are the same for all lines.
     on_frame
         Called with the analysis so far, see `run_stages`, and with the complete analysis.
     execution
         How the computation runs.
+    **choices
+        Fields of the analysis that are the same for all lines.
 
     Returns
     -------
@@ -243,10 +248,10 @@ def analyse_map[Analysis: PixelAnalysis](
     """
     if escape_map.spec.plane.parameter is None:
         return run_to_frame(begin(escape_map, ALL_PIXELS), execution, on_frame)
-    return run_to_frame(_LineAnalyses(escape_map, begin, kind, choices), execution, on_frame)
+    return run_to_frame(_LinewiseAnalysis(escape_map, begin, kind, choices), execution, on_frame)
 
 
-class _LineAnalyses[Analysis: PixelAnalysis]:
+class _LinewiseAnalysis[Analysis: PixelAnalysis]:
     """Analyses the lines of a map concurrently, see `analyse_map`."""
 
     def __init__(
@@ -259,8 +264,8 @@ class _LineAnalyses[Analysis: PixelAnalysis]:
         self._map, self._begin, self._kind, self._choices = escape_map, begin, kind, choices
         self._arrays = empty_arrays(kind.pixel_arrays, escape_map.fate.shape)
         self._lines = [line for line in find_lines(escape_map.spec) if line is not None]
-        # Number of lines whose analysis has ended, and whether all these analyses are complete.
-        self._finished_count, self._complete = 0, True
+        # Number of lines whose analysis has ended, and number of these analyses that are complete.
+        self._finished_count = self._complete_count = 0
 
     def stages(self, execution: Execution, on_change: OnChange) -> Iterator[Stage]:
         """Yield the stages, see `Staged`. All lines form one stage."""
@@ -269,13 +274,13 @@ class _LineAnalyses[Analysis: PixelAnalysis]:
     def _analyse(self, execution: Execution, on_change: OnChange) -> None:
         """Analyse all lines."""
         silent_execution = replace(execution, on_progress=None)
-        with _coordinating_threads() as threads:
+        with _create_coordinating_threads() as threads:
             lines = {threads.submit(self._analyse_line, line, silent_execution): line for line in self._lines}
             for line, analysis in _as_finished(lines, execution):
                 for name, values in self._arrays.items():
                     values[line.place] = getattr(analysis, name)
                 self._finished_count += 1
-                self._complete = self._complete and analysis.complete
+                self._complete_count += analysis.complete
                 on_change(True)
 
     def _analyse_line(self, line: Line, execution: Execution) -> Analysis:
@@ -288,31 +293,31 @@ class _LineAnalyses[Analysis: PixelAnalysis]:
     def frame(self) -> Analysis:
         """Return the analysis so far."""
         arrays: dict[str, Any] = {name: values.copy() for name, values in self._arrays.items()}
-        complete = self._complete and self._finished_count == len(self._lines)
+        complete = self._complete_count == len(self._lines)
         return self._kind(spec=self._map.spec, complete=complete, **arrays, **self._choices)
 
 
-def _as_finished[Key, Result](keys: dict[Future[Result], Key], execution: Execution) -> Iterator[tuple[Key, Result]]:
+def _as_finished[Key, Result](key_by_call: dict[Future[Result], Key], execution: Execution) -> Iterator[tuple[Key, Result]]:
     """Yield the key and the result of each call when it is finished.
 
-    When the computation is cancelled, calls that have not begun are dropped.
+    When the computation is cancelled, calls that have not begun are dropped and yield nothing.
     """
-    for future in as_completed(keys):
+    for call in as_completed(key_by_call):
         if execution.is_cancelled:
-            for pending in keys:
+            for pending in key_by_call:
                 pending.cancel()
-        result = execution.collect(future)
+        result = execution.collect(call)
         if result is not None:
-            yield keys[future], result
+            yield key_by_call[call], result
 
 
-def _coordinating_threads() -> ThreadPoolExecutor:
-    """Return threads for lines that are computed concurrently. The threads share the executor, and mostly wait for tiles."""
+def _create_coordinating_threads() -> ThreadPoolExecutor:
+    """Return a pool of threads that each compute one line at a time. They share the executor, and mostly wait for tiles."""
     return ThreadPoolExecutor(2 * count_cores(), thread_name_prefix="lines")
 
 
-def _continues(earlier: EscapeMap | None) -> bool:
-    """Return whether a longer time can change a line."""
+def _can_change(earlier: EscapeMap | None) -> bool:
+    """Return whether a longer integration can change a line, given its map so far."""
     return earlier is None or not earlier.started.all() or bool(earlier.continued_pixels.size)
 
 
@@ -323,7 +328,7 @@ def _compute_line(line: Line, t_max: float, earlier: EscapeMap | None, execution
     try:
         run_stages(run, execution)
     except ValueError as error:
-        # The axis across the line tells the value of the parameter.
+        # The axis across the line holds the value of the parameter.
         parameter = next(axis for axis in spec.plane.axes if isinstance(axis, HeldParameter))
         raise ValueError(f"{parameter.key}={parameter.value:.6g}, {error}") from None
     return run.result().restored(spec)

@@ -32,7 +32,7 @@ class PixelAnalysis(MapResult):
     spec: MapSpec
     complete: bool = field(default=True, kw_only=True)
     pixel_arrays: ClassVar[PixelArrays] = {}
-    """The arrays with a value for each pixel, as `empty_arrays` takes them."""
+    """The arrays of the analysis, of shape (rows, columns)."""
 
     def to_xarray(self) -> xr.Dataset:
         """Return the values of the pixels as a dataset with named axes and provenance, which can be written as NetCDF."""
@@ -43,9 +43,9 @@ class PixelAnalysis(MapResult):
         return pixel_dataset(self.spec, self.spec.pixel_centres(), variables, attributes)
 
 
-def code_share(codes: np.ndarray, *counted: int) -> float:
-    """Return the share of the codes that equal one of `counted`; NaN if there are no codes."""
-    return float(np.mean(np.isin(codes, counted))) if codes.size else float("nan")
+def code_share(codes: np.ndarray, *selected: int) -> float:
+    """Return the share of the codes that equal one of the selected codes; NaN if there are no codes."""
+    return float(np.mean(np.isin(codes, selected))) if codes.size else float("nan")
 
 
 class MirrorPixels:
@@ -77,14 +77,12 @@ class MirrorPixels:
 
     def find_first_images(self, pixels: np.ndarray) -> np.ndarray:
         """Return the first pixels of the pairs of `pixels`, of shape (n,). Given and returned pixels are sorted and distinct."""
-        if not self.symmetric:
-            return pixels
         is_first = np.zeros(self.partner.size, bool)
         is_first[np.minimum(pixels, self.partner[pixels])] = True
         return np.flatnonzero(is_first)
 
     def copy_to_second_images(self, values: np.ndarray) -> None:
-        """Overwrite, in an array (rows, columns), the second pixel of each pair by the first."""
+        """Overwrite, in a contiguous array (rows, columns), the second pixel of each pair by the first."""
         second_images = np.flatnonzero(self.partner < np.arange(self.partner.size))
         values.ravel()[second_images] = values.ravel()[self.partner[second_images]]
 

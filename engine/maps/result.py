@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 PixelArrays = Mapping[str, tuple[type, float]]
-"""Names of arrays with a value for each pixel, with their data types and the values of pixels that are not computed."""
+"""Arrays with a value for each pixel: by name, the data type and the value of pixels that are not computed."""
 
 PIXEL_ARRAYS: PixelArrays = {
     "fate": (np.int8, Fate.NOT_COMPUTED),
@@ -41,16 +41,16 @@ PIXEL_ARRAYS: PixelArrays = {
 _STORED_ARRAYS = tuple(name for name in PIXEL_ARRAYS if name != "started")
 
 
-def empty_arrays(names: PixelArrays, shape: tuple[int, ...]) -> dict[str, np.ndarray]:
+def empty_arrays(kinds: PixelArrays, shape: tuple[int, ...]) -> dict[str, np.ndarray]:
     """Return arrays by name in which no pixel is computed."""
-    return {name: np.full(shape, value, dtype) for name, (dtype, value) in names.items()}
+    return {name: np.full(shape, value, dtype) for name, (dtype, value) in kinds.items()}
 
 
 type MapLike = EscapeMap | xr.Dataset
 """A map as measures and analyses accept it: an `EscapeMap`, or its dataset, such as a map of a sweep."""
 
 NOTED_SHARE = 0.01
-"""Smallest share of interior pixels lost to double precision that a map reports."""
+"""Smallest share of interior pixels, not supported by double precision, at which a map counts as rounded."""
 
 
 @with_former_fields
@@ -70,12 +70,13 @@ class EscapeMap(MapResult):
         int8, the `Evidence` of each bounded orbit: the reason why it is called bounded. Crossings and energy error of an orbit
         that is bounded on evidence refer to the time up to which it was integrated.
     outside
-        int8, for a start outside, the number, as in `fate`, of the exit, disc or escape radius beyond which it lies; 0 for other
-        starts.
+        int8, for a start outside, the number, as in `fate`, of the exit or escape radius beyond which it lies, or of the disc in
+        which it lies; 0 for other starts.
     stride
-        Side, in pixels, of squares in which at least one pixel has been started; 1 if all pixels have been started.
+        Side, in pixels, of the squares that each contain a started pixel; 1 if all pixels have been started, and for a map that
+        is filled block by block.
     horizon
-        Time up to which orbits are integrated in the current stage; t_max in the last stage.
+        Time up to which orbits are integrated in the current stage, dimensionless; t_max in the last stage.
     progress
         Share of the work done, 0 to 1. An undecided orbit counts by the share of t_max up to which it is integrated.
     complete
@@ -119,7 +120,7 @@ class EscapeMap(MapResult):
     }  # fmt: skip
 
     def numbers(self) -> dict[str, Any]:
-        """Return the request, and the share of each outcome among the interior starts."""
+        """Return the main fields of the request, the share of each outcome among the interior starts, and `complete`."""
         spec = self.spec
         request = {"potential": spec.potential.name, "plane": spec.plane.title, "energy": str(spec.energy), "t_max": spec.t_max}
         shares = {name_fate(code, spec.outcomes): share for code, share in self.fractions().items()}
@@ -166,7 +167,7 @@ class EscapeMap(MapResult):
 
     @property
     def is_rounded(self) -> bool:
-        """Whether double precision does not support at least 1 % of the pixels."""
+        """Whether double precision does not support the outcomes of 1 % or more of the interior pixels."""
         return self.rounded_share is not None and self.rounded_share >= NOTED_SHARE
 
     def check_complete(self, name: str) -> None:
@@ -190,7 +191,7 @@ class EscapeMap(MapResult):
         return self.x[columns], self.ordinate[rows]
 
     def fractions(self, *, count_outside: bool = False) -> dict[int, float]:
-        """Return the share of the starts for each of `MapSpec.outcomes`, and for `Fate.BOUNDED`, `NOT_COMPUTED` and `FAILED`.
+        """Return the share of the starts for each outcome that can occur, and for `Fate.BOUNDED`, `NOT_COMPUTED` and `FAILED`.
 
         Parameters
         ----------
@@ -211,15 +212,15 @@ class EscapeMap(MapResult):
         The arrays, with a row for each row of squares, and the window that the squares cover. This window can extend beyond the
         window of the map by less than one square, because the last squares may be incomplete.
         """
-        names = ("fate", "escape_time", "crossings", "evidence")
+        names, window = ("fate", "escape_time", "crossings", "evidence"), self.spec.find_window()
         if self.stride == 1:
-            return {name: getattr(self, name) for name in names}, self.spec.find_window()
+            return {name: getattr(self, name) for name in names}, window
         pixels = np.ix_(*(np.unique(representative_indices(size, self.stride)) for size in self.fate.shape))
         arrays = {name: getattr(self, name)[pixels] for name in names}
-        (rows, columns), window = arrays["fate"].shape, self.spec.find_window()
+        rows, columns = arrays["fate"].shape
         x_high = window.x_low + window.width * columns * self.stride / self.fate.shape[1]
-        high = window.ordinate_low + window.height * rows * self.stride / self.fate.shape[0]
-        return arrays, Window(window.x_low, x_high, window.ordinate_low, high)
+        ordinate_high = window.ordinate_low + window.height * rows * self.stride / self.fate.shape[0]
+        return arrays, Window(window.x_low, x_high, window.ordinate_low, ordinate_high)
 
     def to_xarray(self) -> xr.Dataset:
         """Return the map as a dataset with named axes, units and provenance, which can be written as NetCDF."""
@@ -274,7 +275,10 @@ def collect_map(
 
 
 def outcome_shares(fate: np.ndarray, outcomes: Sequence[Outcome]) -> dict[int, float]:
-    """Return the share of each outcome, by code, among the interior starts of fates of any shape; 0 without interior starts."""
+    """Return, by code, the share of each outcome that can occur among the interior starts, given fates of any shape.
+
+    Without interior starts, all shares are 0.
+    """
     interior = fate[find_interior(fate)]
     outcome_codes = (code for code, outcome in enumerate(outcomes, 1) if outcome.occurs)
     codes = (*outcome_codes, Fate.BOUNDED, Fate.NOT_COMPUTED, Fate.FAILED)
@@ -287,7 +291,10 @@ def find_interior(fate: np.ndarray) -> np.ndarray:
 
 
 def representative_indices(size: int, stride: int) -> np.ndarray:
-    """Return, for each of `size` indices, the first computed index of its block of `stride`: the middle, or the last of all."""
+    """Return, for each of `size` indices, the index that represents its block of `stride` indices, of shape (size,).
+
+    This is the middle of the block or, if the last block is too short to have it, the last index.
+    """
     return np.minimum(np.arange(size) // stride * stride + stride // 2, size - 1)
 
 

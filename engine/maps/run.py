@@ -123,7 +123,7 @@ class MapRun:
         first_horizon, *later_horizons = rising_horizons(_FIRST_HORIZON, _HORIZON_FACTOR, self.spec.t_max)
         for pixels, stride in self._refinements():
             yield pixels, stride, first_horizon
-        # These are the pixels and the stride of the last refinement.
+        # After the loop, `pixels` and `stride` are those of the last refinement.
         for horizon in later_horizons:
             yield pixels, stride, horizon
 
@@ -138,12 +138,11 @@ class MapRun:
         yield self._mirror.find_first_images(numbers.ravel()), 1
 
     def _find_starts(self, execution: Execution) -> None:
-        """Find the initial states of all pixels without a state."""
-        pixels_without_state = self._mirror.select_first_images(
-            np.flatnonzero((self._batch.fate == Fate.NOT_COMPUTED) & ~self._started)
-        )
-        axes = self.spec, self.x, self.ordinate
-        for part, states in run_parts(_start_states, pixels_without_state, lambda part: (*axes, part), execution=execution):
+        """Find the initial states of all pixels that have not been started, except second mirror images."""
+        not_started = np.flatnonzero((self._batch.fate == Fate.NOT_COMPUTED) & ~self._started)
+        first_images = self._mirror.select_first_images(not_started)
+        grid = self.spec, self.x, self.ordinate
+        for part, states in run_parts(_start_states, first_images, lambda part: (*grid, part), execution=execution):
             self._batch.set_starts(part, states)
 
     def _advance(
@@ -157,17 +156,17 @@ class MapRun:
         )  # fmt: skip
 
     def _begin_stage(self, pixels: np.ndarray, stride: int, horizon: float, execution: Execution) -> None:
-        """Compute the exits that the pixels need, and start those pixels that have not been started."""
+        """Set stride and horizon, find the exits that the pixels need, and start those pixels that have not been started."""
         self.stride, self.horizon = stride, horizon
         self._find_exits(pixels)
         new_pixels = pixels[~self._started[pixels]]
         started_pixels = self._batch.mark_outside(self.spec.potential, new_pixels, self._curves, execution=execution)
         self._started[started_pixels] = True
         if self.spec.use_evidence:
-            self._close(pixels[self._started[pixels]])
+            self._mark_closed(pixels[self._started[pixels]])
 
-    def _close(self, pixels: np.ndarray) -> None:
-        """Mark orbits whose energy is below every saddle as bounded, without integration."""
+    def _mark_closed(self, pixels: np.ndarray) -> None:
+        """Mark undecided orbits in a closed well, see `Well.is_closed_at`, as bounded without integration."""
         is_closed = self.spec.potential.well.is_closed_at(self._energy[pixels])
         is_undecided = self._batch.fate[pixels] == Fate.NOT_COMPUTED
         self._batch.mark_bounded(pixels[is_closed & is_undecided], Evidence.CLOSED)
@@ -183,14 +182,15 @@ class MapRun:
                 self._curves[row] = exit_curves(self.spec.potential, float(self._energy[pixel]))
                 self._rows_without_exits.discard(row)
 
-    def _test_for_evidence(self, reached: float, execution: Execution, on_round: Callable[[], None]) -> None:
-        """Mark orbits that are inside at t = `reached` as bounded if there is evidence. A cancelled test marks no orbits."""
+    def _test_for_evidence(self, time: float, execution: Execution, on_round: Callable[[], None]) -> None:
+        """Mark orbits that are inside at t = `time` as bounded if there is evidence. A cancelled test marks no orbits."""
         spec, batch = self.spec, self._batch
-        tested_pixels = self._find_untested(reached, execution)
+        tested_pixels = self._find_untested(time, execution)
         if not tested_pixels.size:
             return
         grid_indices = np.column_stack(np.divmod(tested_pixels, self.shape[1]))
-        time_left = (_HORIZON_FACTOR - 1.0) * reached
+        # The time until the next horizon. The test at the preceding horizon had a time shorter by `_HORIZON_FACTOR`.
+        time_left = (_HORIZON_FACTOR - 1.0) * time
         search = BoundedOrbitSearch(
             spec.potential, spec.common_energy, batch.state[tested_pixels], grid_indices, time_left, execution,
             tested_for=time_left / _HORIZON_FACTOR, digits=batch.digits[tested_pixels],
@@ -201,19 +201,19 @@ class MapRun:
             on_round()
 
         if search.run(mark_bounded):
-            batch.tested[tested_pixels], batch.digits[tested_pixels] = reached, search.digits
+            batch.tested[tested_pixels], batch.digits[tested_pixels] = time, search.digits
         else:
             # When the map is continued, the test is repeated with all these orbits, so that its result is the same.
             batch.reopen(tested_pixels)
 
-    def _find_untested(self, reached: float, execution: Execution) -> np.ndarray:
-        """Return the pixels whose orbits are inside at t = `reached` and have not been tested at that time."""
+    def _find_untested(self, time: float, execution: Execution) -> np.ndarray:
+        """Return the pixels whose orbits are inside at t = `time` and have not been tested at that time."""
         batch = self._batch
-        untested = np.flatnonzero((batch.fate == Fate.NOT_COMPUTED) & (batch.tested < reached))
+        untested = np.flatnonzero((batch.fate == Fate.NOT_COMPUTED) & (batch.tested < time))
         first_images = self._mirror.select_first_images(untested)
-        # Orbits stop before the step across `reached`. On a map with t_max = `reached`, an orbit can escape in this step, so the
-        # step is also taken here.
-        propagate_batch(self.spec.potential, self._curves, batch, first_images, reached, final=True, execution=execution)
+        # Orbits stop before the step across `time`. On a map with t_max = `time`, an orbit can escape in this step, so the step
+        # is also taken here.
+        propagate_batch(self.spec.potential, self._curves, batch, first_images, time, final=True, execution=execution)
         inside: np.ndarray = first_images[batch.fate[first_images] == Fate.BOUNDED]
         batch.reopen(inside)
         return inside
@@ -225,22 +225,24 @@ class MapRun:
 
     def frame(self) -> EscapeMap:
         """Return the map so far."""
-        outcomes = self._outcomes()
+        self._copy_to_second_images()
+        batch, outcomes = self._batch, self._collect_outcomes()
         arrays = {name: getattr(outcomes, name) for name in ("fate", "escape_time", "crossings", "energy_error")}
-        arrays |= {"evidence": self._batch.final_evidence()}
-        arrays |= {"outside": self._batch.outside.copy(), "started": self._started.copy()}
+        arrays |= {"evidence": batch.final_evidence(), "outside": batch.outside.copy(), "started": self._started.copy()}
         stage = {"stride": self.stride, "horizon": self.horizon, "progress": self.progress()}
         return collect_map(self.spec, (self.x, self.ordinate), arrays, **stage)
 
-    def _outcomes(self) -> Outcomes:
-        """Return the outcomes of all pixels, arrays of shape (n,). Second mirror images get the outcomes of the first."""
+    def _copy_to_second_images(self) -> None:
+        """Copy the outcomes of started pixels to their second mirror images."""
         partner = self._mirror.partner
         first_images = np.flatnonzero(self._started & (partner > np.arange(partner.size)))
         if first_images.size:
-            self._batch.copy_to_images(
-                first_images, partner[first_images], self.spec.potential.well.mirror_numbers(self._energy[first_images])
-            )
+            mirror_numbers = self.spec.potential.well.mirror_numbers(self._energy[first_images])
+            self._batch.copy_to_images(first_images, partner[first_images], mirror_numbers)
             self._started[partner[first_images]] = True
+
+    def _collect_outcomes(self) -> Outcomes:
+        """Return the outcomes of all pixels, arrays of shape (n,)."""
         outcomes = collect_outcomes(self.spec.potential, self._energy, self._batch)
         if self._earlier_errors is None:
             return outcomes

@@ -35,7 +35,7 @@ DEFAULT_RESOLUTION = (224, 224)
 """Default number of columns and rows of a map: even, so that no pixel lies on a line of symmetry."""
 
 FINEST_PIXEL = 1e-15
-"""Smallest distance of neighbouring pixels, relative to the larger of the well's unit and the largest coordinate."""
+"""Smallest distance of neighbouring pixels, as a share of the well's unit or, if larger, of the largest coordinate."""
 
 
 @with_former_fields
@@ -217,7 +217,7 @@ class MapSpec:
         )
 
     def pixel_at(self, x: float, ordinate: float) -> tuple[int, int] | None:
-        """Return (row, column) of the pixel that contains a point of the plane; None outside the window."""
+        """Return (row, column) of the pixel that contains a point of the slice; None outside the window."""
         window, (columns, rows) = self.find_window(), self.resolution
         column = int(np.floor((x - window.x_low) / window.width * columns))
         row = int(np.floor((ordinate - window.ordinate_low) / window.height * rows))
@@ -233,7 +233,7 @@ def finest_pixel(spec: MapSpec, window: Window) -> tuple[float, float]:
 
 
 def _check_pixels(spec: MapSpec, window: Window) -> None:
-    """Raise ValueError if neighbouring pixels are too close for double precision."""
+    """Raise ValueError if neighbouring pixels are closer than `finest_pixel`."""
     for centres, finest in zip(window.pixel_centres(*spec.resolution), finest_pixel(spec, window), strict=True):
         if centres.size > 1 and np.min(np.diff(centres)) < finest:
             raise ValueError(f"window={window}: double precision ends here; pixels must be at least {finest:.2g} apart")
@@ -268,11 +268,11 @@ def read_spec(dataset: xr.Dataset) -> MapSpec:
     except KeyError as error:
         raise ValueError(f"dataset: has no attribute {error}; must be the dataset of a map written by this version") from None
     return MapSpec(
-        read_potential(attributes), plane, _plain(energy), (columns, rows), window,  # type: ignore[arg-type]
+        read_potential(attributes), plane, _plain_energy(energy), (columns, rows), window,  # type: ignore[arg-type]
         float(attributes["t_max"]), use_evidence=bool(attributes["use_evidence"]), backward=bool(attributes["backward"]),
     )  # fmt: skip
 
 
-def _plain(energy: Any) -> Any:
-    """Return an energy, or a pair of energies, in the form of a request."""
+def _plain_energy(energy: Any) -> Any:
+    """Return an energy as a float, or a pair of energies as a tuple of floats."""
     return tuple(map(float, energy)) if np.ndim(energy) else float(energy)

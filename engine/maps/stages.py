@@ -14,7 +14,7 @@ SHORTEST_PAUSE = 0.1
 LONGEST_PAUSE = 1.0
 """Longest pause between two frames, in seconds."""
 
-# Pause between frames as a share of the elapsed time.
+# Pause between frames as a share of the time since the start of the computation.
 _PAUSE_SHARE = 0.3
 
 Stage = Callable[[], None]
@@ -28,7 +28,7 @@ OnChange = Callable[[bool], None]
 
 
 class Frame(Protocol):
-    """A map or an analysis so far."""
+    """The result of a computation so far: a map or an analysis."""
 
     @property
     def complete(self) -> bool:
@@ -49,7 +49,7 @@ class Staged[F: Frame](Protocol):
 
 
 def frame_pause(elapsed: float) -> float:
-    """Return the pause after a frame, see `Pause`: a share of the elapsed time, within limits."""
+    """Return the pause after a frame, see `Pause`: a share of the elapsed time, from `SHORTEST_PAUSE` to `LONGEST_PAUSE`."""
     return min(max(SHORTEST_PAUSE, _PAUSE_SHARE * elapsed), LONGEST_PAUSE)
 
 
@@ -68,7 +68,7 @@ def run_stages[F: Frame](
         Called in this thread with incomplete frames: first at the end of a stage, so that the frame has one resolution, and then
         after pauses.
     pause
-        Returns the pause after a frame. By default, pauses grow.
+        Returns the pause after a frame. By default, pauses grow with the elapsed time.
     """
     on_change = _FrameReporter(work, execution, on_frame, pause)
     for stage in work.stages(execution, on_change):

@@ -13,11 +13,11 @@ from engine.foundations.validation import checked_count
 from engine.foundations.wording import format_count
 from engine.measures.starts import checked_labels, describe_labels
 
-BOX = 5
+DEFAULT_BOX = 5
 """Default side of a box in pixels; a box has 25 starts, as in Daza et al. (2016)."""
 
 COUNTS_BOUNDED = True
-"""Whether bounded orbits have a label of their own: yes, because to stay bounded is a possible outcome of a start."""
+"""Whether bounded orbits have a label of their own: yes, because they are one of the possible outcomes of a start."""
 
 # Boxes with two labels in equal parts have an entropy of ln 2; their mean can exceed ln 2 by less than this, due to rounding.
 _ROUNDING = 1e-12
@@ -32,7 +32,7 @@ class BasinEntropy(RecordedResult):
     s_b
         S_b, the mean entropy of all boxes that count, 0 to ln(labels); NaN if no box counts.
     s_bb
-        S_bb, the mean entropy of the boxes with more than one label; NaN if there are no such boxes.
+        S_bb, the mean entropy of the boxes that count and have more than one label; NaN if there are no such boxes.
     s_b_error, s_bb_error
         Standard errors of these means for independent boxes; NaN for fewer than two boxes. The means of a tiling vary less than
         those of independent boxes: shifting the tiling by a few pixels changed S_b and S_bb of some maps by up to about two
@@ -74,13 +74,13 @@ class BasinEntropy(RecordedResult):
         box_text = f"{self.box} × {self.box} starts"
         if not self.boxes:
             return f"No basin entropy: no box of {box_text} consists only of starts that count."
-        mean = f"S_b = {_with_error(self.s_b, self.s_b_error)} over {format_count(self.boxes, 'box', 'boxes')} of {box_text}"
+        s_b_text = f"S_b = {_format_mean(self.s_b, self.s_b_error)} over {format_count(self.boxes, 'box', 'boxes')} of {box_text}"
         if not self.boundary_boxes:
-            return f"{mean}: no box holds more than one label."
-        boundary = f"S_bb = {_with_error(self.s_bb, self.s_bb_error)} over the {self.boundary_boxes} on a boundary"
-        return f"{mean}; {boundary}. {self._conclusion()}"
+            return f"{s_b_text}: no box holds more than one label."
+        s_bb_text = f"S_bb = {_format_mean(self.s_bb, self.s_bb_error)} over the {self.boundary_boxes} on a boundary"
+        return f"{s_b_text}; {s_bb_text}. {self._describe_conclusion()}"
 
-    def _conclusion(self) -> str:
+    def _describe_conclusion(self) -> str:
         if self.beyond_ln2:
             return "S_bb > ln 2: at this scale the boundary is not smooth."
         if self.labels < 3:
@@ -88,7 +88,7 @@ class BasinEntropy(RecordedResult):
         return "S_bb ≤ ln 2: the boundary can be smooth or fractal."
 
 
-def compute_basin_entropy(labels: Any, valid: Any = None, *, box: int = BOX) -> BasinEntropy:
+def compute_basin_entropy(labels: Any, valid: Any = None, *, box: int = DEFAULT_BOX) -> BasinEntropy:
     """Compute the basin entropies S_b and S_bb of a labelled image.
 
     The image is tiled with boxes from its first row and column. A strip at the far edges that is narrower than a box does not
@@ -108,7 +108,7 @@ def compute_basin_entropy(labels: Any, valid: Any = None, *, box: int = BOX) -> 
         (rows, columns) bool, the pixels that count. None for the interior pixels of a map, or for all pixels of an array without
         negative labels.
     box
-        Side of a box in pixels, 2 to the shorter side of the image.
+        Side of a box in pixels, from 2 to the shorter side of the image.
 
     Returns
     -------
@@ -164,12 +164,12 @@ def _box_entropies(boxes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _mean_and_error(entropies: np.ndarray) -> tuple[float, float]:
-    """Return the mean and standard error; NaN where undefined."""
+    """Return the mean and its standard error; NaN for a mean of no boxes, and for an error from fewer than two boxes."""
     if not entropies.size:
         return math.nan, math.nan
     error = float(entropies.std(ddof=1)) / math.sqrt(entropies.size) if entropies.size > 1 else math.nan
     return float(entropies.mean()), error
 
 
-def _with_error(value: float, error: float) -> str:
+def _format_mean(value: float, error: float) -> str:
     return f"{value:.3f}" if math.isnan(error) else f"{value:.3f} ± {error:.3f}"

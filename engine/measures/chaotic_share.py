@@ -13,7 +13,7 @@ from engine.foundations.wording import format_share, format_share_range
 from engine.measures.starts import wilson_interval
 from engine.propagation.fates import Regularity
 
-# Codes of judged orbits.
+# Codes of bounded orbits that have been judged.
 _JUDGEMENTS = (Regularity.REGULAR, Regularity.CHAOTIC, Regularity.NO_SIGN_OF_CHAOS)
 
 

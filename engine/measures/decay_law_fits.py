@@ -23,18 +23,18 @@ from engine.measures.escape_statistics import EscapeStatistics, compute_statisti
 from engine.measures.starts import Measurable, Starts, read_starts
 
 # Half-width of the 95 % interval of a normal distribution, in standard deviations.
-_DEVIATIONS = 1.96
-# Number of escapes in the next window that is tried, as a share of the number in the present window.
+_HALF_WIDTH_95 = 1.96
+# Number of escapes in the next window to be tried, as a share of the number in the present window.
 _WINDOW_RATIO = 0.9
-# The fit uses this share of the escapes in the first window in which a law appears to hold: the latest. With all of them, an
-# undetectable remainder of the transient would bias the rate.
+# The fit uses only the latest escapes, this share of those in the first window in which a law appears to hold. With all of them,
+# an undetectable remainder of the transient would bias the rate.
 _SETTLED_SHARE = 0.5
 # Degrees of the Legendre polynomials in the test of a law. Degree 1 is left out: it is almost the score, which the fit makes 0.
 _DEGREES = (2, 3, 4)
 # Factors that normalise these polynomials.
 _NORMS = np.sqrt(2.0 * np.array(_DEGREES) + 1.0)
-# Steepness below which the variance is that of the uniform distribution.
-_FLAT = 1e-2
+# Steepness up to which the variance is that of the uniform distribution, because of rounding in the general formula.
+_FLAT_STEEPNESS = 1e-2
 
 
 def fit_decay_laws(
@@ -97,11 +97,11 @@ def fit_decay_laws(
     laws = DecayLaws(*compute_survival(statistics), t_low, t_high, *counts, made_by=statistics.made_by)
     if sample.times.size < MIN_ESCAPES or statistics.undecided or not np.isfinite(t_low):
         return laws
-    return _compare(laws, sample, statistics)
+    return _fit_and_compare(laws, sample, statistics)
 
 
 def _checked_horizon(statistics: EscapeStatistics, t_max: float | None) -> float:
-    """Return the time up to which escapes are used; ValueError if it is after the time up to which they are known."""
+    """Return the time up to which escapes are used; ValueError if it is not legal, or after `statistics.t_max`."""
     horizon = checked_t_max(statistics.t_max if t_max is None else t_max)
     if horizon > statistics.t_max:
         raise ValueError(f"t_max={t_max:g}: must be at most {statistics.t_max:g}, the integration time of the statistics")
@@ -117,7 +117,7 @@ class _Sample:
     times: np.ndarray
 
     def unit_times(self, law: DecayLaw) -> np.ndarray:
-        """Return the unit times u of a law."""
+        """Return the unit times u of a law, shaped like `times`."""
         return to_unit_time(law, self.t_low, self.t_high, self.times)
 
     def p_value(self, law: DecayLaw) -> float:
@@ -152,29 +152,29 @@ class _Sample:
 
 
 def _choose_t_low(times: np.ndarray, t_high: float) -> float:
-    """Return the time from which a law holds; NaN if no law holds, or if there are too few escapes."""
+    """Return the beginning of the window for increasing `times`; NaN if no law holds, or if there are too few escapes."""
     remaining = times.size - 1
-    while int(remaining * _SETTLED_SHARE) >= MIN_ESCAPES:
-        sample, later = (_latest(times, t_high, count) for count in (remaining, int(remaining * _SETTLED_SHARE)))
+    while (later_count := int(remaining * _SETTLED_SHARE)) >= MIN_ESCAPES:
+        sample, later = _latest_sample(times, t_high, remaining), _latest_sample(times, t_high, later_count)
         if any(sample.p_value(law) >= MIN_P_VALUE and later.p_value(law) >= MIN_P_VALUE for law in DecayLaw):
             return later.t_low
         remaining = int(remaining * _WINDOW_RATIO)
     return float("nan")
 
 
-def _latest(times: np.ndarray, t_high: float, count: int) -> _Sample:
+def _latest_sample(times: np.ndarray, t_high: float, count: int) -> _Sample:
     """Return the sample of the latest `count` escapes; its window begins at the escape before them."""
     return _Sample(float(times[-count - 1]), t_high, times[-count:])
 
 
-def _compare(laws: DecayLaws, sample: _Sample, statistics: EscapeStatistics) -> DecayLaws:
+def _fit_and_compare(laws: DecayLaws, sample: _Sample, statistics: EscapeStatistics) -> DecayLaws:
     """Return the laws with both fits to a sample, and with the law that holds and is significantly more likely."""
     escaped_counts = [int(np.count_nonzero(statistics.escape_times <= t)) for t in (sample.t_low, sample.t_high)]
     survival = [1.0 - count / statistics.decided for count in escaped_counts]
     exponential, power_law = (_fit_law(law, sample, *survival) for law in DecayLaw)
     differences = sample.log_likelihoods(DecayLaw.EXPONENTIAL) - sample.log_likelihoods(DecayLaw.POWER_LAW)
     ratio = float(differences.mean())
-    half_width = _DEVIATIONS * float(differences.std()) / math.sqrt(differences.size)
+    half_width = _HALF_WIDTH_95 * float(differences.std()) / math.sqrt(differences.size)
     preferred = None
     if exponential.plausible and ratio > half_width:
         preferred = DecayLaw.EXPONENTIAL
@@ -190,7 +190,7 @@ def _fit_law(law: DecayLaw, sample: _Sample, survival_low: float, survival_high:
     """Fit one law. The standard error of the rate is valid even if the law does not hold (White 1982, Econometrica 50, 1)."""
     u, length = sample.unit_times(law), window_length(law, sample.t_low, sample.t_high)
     steepness = _fit_steepness(u)
-    half_width = _DEVIATIONS * float(u.std()) / (np.sqrt(u.size) * _variance(steepness)) / length
+    half_width = _HALF_WIDTH_95 * float(u.std()) / (np.sqrt(u.size) * _variance_of_u(steepness)) / length
     rate = steepness / length
     window = (sample.t_low, sample.t_high)
     return LawFit(law, rate, rate - half_width, rate + half_width, sample.p_value(law), *window, survival_low, survival_high)
@@ -211,11 +211,11 @@ def _fit_steepness(u: np.ndarray) -> float:
         return float(0.5 * special.hyp1f1(2.0, 3.0, -k) / special.exprel(-k)) - falling_mean
 
     # The mean is below 1/k, so k is below the upper end of this bracket.
-    steepness = find_root(excess, 0.0, 2.0 / falling_mean, xtol=2e-12, rtol=4 * float(np.finfo(float).eps))
+    steepness = find_root(excess, 0.0, 2.0 / falling_mean, xtol=2e-12)
     return float(np.copysign(steepness, 0.5 - mean))
 
 
-def _variance(steepness: float) -> float:
+def _variance_of_u(steepness: float) -> float:
     """Return the variance of u for a density of this steepness."""
     k = abs(steepness)
-    return 1.0 / k**2 - float(np.exp(-k) / np.expm1(-k) ** 2) if k > _FLAT else 1.0 / 12.0
+    return 1.0 / k**2 - float(np.exp(-k) / np.expm1(-k) ** 2) if k > _FLAT_STEEPNESS else 1.0 / 12.0

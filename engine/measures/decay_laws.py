@@ -77,7 +77,7 @@ class LawFit:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class DecayLaws(RecordedResult):
-    """Decay laws fitted to the escapes of a map or of a part of it; arrays are read-only.
+    """Decay laws fitted to the escapes of a map, of a part of it, or of any orbits; arrays are read-only.
 
     Attributes
     ----------
@@ -119,8 +119,8 @@ class DecayLaws(RecordedResult):
         if self.exponential is None or self.power_law is None:
             return self._describe_missing_fit()
         kappa, gamma = _describe_fit("κ", self.exponential), _describe_fit("γ", self.power_law)
-        sample = f"{format_whole(self.escapes)} of {format_count(self.escapes_in_all, 'escape')}"
-        data = f"{sample}, t = {format_number(self.t_low)} to {format_number(self.t_high)}"
+        escapes = f"{format_whole(self.escapes)} of {format_count(self.escapes_in_all, 'escape')}"
+        data = f"{escapes}, t = {format_number(self.t_low)} to {format_number(self.t_high)}"
         if self.preferred is DecayLaw.EXPONENTIAL:
             return f"Exponential: {kappa}; {data}. A power law is less likely{_describe_exclusion(self.power_law)}."
         if self.preferred is DecayLaw.POWER_LAW:
@@ -147,8 +147,8 @@ class DecayLaws(RecordedResult):
             return "The data do not decide between the two laws"
         if possible:
             return f"The {possible[0]} may hold, but is not clearly more likely"
-        are_ruled_out = max(exponential.p_value, power_law.p_value) < MIN_P_VALUE
-        return "Neither law holds" if are_ruled_out else "These escapes do not show a decay"
+        are_both_ruled_out = max(exponential.p_value, power_law.p_value) < MIN_P_VALUE
+        return "Neither law holds" if are_both_ruled_out else "These escapes do not show a decay"
 
 
 def _describe_fit(symbol: str, fit: LawFit) -> str:
@@ -165,7 +165,10 @@ def _describe_exclusion(fit: LawFit) -> str:
 
 
 def window_length(law: DecayLaw, t_low: float, t_high: float) -> float:
-    """Return the length of the window in t (exponential law) or ln t (power law): the steepness divided by the rate."""
+    """Return the length of the window, in t for the exponential law and in ln t for the power law.
+
+    The steepness of a law is its rate times this length.
+    """
     return t_high - t_low if law is DecayLaw.EXPONENTIAL else float(np.log(t_high / t_low))
 
 
@@ -176,7 +179,10 @@ def to_unit_time(law: DecayLaw, t_low: float, t_high: float, t: np.ndarray) -> n
 
 
 def cumulative_share(steepness: float, u: np.ndarray) -> np.ndarray:
-    """Return the cumulative distribution function at u of a density ∝ exp(−k u) on 0 ≤ u ≤ 1; k may have either sign."""
+    """Return the cumulative distribution function, 0 to 1, at u of a density ∝ exp(−k u) on 0 ≤ u ≤ 1.
+
+    The steepness k may have either sign.
+    """
     from scipy import special
 
     k = abs(steepness)

@@ -17,16 +17,17 @@ from engine.systems.outcomes import Outcome
 MAX_SURVIVAL_POINTS = 500
 """Largest number of points of a survival curve."""
 
+# Lowest code of a fate, which is negative.
 _LOWEST_CODE = int(min(Fate))
 # Relative difference below which times count as equal, because no bins fit between them.
-_EQUAL_TIMES = 1e-9
+_TIME_TOLERANCE = 1e-9
 # Lower edge of a histogram of equal times, as a share of the time; the upper edge is the time divided by this share.
 _LOWER_EDGE = 0.5
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class EscapeStatistics(OrbitResult):
-    """Counts of the interior starts of a map or of a part of it, as in Zotos (2014), section 5; arrays are read-only.
+    """Counts of the interior starts of a map, of a part of it, or of any orbits (Zotos 2014, section 5); arrays are read-only.
 
     Attributes
     ----------
@@ -90,7 +91,7 @@ class EscapeStatistics(OrbitResult):
 
     @property
     def shares(self) -> dict[int, float]:
-        """Share of N0 by fate: outcomes 1, 2, …, `Fate.BOUNDED`, `NOT_COMPUTED` and `FAILED`; 0 without starts."""
+        """Shares of N0 by fate: outcomes 1, 2, …, `Fate.BOUNDED`, `NOT_COMPUTED` and `FAILED`; 0 without starts."""
         counts = dict(enumerate(self.channel_counts, start=1))
         counts |= {int(Fate.BOUNDED): self.bounded, int(Fate.NOT_COMPUTED): self.undecided, int(Fate.FAILED): self.failed}
         return {code: count / self.starts if self.starts else 0.0 for code, count in counts.items()}
@@ -136,7 +137,7 @@ class EscapeStatistics(OrbitResult):
             raise ValueError(f"bins={bins}: must be 1 or more")
         positive = self.escape_times[self.escape_times > 0.0]
         low, high = (float(positive.min()), float(positive.max())) if positive.size else (1.0, 1.0)
-        if high <= low * (1.0 + _EQUAL_TIMES):
+        if high <= low * (1.0 + _TIME_TOLERANCE):
             low, high = low * _LOWER_EDGE, high / _LOWER_EDGE
         edges = np.geomspace(low, high, bins + 1)
         return read_only(edges), read_only(np.histogram(np.maximum(self.escape_times, low), edges)[0])
@@ -170,7 +171,7 @@ def compute_statistics(frame: Measurable | Starts, window: GivenWindow | None = 
         made_by["counted_in"] = rectangle.edges
     has_escaped = starts.fate >= 1
     times = starts.escape_time[has_escaped]
-    # The number of starts by code; the lowest code, which is negative, has index 0.
+    # The number of starts by code; the lowest code has index 0.
     code_count = len(starts.outcomes) + 1 - _LOWEST_CODE
     counts = np.bincount(starts.fate.ravel().astype(np.intp) - _LOWEST_CODE, minlength=code_count).tolist()
     return EscapeStatistics(
@@ -208,7 +209,7 @@ def compute_survival(statistics: EscapeStatistics) -> tuple[np.ndarray, np.ndarr
     times, counts = np.unique(statistics.escape_times, return_counts=True)
     survival = 1.0 - np.cumsum(counts) / max(statistics.decided, 1)
     if times.size > MAX_SURVIVAL_POINTS:
-        # The first time is added below, as it can be 0.
+        # The grid begins at the first positive time. The first time of all, which can be 0, is added below.
         first_positive = times[times > 0.0][0]
         grid = np.geomspace(first_positive, times[-1], MAX_SURVIVAL_POINTS - 1)[:-1]
         selected = np.unique([0, *(np.searchsorted(times, grid, side="right") - 1), times.size - 1])

@@ -57,7 +57,7 @@ class ExitMatching(OrbitResult):
         return float(returning_counts.sum()) / total if total else float("nan")
 
     def name_ends(self) -> Sequence[str]:
-        """Return the ends in words."""
+        """Return the names of the ends, (k,)."""
         return ["stays" if end == Fate.BOUNDED else name_fate(end, self.outcomes) for end in self.ends.tolist()]
 
     def numbers(self) -> dict[str, Any]:
@@ -72,7 +72,7 @@ class ExitMatching(OrbitResult):
         return {"entrance": entrance, "exit": end, **{name: values.ravel() for name, values in numbers.items()}}
 
     def describe(self) -> str:
-        """Return the shares of orbits that return and that stay, in a sentence."""
+        """Return the shares of the orbits that leave through their entrance, and of those that stay, in a sentence."""
         total = int(self.counts.sum())
         staying_count = int(self.counts[:, self.ends == Fate.BOUNDED].sum())
         if not total:
@@ -117,9 +117,8 @@ def compute_exit_matching(entrances: Any, outcomes: Measurable | Starts) -> Exit
         raise ValueError(f"entrances of shape {entered.shape}: must be one integer of 1 or more per orbit, {starts.fate.shape}")
     # If the outcomes are not known, the largest fate is their number.
     outcome_count = max([len(starts.outcomes), *starts.fate.tolist()])
-    occurring = [end for end in range(1, outcome_count + 1) if end > len(starts.outcomes) or starts.outcomes[end - 1].occurs]
-    rows, ends = np.unique(entered), np.array([int(Fate.BOUNDED), *occurring])
-    counts = np.array([[np.count_nonzero((entered == row) & (starts.fate == end)) for end in ends] for row in rows], np.int64)
-    # Without orbits, the shape has to be stated.
-    counts = counts.reshape(rows.size, ends.size)
-    return ExitMatching(rows, ends, counts, starts.outcomes, made_by=starts.made_by)
+    occurring_ends = [end for end in range(1, outcome_count + 1) if end > len(starts.outcomes) or starts.outcomes[end - 1].occurs]
+    distinct, ends = np.unique(entered), np.array([int(Fate.BOUNDED), *occurring_ends])
+    counts = [np.count_nonzero((entered == entrance) & (starts.fate == end)) for entrance in distinct for end in ends]
+    shaped_counts = np.array(counts, np.int64).reshape(distinct.size, ends.size)
+    return ExitMatching(distinct, ends, shaped_counts, starts.outcomes, made_by=starts.made_by)

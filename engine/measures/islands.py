@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -12,7 +11,7 @@ from engine.foundations.wording import format_count
 from engine.measures.starts import Measurable, Starts, read_complete_starts
 from engine.propagation.fates import Fate
 
-LEAST_ISLAND = 4
+MIN_ISLAND_PIXELS = 4
 """Smallest number of pixels of an island; smaller connected parts of the bounded starts do not count."""
 
 # Variance of the number of points of a square lattice in a region with a smooth edge, divided by the length of the edge.
@@ -90,20 +89,20 @@ def compute_islands(starts: Measurable | Starts) -> Islands:
     part_numbers, _ = ndimage.label(bounded, np.ones((3, 3)))
     # The number 0 means that a start is not bounded.
     pixel_counts = np.bincount(part_numbers.ravel())[1:]
-    if pixel_counts.max(initial=0) >= LEAST_ISLAND:
+    if pixel_counts.max(initial=0) >= MIN_ISLAND_PIXELS:
         in_largest = part_numbers == 1 + int(pixel_counts.argmax())
     else:
         in_largest = np.zeros_like(bounded)
     return Islands(
-        *_find_area(bounded, checked_starts.pixel_area),
-        int(np.count_nonzero(pixel_counts >= LEAST_ISLAND)),
-        *_find_area(in_largest, checked_starts.pixel_area),
+        *_measure_area(bounded, checked_starts.pixel_area),
+        int(np.count_nonzero(pixel_counts >= MIN_ISLAND_PIXELS)),
+        *_measure_area(in_largest, checked_starts.pixel_area),
         made_by=checked_starts.made_by,
     )
 
 
-def _find_area(inside: np.ndarray, pixel_area: float) -> tuple[float, float]:
-    """Return the area of the pixels that are `inside`, (rows, columns), and its error."""
+def _measure_area(inside: np.ndarray, pixel_area: float) -> tuple[float, float]:
+    """Return the area of the pixels selected by a mask (rows, columns), and its error, see `compute_islands`."""
     edge_pairs = sum(int(np.count_nonzero(np.diff(inside, axis=axis))) for axis in (0, 1))
-    length: Any = 0.25 * np.pi * edge_pairs
+    length = 0.25 * np.pi * edge_pairs
     return float(np.count_nonzero(inside) * pixel_area), float(np.sqrt(_VARIANCE_PER_LENGTH * length) * pixel_area)

@@ -1,4 +1,4 @@
-"""Entries of the table of measures, each with its name, its computation, its numbers with their errors, and its texts."""
+"""The class of the entries of the table of measures: name, computation, numbers with their errors, and texts of a measure."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ class Bars(StrEnum):
     GRID_ERROR = "error of the resolution"
 
 
-LOW = "lower end of the 95 % interval of the {}"
-"""Description of the lower end of an interval, given the description of its number."""
+LOW_TEMPLATE = "lower end of the 95 % interval of the {}"
+"""Template for the description of the lower end of an interval; the description of its number fills the gap."""
 
-HIGH = "upper end of the 95 % interval of the {}"
-"""Description of the upper end of an interval, given the description of its number."""
+HIGH_TEMPLATE = "upper end of the 95 % interval of the {}"
+"""Template for the description of the upper end of an interval; the description of its number fills the gap."""
 
-# Suffixes of the names of the variables of a number, each with the description of its variable.
+# Suffixes of the names of the variables of a number, each with the template of the description of its variable.
 _SUFFIXES: Mapping[Bars, Mapping[str, str]] = {
     Bars.NONE: {"": "{}"},
-    Bars.INTERVAL: {"": "{}", "_low": LOW, "_high": HIGH},
+    Bars.INTERVAL: {"": "{}", "_low": LOW_TEMPLATE, "_high": HIGH_TEMPLATE},
     Bars.STANDARD_ERROR: {"": "{}", "_error": "standard error of the {}"},
     Bars.GRID_ERROR: {"": "{}", "_error": "error of the resolution of the {}"},
 }
@@ -44,8 +44,8 @@ class Quantity:
     ----------
     name
         Name in files, tables and CSV.
-    words
-        Description of the number.
+    description
+        Description of the number, without an article.
     read
         A function that returns the number from a result: alone, with its error, or with the ends of its interval.
     bars
@@ -55,7 +55,7 @@ class Quantity:
     """
 
     name: str
-    words: str
+    description: str
     read: Callable[[Any], Any]
     bars: Bars = Bars.NONE
     label: str = ""
@@ -66,14 +66,14 @@ class Quantity:
         numbers = (math.nan,) * len(suffixes) if result is None else self.read(result)
         values = numbers if isinstance(numbers, tuple) else (numbers,)
         return {
-            self.name + suffix: describe_number(value, description.format(self.words))
-            for value, (suffix, description) in zip(values, suffixes.items(), strict=True)
+            self.name + suffix: describe_number(value, template.format(self.description))
+            for value, (suffix, template) in zip(values, suffixes.items(), strict=True)
         }
 
 
-def describe_number(value: float, words: str) -> tuple[tuple[()], float, dict[str, str]]:
-    """Return a dimensionless number as a variable of a dataset, with its description in words."""
-    return (), value, {"long_name": words, "units": "1"}
+def describe_number(value: float, description: str) -> tuple[tuple[()], float, dict[str, str]]:
+    """Return a dimensionless number as a variable of a dataset, with its description."""
+    return (), value, {"long_name": description, "units": "1"}
 
 
 @dataclass(frozen=True)
@@ -115,7 +115,7 @@ class Measure:
     meaning
         Meaning of the measure in about five words.
     compute
-        Returns the result for a measured map; None if the measure is not defined for this map.
+        Returns the result for a `MeasuredMap`; None if the measure is not defined for this map.
     quantities
         Numbers of the measure.
     help
@@ -123,7 +123,7 @@ class Measure:
     curve
         The diagram of these numbers against the energy or a parameter; an empty curve if they are not drawn.
     sentence
-        Returns a description of the result; None if the measure has no description.
+        Returns a description of the result; None for a measure without a description.
     slow
         Whether the measure integrates further orbits, and is therefore computed on demand.
     place
@@ -131,7 +131,7 @@ class Measure:
     terms
         Terms of the glossary that the measure needs, with their definitions.
     other_variables
-        Returns further variables of the dataset for a point of a sweep and the result.
+        Returns further variables of the dataset, given a `SweepPoint` and the result; None if there are none.
     """
 
     name: str

@@ -36,11 +36,11 @@ factor, and in 94 to 97 % with it.
 """
 
 MIN_PROBABILITY = 1e-4
-"""Smallest probability of a scatter at least as large as observed at which a power law is claimed."""
+"""Smallest p value of the χ² test at which a power law is claimed."""
 
 # Probability that the interval of an exponent contains it.
 _CONFIDENCE = 0.95
-# Relative rounding error of a separation.
+# Relative tolerance for rounding errors of separations.
 _ROUNDING = 1e-9
 # Slope of the log-likelihood per pair at which its maximisation stops.
 _TOLERANCE = 1e-12
@@ -71,7 +71,7 @@ class UncertaintyExponent(RecordedResult):
     misfit
         χ² per degree of freedom of the used shares about the fitted line; NaN if the shares are too few for a fit.
     one_inside, both_inside
-        (m,) int64, number of pairs of which one orbit, or both orbits, are still inside at the horizon. A longer integration
+        (m,) int64, numbers of pairs of which one orbit is, or both orbits are, still inside at the horizon. A longer integration
         could change only these pairs. The pairs of `one_inside` are part of `uncertain`. Empty if not known.
     horizon
         Integration time of the orbits, dimensionless; NaN if not known.
@@ -112,22 +112,22 @@ class UncertaintyExponent(RecordedResult):
     def describe(self) -> str:
         """Describe the result, or the reason why there is none, in one sentence."""
         if np.isnan(self.exponent):
-            return f"No uncertainty exponent: {self._obstacle()}."
+            return f"No uncertainty exponent: {self._describe_obstacle()}."
         decimals = int(np.clip(np.ceil(-np.log10((self.high - self.low) / 2.0)), 1, 4))
         values = (self.exponent, self.low, self.high, self.dimension)
         alpha, low, high, dimension = (format_decimals(value, decimals) for value in values)
         used = self.separations[self.used]
         return (
             f"α = {alpha} ({low} to {high}), so the boundary has dimension {dimension}, "
-            f"at separations from {used.min():.0e} to {used.max():.0e}{self._caution()}."
+            f"at separations from {used.min():.0e} to {used.max():.0e}{self._describe_limit()}."
         )
 
-    def _caution(self) -> str:
+    def _describe_limit(self) -> str:
         if self.high >= 1.0:
             return "; a smooth boundary, α = 1, is also possible"
         return "; a boundary that fills the plane, α = 0, is also possible" if self.low <= 0.0 else ""
 
-    def _obstacle(self) -> str:
+    def _describe_obstacle(self) -> str:
         pairs, uncertain = int(self.pairs.sum()), int(self.uncertain.sum())
         if not pairs:
             return "no pair of starts lies inside"
@@ -197,7 +197,9 @@ def _checked_counts(separations: Any, pairs: Any, uncertain: Any) -> tuple[np.nd
 class _Law:
     """The most likely power law for the shares at the separations `used` (indices), and its goodness of fit.
 
-    The law is `plausible` if the shares do not scatter too much about it. It `holds` if an exponent can be claimed.
+    `half_width` is that of the 95 % interval of the exponent, `bend` the quadratic term in standard errors, and `misfit` χ² per
+    degree of freedom. The law is `plausible` if the shares do not scatter too much about it. It `holds` if an exponent can be
+    claimed.
     """
 
     used: np.ndarray
@@ -216,14 +218,14 @@ def _find_law(epsilon: np.ndarray, n: np.ndarray, k: np.ndarray) -> _Law:
     last_attempt = _Law(by_decreasing_epsilon[:0])
     for begin in range(by_decreasing_epsilon.size):
         tail = by_decreasing_epsilon[begin:]
-        line = _fit_law(_with_enough_pairs(tail, epsilon, n, k), epsilon, n, k)
+        line = _fit_law(_select_by_expected_pairs(tail, epsilon, n, k), epsilon, n, k)
         if line is None:
             break
         last_attempt = line
         if line.plausible and abs(line.bend) <= MAX_BEND:
-            # Separations below the transition from the straight range to a bend.
+            # Leave out the transition from a bend to the straight range.
             inner = tail[epsilon[tail] * TRANSITION_FACTOR <= epsilon[tail[0]] * (1.0 + _ROUNDING)]
-            law = _fit_law(_with_enough_pairs(inner, epsilon, n, k), epsilon, n, k)
+            law = _fit_law(_select_by_expected_pairs(inner, epsilon, n, k), epsilon, n, k)
             if law is None:
                 return _Law(last_attempt.used)
             if law.plausible:
@@ -232,8 +234,8 @@ def _find_law(epsilon: np.ndarray, n: np.ndarray, k: np.ndarray) -> _Law:
     return last_attempt
 
 
-def _with_enough_pairs(indices: np.ndarray, epsilon: np.ndarray, n: np.ndarray, k: np.ndarray) -> np.ndarray:
-    """Return the indices of separations at which the law fitted to all of them expects enough uncertain and certain pairs."""
+def _select_by_expected_pairs(indices: np.ndarray, epsilon: np.ndarray, n: np.ndarray, k: np.ndarray) -> np.ndarray:
+    """Return the indices at which the law fitted to all of them expects `MIN_EXPECTED_PAIRS` uncertain and certain pairs."""
     # The likelihood requires certain pairs at each separation.
     indices = indices[k[indices] < n[indices]]
     if np.count_nonzero(k[indices]) < MIN_SEPARATIONS:
@@ -249,7 +251,7 @@ def predict_shares(epsilon: np.ndarray, n: np.ndarray, k: np.ndarray) -> np.ndar
 
 
 def _fit_law(used: np.ndarray, epsilon: np.ndarray, n: np.ndarray, k: np.ndarray) -> _Law | None:
-    """Fit a power law to the separations `used`; return None if they are too few or cover too short a range."""
+    """Fit a power law to the separations `used` (indices); return None if they are too few or cover too short a range."""
     from scipy import special
 
     if used.size < MIN_SEPARATIONS or np.ptp(np.log10(epsilon[used])) < MIN_DECADES:
@@ -258,20 +260,21 @@ def _fit_law(used: np.ndarray, epsilon: np.ndarray, n: np.ndarray, k: np.ndarray
     design = _powers(x, 1)
     (level, slope), covariance = _maximise_likelihood(design, n, k)
     share = np.exp(design @ [level, slope])
-    freedom = x.size - 2
+    degrees_of_freedom = x.size - 2
     chi2 = float(np.sum((k - n * share) ** 2 / (n * share * (1.0 - share))))
     exponent = float(slope / np.ptp(x))
     probability = 0.5 * (1.0 + _CONFIDENCE)
-    # Half-width of the interval in binomial standard errors.
-    error_count = max(special.ndtri(probability), special.stdtrit(freedom, probability) * np.sqrt(chi2 / freedom))
+    misfit = chi2 / degrees_of_freedom
+    # Half-width of the interval in units of the binomial standard error.
+    factor = max(special.ndtri(probability), special.stdtrit(degrees_of_freedom, probability) * np.sqrt(misfit))
     return _Law(
         used=used,
         exponent=exponent,
-        half_width=float(error_count * np.sqrt(covariance[1, 1]) / np.ptp(x)),
+        half_width=float(factor * np.sqrt(covariance[1, 1]) / np.ptp(x)),
         amplitude=float(np.exp(level - exponent * x.mean())),
-        misfit=chi2 / freedom,
+        misfit=misfit,
         bend=_measure_bend(x, n, k),
-        plausible=bool(special.chdtrc(freedom, chi2) >= MIN_PROBABILITY),
+        plausible=bool(special.chdtrc(degrees_of_freedom, chi2) >= MIN_PROBABILITY),
     )
 
 
@@ -290,7 +293,10 @@ def _powers(x: np.ndarray, degree: int) -> np.ndarray:
 
 
 def _maximise_likelihood(design: np.ndarray, n: np.ndarray, k: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the coefficients of log f and their covariance; the log-likelihood is concave in the coefficients."""
+    """Return the most likely coefficients (d,) of log f = design @ coefficients, and their covariance (d, d).
+
+    The log-likelihood is concave in the coefficients, so it has only one maximum.
+    """
     from scipy import optimize
 
     def loss(coefficients: np.ndarray) -> float:
@@ -306,7 +312,8 @@ def _maximise_likelihood(design: np.ndarray, n: np.ndarray, k: np.ndarray) -> tu
         return design.T @ (design * (n * share / (1.0 - share))[:, None]) / n.sum()
 
     # The search starts from a constant share.
-    guess = np.eye(1, design.shape[1])[0] * np.log(k.sum() / n.sum())
+    guess = np.zeros(design.shape[1])
+    guess[0] = np.log(k.sum() / n.sum())
     options = {"gtol": _TOLERANCE}
     coefficients = optimize.minimize(loss, guess, method="trust-exact", jac=gradient, hess=information, options=options).x
     return coefficients, np.linalg.inv(information(coefficients)) / n.sum()

@@ -37,15 +37,15 @@ class Classified(Protocol):
 
     @property
     def escape_time(self) -> np.ndarray:
-        """Times of the escapes."""
+        """Times of the escapes, dimensionless; NaN for other orbits."""
 
     @property
     def crossings(self) -> np.ndarray:
-        """Numbers of crossings."""
+        """Numbers of upward crossings of y = 0, the start not counted."""
 
     @property
     def t_max(self) -> float:
-        """Integration time."""
+        """Integration time, dimensionless."""
 
     @property
     def outcomes(self) -> tuple[Outcome, ...]:
@@ -88,25 +88,25 @@ class Starts:
     made_by: Mapping[str, Any] = field(default_factory=dict)
     complete: bool = True
 
-    def place(self, window: Window) -> tuple[slice, slice]:
+    def pixel_slices(self, window: Window) -> tuple[slice, slice]:
         """Return the rows and columns of the pixels whose centres lie in a window, edges included; ValueError without a map."""
         if self.axes is None:
             raise ValueError(f"window={window}: must be None for orbits that are no map")
         x, ordinate = self.axes
-        rows = slice(*_find_range(ordinate, window.ordinate_low, window.ordinate_high))
-        return rows, slice(*_find_range(x, window.x_low, window.x_high))
+        return _find_slice(ordinate, window.ordinate_low, window.ordinate_high), _find_slice(x, window.x_low, window.x_high)
 
     def inside(self, window: Window) -> Starts:
-        """Return the starts in a window, see `place`."""
-        rows, columns = self.place(window)
+        """Return the starts in a window, see `pixel_slices`."""
+        rows, columns = self.pixel_slices(window)
         assert self.axes is not None
         x, ordinate = self.axes
         arrays = {name: getattr(self, name)[rows, columns] for name in ("fate", "escape_time", "crossings")}
         return replace(self, axes=(x[columns], ordinate[rows]), **arrays)
 
 
-def _find_range(centres: np.ndarray, low: float, high: float) -> tuple[int, int]:
-    return int(np.searchsorted(centres, low)), int(np.searchsorted(centres, high, "right"))
+def _find_slice(centres: np.ndarray, low: float, high: float) -> slice:
+    """Return the slice of increasing pixel centres from `low` to `high`, ends included."""
+    return slice(int(np.searchsorted(centres, low)), int(np.searchsorted(centres, high, "right")))
 
 
 def read_starts(name: str, value: Any) -> Starts:
@@ -132,7 +132,7 @@ def read_starts(name: str, value: Any) -> Starts:
 
 
 def read_complete_starts(name: str, value: Any) -> Starts:
-    """Return starts as `read_starts` does; ValueError unless all are computed, as measures of basins require."""
+    """Return starts as `read_starts` does; ValueError if the outcomes of some are not computed yet."""
     starts = read_starts(name, value)
     if not starts.complete:
         raise ValueError(f"{name}: the map is not complete; must be a complete map, only `compute_statistics` counts the others")
@@ -149,7 +149,7 @@ def checked_dataset(name: str, value: Any, arrays: Collection[str], legal: str) 
     value
         The dataset, of any version, or what was given instead of a dataset.
     arrays
-        The names of the arrays, of which the first is "fate".
+        The names of the required arrays, among them "fate".
     legal
         Description of what is legal, for messages.
     """
@@ -159,7 +159,7 @@ def checked_dataset(name: str, value: Any, arrays: Collection[str], legal: str) 
         raise ValueError(f"{name}={short_repr(value)}: must be {legal}")
     if missing:
         raise ValueError(f"{name}: a dataset of a map without {', '.join(missing)}; must have all arrays of the map")
-    if dataset["fate"].ndim > len(("rows", "columns")):
+    if dataset["fate"].ndim > 2:
         raise ValueError(f"{name}: a dataset of several maps; must be one of them, such as dataset.sel(h=…)")
     return dataset
 
@@ -179,6 +179,7 @@ def _read_dataset(dataset: xr.Dataset) -> Starts:
 
 
 def _spacing(centres: np.ndarray) -> float:
+    """Return the distance of neighbouring pixel centres; 0 for a single pixel."""
     return float(np.ptp(centres)) / max(centres.size - 1, 1)
 
 

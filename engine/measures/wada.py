@@ -24,6 +24,7 @@ The edge of an island of bounded orbits is far from other boundaries between exi
 
 # Percentage of the boundary pixels within `radius_99`.
 _PERCENTAGE = 99
+# Words for numbers of basins that are too small for the test.
 _NUMBER_WORDS = ("none", "one", "two")
 
 
@@ -40,7 +41,7 @@ class WadaTest(RecordedResult):
         boundary. Infinite if a basin touches no other basin; NaN for fewer than three basins or without a boundary. A single
         pixel can decide the radius.
     radius_99
-        Smallest r for which this holds for 99 % of the boundary pixels.
+        Smallest integer r for which this holds for 99 % of the boundary pixels.
     boundary_pixels
         Number of pixels on any boundary.
     shares
@@ -93,8 +94,9 @@ def compute_wada_test(labels: Any, valid: Any = None) -> WadaTest:
         A complete map or its dataset, such as ``dataset.sel(h=0.3)`` of a sweep; its bounded orbits do not count. Or (rows,
         columns) integers; equal integers are one basin.
     valid
-        (rows, columns) bool, the pixels that count; None for all pixels of an array without negative labels, and for a map. Other
-        pixels and the edge of the image form no boundary; distances are measured straight across such pixels.
+        (rows, columns) bool, the pixels that count. None for the escaping orbits of a map, or for all pixels of an array without
+        negative labels. Other pixels and the edge of the image form no boundary; distances are measured straight across such
+        pixels.
 
     Returns
     -------
@@ -121,8 +123,8 @@ def compute_wada_test(labels: Any, valid: Any = None) -> WadaTest:
         return WadaTest(basins, math.nan, math.nan, count, np.empty(0), made_by=made_by)
     distances = np.sort(_largest_distances(labels, valid, basins, boundary))
     shares = np.cumsum(np.bincount(distances[np.isfinite(distances)].astype(np.intp))) / count
-    least_count = math.ceil(_PERCENTAGE * count / 100)
-    radius_99 = float(distances[least_count - 1])
+    required_count = math.ceil(_PERCENTAGE * count / 100)
+    radius_99 = float(distances[required_count - 1])
     return WadaTest(basins, float(distances[-1]), radius_99, count, shares, made_by=made_by)
 
 

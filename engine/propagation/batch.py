@@ -251,30 +251,30 @@ class OrbitPool:
         (n,) indices of all orbits to propagate.
     workers
         Number of workers.
+
+    Attributes
+    ----------
+    waiting
+        Indices of the waiting orbits.
     """
 
     def __init__(self, indices: np.ndarray, workers: int) -> None:
-        self._waiting, self._workers = indices, workers
+        self.waiting, self._workers = indices, workers
         # Number of orbits that are with workers.
         self._taken_count = 0
 
-    @property
-    def waiting_count(self) -> int:
-        """Number of waiting orbits."""
-        return self._waiting.size
-
     def take(self) -> np.ndarray:
         """Remove and return the indices of a worker's share of the waiting orbits: whole SIMD vectors, at most `LARGEST_TILE`."""
-        share = math.ceil((self._waiting.size + self._taken_count) / self._workers)
+        share = math.ceil((self.waiting.size + self._taken_count) / self._workers)
         size = min(fill_vectors(share), LARGEST_TILE)
-        indices, self._waiting = np.split(self._waiting, [size])
+        indices, self.waiting = np.split(self.waiting, [size])
         self._taken_count += indices.size
         return indices
 
     def give_back(self, tile: Tile) -> None:
         """Queue the orbits of a tile that are still active."""
         self._taken_count -= tile.indices.size
-        self._waiting = np.concatenate([self._waiting, tile.indices[tile.active != 0]])
+        self.waiting = np.concatenate([self.waiting, tile.indices[tile.active != 0]])
 
 
 def propagate_batch(
@@ -327,10 +327,10 @@ def propagate_batch(
 
     def keep_workers_busy() -> None:
         # Tiles are queued ahead only while enough orbits for a full tile wait.
-        while pool.waiting_count and len(running) < (2 * workers if pool.waiting_count > LARGEST_TILE else workers):
+        while pool.waiting.size and len(running) < (2 * workers if pool.waiting.size > LARGEST_TILE else workers):
             tile = Tile.copy_from(batch, pool.take())
             # Without other orbits to combine with, a worker keeps its orbits.
-            least_active = _LEAST_ACTIVE if pool.waiting_count and tile.indices.size > _LEAST_ACTIVE else 0
+            least_active = _LEAST_ACTIVE if pool.waiting.size and tile.indices.size > _LEAST_ACTIVE else 0
             running.add(execution.submit(_advance_tile, potential, curves, gates, tile, horizon, final, tolerance, least_active))
 
     keep_workers_busy()

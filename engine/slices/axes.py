@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import MutableMapping
+from collections.abc import Mapping, MutableMapping
 from dataclasses import dataclass
 from enum import Enum
-from typing import TYPE_CHECKING, Self
+from types import MappingProxyType
+from typing import TYPE_CHECKING, ClassVar, Self
 
 import numpy as np
 
@@ -64,14 +65,15 @@ class Coordinate(Enum):
         return {self: 1.0}
 
     def in_well_units(self, units: WellUnits) -> Coordinate:
-        """Return the axis itself: the values along it have units, but the axis has none."""
+        """Return the coordinate itself. Only the values along the axis have a unit."""
         return self
 
-    def move(self, start: MutableMapping[Coordinate, np.ndarray], along: np.ndarray) -> None:
-        """Set this coordinate of n starts, in place, to the values `along` the axis, of shape (n,)."""
-        start[self] = along
+    def move(self, start: MutableMapping[Coordinate, np.ndarray], axis_values: np.ndarray) -> None:
+        """Set this coordinate of n starts, in place, to the values along the axis, of shape (n,)."""
+        start[self] = axis_values
 
 
+# Groups of coordinates; `STATE` has the order of the columns of states.
 POSITIONS = (Coordinate.X, Coordinate.Y)
 MOMENTA = (Coordinate.PX, Coordinate.PY)
 ANGLES = (Coordinate.THETA, Coordinate.BETA)
@@ -104,6 +106,9 @@ class Direction:
     px: float = 0.0
     py: float = 0.0
 
+    is_free: ClassVar = True
+    """Starts can be displaced along the direction at constant energy."""
+
     def __post_init__(self) -> None:
         check_type("key", self.key, str)
         if not self.key.isidentifier() or self.key in {coordinate.value for coordinate in Coordinate}:
@@ -130,13 +135,8 @@ class Direction:
         parities = {coordinate.parity for coordinate in self.components}
         return parities.pop() if len(parities) == 1 else None
 
-    @property
-    def is_free(self) -> bool:
-        """True, because starts can be displaced along the direction at constant energy."""
-        return True
-
     def unit(self, units: WellUnits) -> float:
-        """Return the unit of the axis, a power of 2, in which values inside the well are of order 1."""
+        """Return the unit of the values along the axis, a power of 2, in which those inside the well are of order 1."""
         scaled_components = [value / coordinate.unit(units) for coordinate, value in self.components.items()]
         return 1.0 / nearest_power_of_two(float(np.hypot.reduce(scaled_components)))
 
@@ -145,10 +145,10 @@ class Direction:
         unit = self.unit(units)
         return Direction(self.key, **{c.value: value * unit / c.unit(units) for c, value in self.components.items()})
 
-    def move(self, start: MutableMapping[Coordinate, np.ndarray], along: np.ndarray) -> None:
-        """Move n starts, in place, by the distances `along` the axis, of shape (n,)."""
+    def move(self, start: MutableMapping[Coordinate, np.ndarray], axis_values: np.ndarray) -> None:
+        """Move n starts, in place, along the direction by the values along the axis, of shape (n,)."""
         for coordinate, component in self.components.items():
-            start[coordinate] = start[coordinate] + component * along
+            start[coordinate] = start[coordinate] + component * axis_values
 
 
 class _SystemAxis:
@@ -156,25 +156,19 @@ class _SystemAxis:
 
     key: str
 
-    @property
-    def components(self) -> dict[Coordinate, float]:
-        """Empty, because starts do not change."""
-        return {}
+    components: ClassVar[Mapping[Coordinate, float]] = MappingProxyType({})
+    """Empty, because starts do not change."""
+
+    parity: ClassVar = 1
+    """x → −x leaves parameters unchanged."""
+
+    is_free: ClassVar = False
+    """Starts cannot be displaced along a parameter, because another value is another system."""
 
     @property
     def symbol(self) -> str:
         """The symbol in texts and on axes."""
         return symbol_of(self.key)
-
-    @property
-    def parity(self) -> int:
-        """Return 1: x → −x leaves parameters unchanged."""
-        return 1
-
-    @property
-    def is_free(self) -> bool:
-        """False: starts cannot be displaced along a parameter, because another value is another system."""
-        return False
 
     def unit(self, units: WellUnits) -> float:
         """Return 1: parameters are not scaled."""
@@ -184,7 +178,7 @@ class _SystemAxis:
         """Return the axis itself."""
         return self
 
-    def move(self, start: MutableMapping[Coordinate, np.ndarray], along: np.ndarray) -> None:
+    def move(self, start: MutableMapping[Coordinate, np.ndarray], axis_values: np.ndarray) -> None:
         """Leave starts unchanged."""
 
 
@@ -263,7 +257,7 @@ class HeldParameter(_SystemAxis):
 
 
 def _system_of(potential: Potential) -> System:
-    """Return the system of a potential; ValueError if it is not known."""
+    """Return the system that made a potential; ValueError if there is none."""
     if potential.system is None:
         raise ValueError(
             f"system={potential.name}: its letters are not known; must be a System, or the potential of one, such as "
@@ -273,6 +267,7 @@ def _system_of(potential: Potential) -> System:
 
 
 Axis = Coordinate | Direction | ParameterAxis | HeldParameter
+"""An axis of a slice."""
 
 Energy = float | tuple[float, float]
 """The energy of a map: h, or its range (low, high) on a slice with an axis h."""

@@ -15,10 +15,10 @@ from engine.systems.potential import Potential
 # Largest ratio of the sides of an interior, in units of the well, at which both sides of the window have the same scale.
 _LARGEST_ASPECT = 4.0
 # Number of values of a parameter at which the interior is searched.
-_VALUES = 9
+_PARAMETER_VALUES = 9
 # Number of tested points of a line of pixels.
 _LINE_POINTS = 65
-# Largest distance from 0 of the middle of a centred window, as a share of the window.
+# Largest magnitude of the sum of the edges of a window centred on 0, as a share of its length.
 _CENTRE_TOLERANCE = 1e-9
 # Condition for an interior, for messages.
 _CONDITION = "must be at least about 1e-5 above the minimum of the well; fixed values must lie inside the well"
@@ -46,9 +46,10 @@ def default_window(potential: Potential, plane: Slice, energy: Energy) -> Window
         If there is no interior at this energy.
     """
     ranges, last_error = [], None
-    for member in _potentials(potential, plane):
+    for member in _shown_potentials(potential, plane):
         try:
-            ranges += find_axis_ranges(member, plane, energy)
+            if (axis_ranges := find_axis_ranges(member, plane, energy)) is not None:
+                ranges.append(axis_ranges)
         except ValueError as error:
             # The potentials at other values of the parameter may have exits.
             last_error = error
@@ -56,7 +57,8 @@ def default_window(potential: Potential, plane: Slice, energy: Energy) -> Window
         raise last_error
     if not ranges:
         raise ValueError(f"energy={highest_energy(energy)}: the interior is empty on {plane.title}; {_CONDITION}")
-    x_range, ordinate_range = zip(np.min(ranges, axis=0)[:, 0].tolist(), np.max(ranges, axis=0)[:, 1].tolist(), strict=True)
+    lower_ends, upper_ends = np.min(ranges, axis=0)[:, 0].tolist(), np.max(ranges, axis=0)[:, 1].tolist()
+    x_range, ordinate_range = zip(lower_ends, upper_ends, strict=True)
     if any(map(is_whole, plane.axes)) or isinstance(energy, tuple):
         return Window(*window_edges(plane.abscissa, energy, x_range), *window_edges(plane.ordinate, energy, ordinate_range))
     units = [exact_unit(axis, potential) for axis in plane.axes]
@@ -95,7 +97,7 @@ def _is_centred(low: float, high: float, count: int) -> bool:
 
 
 def _on_symmetry_line(potential: Potential, plane: Slice, energy: Energy, axis: int, other_range: Range) -> bool:
-    """Return whether all starts at 0 on axis 0 or 1, and in a range on the other axis, stay on x = 0 or y = 0."""
+    """Return whether all starts at 0 on `axis` (0 or 1), and in a range on the other axis, stay on x = 0 or y = 0."""
     # Along a parameter, one potential decides for all.
     line = plane if plane.parameter is None else plane.line(plane.parameter.low)
     points = [np.linspace(*other_range, _LINE_POINTS)] * 2
@@ -107,15 +109,16 @@ def _on_symmetry_line(potential: Potential, plane: Slice, energy: Energy, axis: 
     return bool(states.size) and any(is_even and not states[:, columns].any() for is_even, columns in symmetries)
 
 
-def _potentials(potential: Potential, plane: Slice) -> list[Potential]:
+def _shown_potentials(potential: Potential, plane: Slice) -> list[Potential]:
     """Return the potentials whose interiors a window shows: potentials along a parameter, or the potential of the map."""
     axis = plane.parameter
     if axis is None:
         return [potential]
-    return [axis.potential(value) for value in np.linspace(axis.low, axis.high, _VALUES).tolist()]
+    return [axis.potential(value) for value in np.linspace(axis.low, axis.high, _PARAMETER_VALUES).tolist()]
 
 
 def _square_window(x_low: float, x_high: float, ordinate_low: float, ordinate_high: float) -> Window:
+    """Return the square around a rectangle, with the margin of the default window on each side."""
     half_side = 0.5 * max(x_high - x_low, ordinate_high - ordinate_low) * (1.0 + 2.0 * MARGIN)
     x, ordinate = 0.5 * (x_low + x_high), 0.5 * (ordinate_low + ordinate_high)
     return Window(x - half_side, x + half_side, ordinate - half_side, ordinate + half_side)

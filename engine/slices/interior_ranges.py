@@ -11,6 +11,7 @@ from engine.exits.lyapunov_orbits import find_orbits_in_well_units
 from engine.slices.axes import (
     ANGLES,
     MOMENTA,
+    POSITIONS,
     Axis,
     Coordinate,
     Direction,
@@ -28,11 +29,11 @@ MARGIN = 0.03
 """Margin of the default window on each side, as a share of the size of the interior."""
 
 # In a system with gaps, near which momenta are unbounded: share of the positions whose momenta the window shows.
-_SHOWN_MOMENTA = 0.9
+_SHOWN_MOMENTA_SHARE = 0.9
 # Number of positions along an axis from which the range of momenta is found; lines have four times as many points, rays half.
 _SCAN_POINTS = 801
 # First radius of the search for the interior, in units of the distance of the nearest exit saddle from the origin. The radius is
-# doubled while the interior extends to this radius.
+# doubled while the interior extends to it.
 _SEARCH_LENGTHS = 4.0
 # Radius at which doubling ends in any case, in units of the distance of the outermost exit saddle.
 _SEARCH_SADDLE_DISTANCES = 2.0
@@ -41,16 +42,16 @@ _SEARCH_BODY_DISTANCES = 2.5
 # Number of rays from the origin on which the interior is searched.
 _RAYS = 180
 # Number of points along a side of the lattice on which the interior of an oblique slice is searched.
-_SCAN_SIDE = 201
+_LATTICE_SIDE = 201
 # Number of lattices, each around the interior found on the preceding lattice.
-_SCANS = 3
+_LATTICES = 3
 
 Range = tuple[float, float]
-"""The lower and the upper end."""
+"""The lower and the upper end of an interval."""
 
 
-def find_axis_ranges(potential: Potential, plane: Slice, energy: Energy) -> list[list[Range]]:
-    """Return the ranges of both axes over the interior of a slice, as a list of one pair; an empty list without an interior."""
+def find_axis_ranges(potential: Potential, plane: Slice, energy: Energy) -> list[Range] | None:
+    """Return the ranges of both axes over the interior of a slice; None without an interior."""
     units = potential.units
     scaled_potential, scaled_plane = potential.in_well_units, plane.in_well_units(units)
     if any(isinstance(axis, Direction) for axis in plane.axes):
@@ -63,8 +64,8 @@ def find_axis_ranges(potential: Potential, plane: Slice, energy: Energy) -> list
         # For an axis that the window shows whole, this range is not used.
         ranges = [positions.get(axis, momenta) if isinstance(axis, Coordinate) else momenta for axis in scaled_plane.axes]
     if any(not low < high for low, high in ranges):
-        return []
-    return [[(low * unit, high * unit) for (low, high), unit in zip(ranges, plane.axis_units(units), strict=True)]]
+        return None
+    return [(low * unit, high * unit) for (low, high), unit in zip(ranges, plane.axis_units(units), strict=True)]
 
 
 def is_whole(axis: Axis) -> bool:
@@ -91,7 +92,7 @@ def widened(interval: Range) -> Range:
 
 
 def exact_unit(axis: Axis, potential: Potential) -> float:
-    """Return the unit of an axis, with the exact unit of time, so that the shape of a square does not depend on user units."""
+    """Return the unit of an axis with the unrounded unit of time, so that the shape of a window is the same in all user units."""
     mass = potential.mass
     units = WellUnits(potential.units.length, potential.well.exact_time_unit / math.sqrt(mass), mass)
     if isinstance(axis, Direction):
@@ -104,12 +105,12 @@ def _scanned_ranges(potential: Potential, plane: Slice, energy: Energy) -> list[
     radius = 2.0 * _search_radius(potential, highest_energy(energy))
     half_sides = [radius * exact_unit(axis, potential) for axis in plane.axes]
     ranges = [window_edges(axis, energy, (-half_side, half_side)) for axis, half_side in zip(plane.axes, half_sides, strict=True)]
-    for _ in range(_SCANS):
-        sides = [np.linspace(low, high, _SCAN_SIDE) for low, high in ranges]
+    for _ in range(_LATTICES):
+        sides = [np.linspace(low, high, _LATTICE_SIDE) for low, high in ranges]
         points = [side.ravel() for side in np.meshgrid(*sides)]
         states = plane.states(potential, highest_energy(energy), *points)
-        exists = np.flatnonzero(np.isfinite(states).all(axis=1))
-        inside = exists[find_outside_in_well_units(potential, highest_energy(energy), *states[exists, :2].T) == 0]
+        real_starts = np.flatnonzero(np.isfinite(states).all(axis=1))
+        inside = real_starts[find_outside_in_well_units(potential, highest_energy(energy), *states[real_starts, :2].T) == 0]
         if not inside.size:
             return [(0.0, 0.0), (0.0, 0.0)]
         for index, axis in enumerate(plane.axes):
@@ -122,15 +123,15 @@ def _scanned_ranges(potential: Potential, plane: Slice, energy: Energy) -> list[
 
 def _position_ranges(potential: Potential, plane: Slice, energy: float) -> dict[Coordinate, Range]:
     """Return the ranges of x and y over the interior of a slice; both ends of a coordinate that is not an axis are its value."""
-    if {Coordinate.X, Coordinate.Y} == set(plane.axes):
+    if set(POSITIONS) == set(plane.axes):
         points = _interior_points(potential, energy)
-        return dict(zip((Coordinate.X, Coordinate.Y), map(_rounded_range, points), strict=True))
-    fixed = {Coordinate.X: 0.0, Coordinate.Y: 0.0} | dict(plane.fixed)
+        return dict(zip(POSITIONS, map(_rounded_range, points), strict=True))
+    fixed = dict.fromkeys(POSITIONS, 0.0) | dict(plane.fixed)
     return {
         coordinate: _rounded_range(_interior_interval(potential, energy, coordinate, fixed))
         if coordinate in plane.axes
         else (fixed[coordinate], fixed[coordinate])
-        for coordinate in (Coordinate.X, Coordinate.Y)
+        for coordinate in POSITIONS
     }
 
 
@@ -138,7 +139,7 @@ def _check_fixed_momentum(potential: Potential, energy: Energy, plane: Slice, ra
     """Raise ValueError if a fixed momentum exceeds the largest momentum in `ranges`, those of x and y in units of the well."""
     units = potential.units
     highest = highest_energy(energy) / units.energy
-    x, y = np.meshgrid(*(np.linspace(*ranges[coordinate], _SCAN_SIDE) for coordinate in (Coordinate.X, Coordinate.Y)))
+    x, y = np.meshgrid(*(np.linspace(*ranges[coordinate], _LATTICE_SIDE) for coordinate in POSITIONS))
     largest = units.momentum * float(np.sqrt(2.0 * max(highest - np.nanmin(potential.in_well_units.value(x, y)), 0.0)))
     for coordinate, value in plane.fixed:
         if coordinate in MOMENTA and abs(value) > largest:
@@ -149,10 +150,10 @@ def _check_fixed_momentum(potential: Potential, energy: Energy, plane: Slice, ra
 
 
 def _momentum_range(potential: Potential, energy: float, ranges: dict[Coordinate, Range]) -> Range:
-    """Return the range of a momentum in the ranges of x and y, cut off with gaps, near which momenta are unbounded."""
-    x, y = (np.linspace(*ranges[coordinate], _SCAN_POINTS) for coordinate in (Coordinate.X, Coordinate.Y))
+    """Return the range of px and py in the ranges of x and y, limited for a system with gaps, near which it is unbounded."""
+    x, y = (np.linspace(*ranges[coordinate], _SCAN_POINTS) for coordinate in POSITIONS)
     value = potential.value(x, y)
-    bottom = np.quantile(value[np.isfinite(value)], 1.0 - _SHOWN_MOMENTA) if potential.gaps else np.min(value)
+    bottom = np.quantile(value[np.isfinite(value)], 1.0 - _SHOWN_MOMENTA_SHARE) if potential.gaps else np.min(value)
     momentum = float(np.sqrt(2.0 * max(energy - bottom, 0.0)))
     return -momentum, momentum
 
@@ -167,10 +168,10 @@ def _run_around_middle(mask: np.ndarray) -> slice:
 
 
 def _interior_interval(potential: Potential, energy: float, axis: Coordinate, fixed: dict[Coordinate, float]) -> np.ndarray:
-    """Return x or y of the interior on a line of constant y or x, of shape (n,), to about a thousandth of the radius."""
+    """Return the values of `axis`, x or y, of interior points on the line where the other coordinate is fixed, of shape (n,)."""
     radius = _search_radius(potential, energy)
     line = np.linspace(-radius, radius, 4 * _SCAN_POINTS)
-    x, y = (line if axis is coordinate else np.full_like(line, fixed[coordinate]) for coordinate in (Coordinate.X, Coordinate.Y))
+    x, y = (line if axis is coordinate else np.full_like(line, fixed[coordinate]) for coordinate in POSITIONS)
     inside = _is_inside(potential, energy, x, y)
     return line[inside if potential.escape_radius is not None else _run_around_middle(inside)]
 
@@ -198,7 +199,7 @@ def _search_radius(potential: Potential, energy: float) -> float:
 
 
 def _interior_on_rays(potential: Potential, energy: float, farthest: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return x, y and whether points on rays from the origin are inside, (rays, n) each.
+    """Return x, y and whether points on rays from the origin are inside, each of shape (rays, n).
 
     Without an escape radius, no point of a ray beyond its first point outside is inside.
     """

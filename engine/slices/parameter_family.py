@@ -1,8 +1,8 @@
 """The potentials along a parameter of a system, with exits that keep their numbers.
 
-To find and classify critical points takes a tenth of a second. Therefore they are searched only at a few values of the parameter,
-the nodes. Between two nodes with the same exits, Newton's method continues the saddles in a millisecond. If the exits of two
-neighbouring nodes cannot be matched, exits appear or disappear between the nodes, and further nodes are inserted.
+Finding and classifying critical points takes a tenth of a second. They are therefore searched only at a few values of the
+parameter, the nodes. Between two nodes with the same exits, Newton's method continues the saddles in a millisecond. If the
+exits of two neighbouring nodes cannot be matched, exits appear or disappear between the nodes, and further nodes are inserted.
 """
 
 from __future__ import annotations
@@ -17,28 +17,29 @@ import numpy as np
 
 from engine.foundations.arrays import read_only
 from engine.slices.axes import ParameterAxis
+from engine.systems.merged_channels import ChannelMerger
 from engine.systems.outcomes import Exit
 from engine.systems.potential import Potential
 
 # Number of parts into which nodes divide the range of the axis.
-_PARTS = 8
+_RANGE_PARTS = 8
 # Largest number of parts into which nodes divide the distance from the system's own value to the farther end of the range.
-_MOST_PARTS = 24
+_MOST_REACH_PARTS = 24
 # Largest number of halvings of a part whose ends have different exits.
 _HALVINGS = 12
 # Largest number of steps of Newton's method.
 _NEWTON_STEPS = 20
-# Number of potentials along the axis that `find_members` finds.
+# Number of values along the axis at which `find_members` finds potentials.
 _SCAN_VALUES = 112
 # Largest last step of Newton's method that has converged, as a share of the distance from the origin.
 _TOLERANCE = 1e-12
 # Largest distance by which Newton's method may move a saddle, as a share of the distance to the nearest other saddle.
-_LARGEST_SHARE = 0.5
+_LARGEST_MOVE = 0.5
 # Largest distance between two saddles that count as the same, as a share of their distance from the origin.
-_SAME = 1e-7
+_SAME_TOLERANCE = 1e-7
 
-MOST_FOUND = 120
-"""Largest number of potentials of a family whose critical points are searched. The search takes about 10 s in all."""
+MOST_SEARCHES = 120
+"""Largest number of potentials of a family whose critical points are searched. All these searches take about 10 s."""
 
 
 class ManyExitsError(ValueError):
@@ -64,13 +65,14 @@ class Member:
         """Return `numbers` at an energy, where an exit of several channels has the lowest number of these channels."""
         numbers = self.numbers.copy()
         for merged in self.potential.well.merged_exits(energy):
+            # The lowest channel stands for the exit, so it gets the lowest number.
             channels = list(merged.channels)
             numbers[channels] = np.sort(numbers[channels])
         return read_only(numbers)
 
     @property
-    def of_others(self) -> np.ndarray:
-        """The fates, in the family, of the outcomes that are not exits."""
+    def other_fates(self) -> np.ndarray:
+        """The fates, in the family, of the outcomes of the potential that are not exits."""
         return self.numbers[self.potential.channels + 1 :]
 
 
@@ -88,11 +90,11 @@ class ParameterFamily:
         Largest number of potentials whose critical points are searched, 1 or more.
     """
 
-    def __init__(self, axis: ParameterAxis, most_found: int = MOST_FOUND) -> None:
-        self._axis, self._most_found = axis, most_found
+    def __init__(self, axis: ParameterAxis, most_searches: int = MOST_SEARCHES) -> None:
+        self._axis, self._most_searches = axis, most_searches
         self._own_value = axis.system.value_of(axis.key)
         self._reach = max(abs(axis.low - self._own_value), abs(axis.high - self._own_value))
-        self._step = max((axis.high - axis.low) / _PARTS, self._reach / _MOST_PARTS)
+        self._step = max((axis.high - axis.low) / _RANGE_PARTS, self._reach / _MOST_REACH_PARTS)
         # Number of potentials whose critical points have been searched.
         self._search_count = 0
         # Potentials inside parts whose ends have different exits.
@@ -129,10 +131,10 @@ class ParameterFamily:
         nodes = sorted(self._nodes)
         above = next(index for index, node in enumerate(nodes) if node > value)
         low, high = nodes[above - 1], nodes[above]
-        member = self._continued(value, low, high)
+        member = self._interpolate_member(value, low, high)
         if member is None:
             nearest_node = min(low, high, key=lambda node: (abs(node - value), node))
-            member = self._between_nodes[value] = self._linked(value, nearest_node)
+            member = self._between_nodes[value] = self._find_member(value, nearest_node)
         return member
 
     def _extend_to(self, value: float) -> None:
@@ -163,28 +165,28 @@ class ParameterFamily:
         """Add a new node next to a node; if their exits differ, add nodes between them, as far as the exits can be matched."""
         potential = self._axis.potential(new_node)
         for _ in range(_HALVINGS):
-            if _match(self._nodes[node].potential, potential) is not None:
+            if _match_exits(self._nodes[node].potential, potential) is not None:
                 break
             middle = 0.5 * (node + new_node)
-            if _match(self._nodes[node].potential, self._axis.potential(middle)) is None:
+            if _match_exits(self._nodes[node].potential, self._axis.potential(middle)) is None:
                 new_node, potential = middle, self._axis.potential(middle)
             else:
-                self._nodes[middle] = self._linked(middle, node)
+                self._nodes[middle] = self._find_member(middle, node)
                 node = middle
-        self._nodes[new_node] = self._linked(new_node, node)
+        self._nodes[new_node] = self._find_member(new_node, node)
 
-    def _linked(self, value: float, node: float) -> Member:
-        """Find the potential at a value. Exits that also exist at a node get their numbers there, and other exits new numbers."""
+    def _find_member(self, value: float, node: float) -> Member:
+        """Search the exits at a value. Exits that also exist at a node keep their numbers, and other exits get new numbers."""
         self._search_count += 1
-        if self._search_count > self._most_found:
+        if self._search_count > self._most_searches:
             raise ManyExitsError(
                 f"parameter {self._axis.key}: its exits change too often up to {value:.6g}; choose a smaller range"
             )
         potential, neighbour = self._axis.potential(value), self._nodes[node]
         # 0 stands for an exit without a number.
-        numbers = np.array([*np.zeros(potential.channels + 1), *neighbour.of_others], np.int8)
-        for channel, position in enumerate(_continue(potential, neighbour.potential.saddles), start=1):
-            k = _nearest(potential.saddles, position)
+        numbers = np.array([*np.zeros(potential.channels + 1), *neighbour.other_fates], np.int8)
+        for channel, position in enumerate(_continue_points(potential, neighbour.potential.saddles), start=1):
+            k = _index_at(potential.saddles, position)
             if k is not None and not numbers[k + 1]:
                 numbers[k + 1] = neighbour.numbers[channel]
         new_channels = np.flatnonzero(numbers[1:] == 0) + 1
@@ -193,42 +195,38 @@ class ParameterFamily:
         self.outcomes += tuple(Exit.outcome(exit_count + k) for k in range(1, new_channels.size + 1))
         return Member(potential, read_only(numbers))
 
-    def _matches(self, low: float, high: float) -> list[int] | None:
-        """Match the exits of two nodes, once for each pair of nodes."""
+    def _match_nodes(self, low: float, high: float) -> list[int] | None:
+        """Return `_match_exits` of two nodes, computed once for each pair of nodes."""
         if (low, high) not in self._node_matches:
-            self._node_matches[low, high] = _match(self._nodes[low].potential, self._nodes[high].potential)
+            self._node_matches[low, high] = _match_exits(self._nodes[low].potential, self._nodes[high].potential)
         return self._node_matches[low, high]
 
-    def _continued(self, value: float, low: float, high: float) -> Member | None:
+    def _interpolate_member(self, value: float, low: float, high: float) -> Member | None:
         """Continue the saddles of two nodes to a value between them; None if the exits of the nodes differ."""
         low_member, high_member = self._nodes[low], self._nodes[high]
-        low_mergers, high_mergers = (member.potential.well.channel_mergers for member in (low_member, high_member))
-        matches = self._matches(low, high)
-        share = (value - low) / (high - low)
-        if matches is None or len(low_mergers) != len(high_mergers):
+        matches = self._match_nodes(low, high)
+        if matches is None:
             return None
-        order = np.array(matches, int)
-        unreviewed = self._axis.potential(value)
-        guesses = (1.0 - share) * low_member.potential.saddles + share * high_member.potential.saddles[order]
-        saddles = _continue(unreviewed, guesses)
-        # The maxima between channels that merge, each with the indices of the saddles around it.
-        maxima, saddle_indices = np.empty((0, 2)), []
-        for merger in low_mergers:
-            high_channels = {int(order[k - 1]) + 1 for k in merger.channels}
-            high_merger = next((other for other in high_mergers if set(other.channels) == high_channels), None)
-            if high_merger is None:
-                return None
-            guess = (1.0 - share) * np.array([[merger.x, merger.y]]) + share * np.array([[high_merger.x, high_merger.y]])
-            maxima = np.concatenate([maxima, _continue(unreviewed, guess)])
-            saddle_indices.append([k - 1 for k in merger.channels])
+        mergers = _match_mergers(low_member.potential, high_member.potential, matches)
+        if mergers is None:
+            return None
+        share = (value - low) / (high - low)
+        unsearched = self._axis.potential(value)
+        guesses = (1.0 - share) * low_member.potential.saddles + share * high_member.potential.saddles[np.array(matches, int)]
+        saddles = _continue_points(unsearched, guesses)
+        maxima = np.empty((0, 2))
+        for low_merger, high_merger in mergers:
+            guess = (1.0 - share) * np.array([[low_merger.x, low_merger.y]]) + share * np.array([[high_merger.x, high_merger.y]])
+            maxima = np.concatenate([maxima, _continue_points(unsearched, guess)])
         if not (np.isfinite(saddles).all() and np.isfinite(maxima).all()):
             return None
-        potential = unreviewed.continued(repr(self._axis), saddles, maxima, saddle_indices)
+        saddle_indices = [[channel - 1 for channel in merger.channels] for merger, _ in mergers]
+        potential = unsearched.continued(repr(self._axis), saddles, maxima, saddle_indices)
         # The potential sorts its saddles anew.
-        indices = [_nearest(saddles, position) for position in potential.saddles]
+        indices = [_index_at(saddles, position) for position in potential.saddles]
         if None in indices or len(set(indices)) < len(saddles):
             return None
-        numbers = np.array([0, *(low_member.numbers[k + 1] for k in indices if k is not None), *low_member.of_others], np.int8)
+        numbers = np.array([0, *(low_member.numbers[k + 1] for k in indices if k is not None), *low_member.other_fates], np.int8)
         return Member(potential, read_only(numbers))
 
 
@@ -251,24 +249,33 @@ def find_members(axis: ParameterAxis) -> None:
         try:
             family.member(value)
         except ManyExitsError:
-            # This is a ValueError too, but concerns the whole axis.
+            # This ValueError concerns the whole axis.
             raise
         except ValueError:
             # The system has no potential there, so the line of the map remains empty.
             continue
 
 
-def _match(first: Potential, last: Potential) -> list[int] | None:
+def _match_exits(first: Potential, last: Potential) -> list[int] | None:
     """Return, for each exit saddle of the first potential, the index of the saddle of the last; None unless all match."""
     if first.channels != last.channels:
         return None
-    nearest = [_nearest(last.saddles, position) for position in _continue(last, first.saddles)]
+    nearest = [_index_at(last.saddles, position) for position in _continue_points(last, first.saddles)]
     matches = [k for k in nearest if k is not None]
     return matches if len(set(matches)) == first.channels else None
 
 
-def _continue(potential: Potential, points: np.ndarray) -> np.ndarray:
-    """Continue critical points of another potential to this one by Newton's method; (n, 2), NaN where there is none."""
+def _match_mergers(first: Potential, last: Potential, matches: Sequence[int]) -> list[tuple[ChannelMerger, ChannelMerger]] | None:
+    """Pair the mergers of two potentials between the same exits, given the result of `_match_exits`; None unless all match."""
+    first_mergers, last_mergers = first.well.channel_mergers, last.well.channel_mergers
+    by_channels = {frozenset(merger.channels): merger for merger in reversed(last_mergers)}
+    images = [by_channels.get(frozenset(matches[k - 1] + 1 for k in merger.channels)) for merger in first_mergers]
+    pairs = [(merger, image) for merger, image in zip(first_mergers, images, strict=True) if image is not None]
+    return pairs if len(first_mergers) == len(last_mergers) == len(pairs) else None
+
+
+def _continue_points(potential: Potential, points: np.ndarray) -> np.ndarray:
+    """Continue critical points (n, 2) of another potential to this one by Newton's method; NaN where a point is not found."""
     start = points = np.array(points)
     if not len(points):
         return points
@@ -281,22 +288,22 @@ def _continue(potential: Potential, points: np.ndarray) -> np.ndarray:
             step = np.column_stack([gx * vyy - gy * vxy, gy * vxx - gx * vxy]) / (vxx * vyy - vxy * vxy)[:, None]
             points = points - step
         has_converged = np.hypot(*step.T) <= _TOLERANCE * np.hypot(*points.T)
-        is_near = np.hypot(*(points - start).T) <= _LARGEST_SHARE * _separation(start)
+        is_near = np.hypot(*(points - start).T) <= _LARGEST_MOVE * _separation(start)
     return np.where((has_converged & is_near)[:, None], points, np.nan)
 
 
 def _separation(points: np.ndarray) -> np.ndarray:
-    """Return the distance of each point to the nearest other point or to the origin, of shape (n,)."""
+    """Return the distance from each point to the nearest other point or to the origin, of shape (n,)."""
     targets = np.concatenate([points, np.zeros((1, 2))])
     distances = np.hypot(*np.moveaxis(points[:, None] - targets, -1, 0))
     distances[np.arange(len(points)), np.arange(len(points))] = np.inf
     return distances.min(axis=1)
 
 
-def _nearest(points: Sequence[np.ndarray] | np.ndarray, position: np.ndarray) -> int | None:
-    """Return the index of the point at a position, within `_SAME`; None if no point is there."""
+def _index_at(points: Sequence[np.ndarray] | np.ndarray, position: np.ndarray) -> int | None:
+    """Return the index of the point at a position, within `_SAME_TOLERANCE`; None if no point is there."""
     if not len(points) or not np.isfinite(position).all():
         return None
     distances = np.hypot(*(np.asarray(points) - position).T)
     k = int(np.argmin(distances))
-    return k if distances[k] <= _SAME * np.hypot(*position) else None
+    return k if distances[k] <= _SAME_TOLERANCE * np.hypot(*position) else None

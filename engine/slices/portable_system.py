@@ -11,7 +11,7 @@ from engine.exits.exit_rows import exit_gates
 from engine.exits.exit_tables import ExitTable, tabulate_exits
 from engine.exits.interior import find_inner_radius, tabulate_polynomial
 from engine.integrator.jit.kernel_module import HEAP_CELL
-from engine.integrator.jit.webassembly import FUNCTIONS, PAIR, webassembly_module
+from engine.integrator.jit.webassembly import FUNCTIONS, VECTOR_LANES, webassembly_module
 from engine.integrator.kernels import events, exit_geometry, slice_starts
 from engine.integrator.kernels.random_starts import BEFORE_EXIT
 from engine.integrator.source.recurrence import ROWS, TOLERANCE, generate_code
@@ -25,11 +25,7 @@ from engine.systems.well_units import WellUnits
 _EXIT_COLUMNS = {
     "count": exit_geometry.CURVE_COLUMNS,
     "shape": exit_geometry.SHAPE,
-    "shapes": {
-        "closed": exit_geometry.CLOSED,
-        "curve": exit_geometry.CURVE,
-        "line": exit_geometry.LINE,
-    },
+    "shapes": {"closed": exit_geometry.CLOSED, "curve": exit_geometry.CURVE, "line": exit_geometry.LINE},
 }
 
 
@@ -45,7 +41,7 @@ class PortableSystem:
         WebAssembly with the functions of the potential's structure, see `engine.integrator.jit.webassembly`.
     table
         (m,) the coefficients, as the functions of `module` take them.
-    backward
+    backward_table
         (m,) the coefficients of the system backward in time, whose orbits have the opposite velocities.
     exits
         The exits of each channel.
@@ -54,23 +50,23 @@ class PortableSystem:
     potential: Potential
     module: bytes
     table: np.ndarray
-    backward: np.ndarray
+    backward_table: np.ndarray
     exits: tuple[ExitTable, ...]
 
     @property
     def nbytes(self) -> int:
-        """Approximate size in bytes, with 2048 for everything that is not an array."""
+        """Approximate size in bytes, with 2048 for everything except the module and the arrays."""
         return len(self.module) + 2 * self.table.nbytes + sum(table.rows.nbytes for table in self.exits) + 2048
 
     def to_dict(self) -> dict[str, object]:
         """Return everything except the module as lists and numbers."""
         scaled_potential, units = self.potential.in_well_units, self.potential.units
-        mirror = self.potential.well.mirror_channels.tolist() if self.potential.well.mirror_in_x else None
+        mirror = self.potential.well.mirror_fates.tolist() if self.potential.well.mirror_in_x else None
         return {
             "layout": {
                 "order": ORDER,
                 "rows": ROWS,
-                "lanes_together": PAIR,
+                "lanes_together": VECTOR_LANES,
                 "tolerance": TOLERANCE,
                 "heap": HEAP_CELL,
                 "beforeExit": BEFORE_EXIT,
@@ -79,22 +75,22 @@ class PortableSystem:
                 "exits": _EXIT_COLUMNS,
             },
             "table": self.table.tolist(),
-            "backward": self.backward.tolist() if self.potential.rotation else None,
+            "backward": self.backward_table.tolist() if self.potential.rotation else None,
             "polynomial": _polynomial_data(scaled_potential.form),
             "innerRadius": find_inner_radius(scaled_potential),
-            "exits": [*self._tables(), *_circles(scaled_potential)],
+            "exits": [*self._saddle_exits(), *_end_exits(scaled_potential)],
             "mirror": mirror,
             "units": {"length": units.length, "time": units.time, "energy": units.energy},
             "space": SPACE.to_dict(units),
             "surface": _energy_surface(units),
         }
 
-    def _tables(self) -> list[dict[str, object]]:
-        """Return the tables of the exits over saddles, as plain data."""
-        shape = {"shape": "line" if self.potential.rotation else "curve"}
+    def _saddle_exits(self) -> list[dict[str, object]]:
+        """Return the exits over saddles as plain data."""
+        shape = "line" if self.potential.rotation else "curve"
         return [
             {
-                **shape,
+                "shape": shape,
                 "saddle": table.saddle,
                 "highest": table.highest,
                 "nodes": table.nodes.tolist(),
@@ -106,13 +102,13 @@ class PortableSystem:
 
 def _energy_surface(units: WellUnits) -> dict[str, object]:
     """Return the energy surface as a slice of positions with the angle of the velocity as third axis."""
-    launched = ENERGY_SURFACE.to_dict(units)
+    surface = ENERGY_SURFACE.to_dict(units)
     angle_motion = [float(column == slice_starts.ANGLE) for column in range(slice_starts.COORDINATES)]
-    return {**launched, "motion": [*launched["motion"], angle_motion]}
+    return {**surface, "motion": [*surface["motion"], angle_motion]}
 
 
-def _circles(potential: Potential) -> list[dict[str, object]]:
-    """Return the ends that are not over saddles, with their rows for the kernels and their gates."""
+def _end_exits(potential: Potential) -> list[dict[str, object]]:
+    """Return the ends other than exits over saddles as plain data, with their rows for the kernels and their gates."""
     return [
         {"side": end.side, "radius": end.radius, "row": end.row.tolist(), "gate": exit_gates(end.row[None, None])[0].tolist()}
         for end in potential.ends
@@ -126,8 +122,8 @@ def _polynomial_data(form: Any) -> dict[str, object] | None:
     return {name: array.tolist() for name, array in tabulate_polynomial(form)._asdict().items()}
 
 
-def make_portable_system(potential: Potential, highest: float) -> PortableSystem:
-    """Return a potential as data, with exits for energies up to `highest`, in units of the potential.
+def make_portable_system(potential: Potential, highest_energy: float) -> PortableSystem:
+    """Return a potential as data, with exits for energies up to `highest_energy`, in units of the potential.
 
     This takes up to a second for the first potential of a structure, or if exits are not cached.
     """
@@ -136,6 +132,6 @@ def make_portable_system(potential: Potential, highest: float) -> PortableSystem
     code = generate_code(definition, setting)
     # Backward in time, the frame rotates in the opposite direction.
     rotation = scaled_potential.rotation
-    table, backward = code.tabulate(definition, rotation), code.tabulate(definition, -rotation)
-    exits = tabulate_exits(scaled_potential, highest / potential.units.energy)
-    return PortableSystem(potential, webassembly_module(code), table, backward, exits)
+    table, backward_table = code.tabulate(definition, rotation), code.tabulate(definition, -rotation)
+    exits = tabulate_exits(scaled_potential, highest_energy / potential.units.energy)
+    return PortableSystem(potential, webassembly_module(code), table, backward_table, exits)

@@ -18,11 +18,11 @@ LARGEST_SAMPLE = 10_000_000
 """Largest number of starts of one sample."""
 
 # Largest number of points drawn at once.
-_MOST_POINTS = 1_000_000
+_LARGEST_BATCH = 1_000_000
 # Smallest number of points drawn at once.
-_LEAST_POINTS = 1_000
+_SMALLEST_BATCH = 1_000
 # Smallest share of points inside at which a window has an interior.
-_SMALLEST_SHARE = 1e-4
+_SMALLEST_INSIDE_SHARE = 1e-4
 
 
 @checks_types(potential=Potential)
@@ -74,39 +74,39 @@ def sample_starts(
     """
     h = checked_number("energy", energy)
     count = checked_count("count", count, 1, LARGEST_SAMPLE)
-    random = np.random.default_rng(checked_count("seed", seed, 0, 2**63 - 1))
+    generator = np.random.default_rng(checked_count("seed", seed, 0, 2**63 - 1))
     window_plane = SPACE if plane is None else checked_slice(plane)
     window_plane.check_one_potential("plane")
     if window_plane.energy_axis is not None:
         raise ValueError(f"plane={window_plane.title}: must have no axis h, as all starts have one energy")
-    edges = default_window(potential, window_plane, h) if window is None else checked_window(window)
+    drawn_window = default_window(potential, window_plane, h) if window is None else checked_window(window)
     batches = [np.empty((0, 4))]
     drawn_count = inside_count = 0
     while inside_count < count:
         # A fifth more points than are expected to contain the missing starts.
         expected_size = 1.2 * (count - inside_count) * (drawn_count + 1) / (inside_count + 1)
-        size = int(np.clip(expected_size, _LEAST_POINTS, _MOST_POINTS))
-        batches.append(_draw(potential, h, None if plane is None else window_plane, edges, size, random))
+        size = int(np.clip(expected_size, _SMALLEST_BATCH, _LARGEST_BATCH))
+        batches.append(_draw(potential, h, None if plane is None else window_plane, drawn_window, size, generator))
         drawn_count += size
         inside_count += len(batches[-1])
-        if inside_count < _SMALLEST_SHARE * drawn_count:
-            raise ValueError(f"window={edges}: nothing of it is inside at h={h}; must contain starts inside all exits")
+        if inside_count < _SMALLEST_INSIDE_SHARE * drawn_count:
+            raise ValueError(f"window={drawn_window}: nothing of it is inside at h={h}; must contain starts inside all exits")
     return np.concatenate(batches)[:count]
 
 
 def _draw(
-    potential: Potential, h: float, plane: Slice | None, window: Window, size: int, random: np.random.Generator
+    potential: Potential, h: float, plane: Slice | None, window: Window, size: int, generator: np.random.Generator
 ) -> np.ndarray:
     """Draw `size` random points of a window, or of the energy surface without a plane, and return the starts inside, (n, 4)."""
-    x, ordinate = (random.uniform(low, high, size) for low, high in window.ranges)
+    x, ordinate = (generator.uniform(low, high, size) for low, high in window.ranges)
     states = (plane or ENERGY_SURFACE).states(potential, h, x, ordinate)
     states = states[np.isfinite(states).all(axis=1)]
     states = states[find_outside_channels(potential, h, *np.ascontiguousarray(states[:, :2].T)) == 0]
-    return states if plane is not None else _turn_randomly(states, random)
+    return states if plane is not None else _turn_randomly(states, generator)
 
 
-def _turn_randomly(states: np.ndarray, random: np.random.Generator) -> np.ndarray:
+def _turn_randomly(states: np.ndarray, generator: np.random.Generator) -> np.ndarray:
     """Return states with velocities in random directions."""
     speed: Any = np.hypot(states[:, 2], states[:, 3])
-    angle = random.uniform(0.0, 2.0 * np.pi, len(states))
+    angle = generator.uniform(0.0, 2.0 * np.pi, len(states))
     return np.column_stack([states[:, :2], speed * np.cos(angle), speed * np.sin(angle)])

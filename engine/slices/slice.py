@@ -16,7 +16,7 @@ import numpy as np
 from engine.foundations.validation import LARGEST_NUMBER, check_type, checked_array, checked_number, short_repr
 from engine.integrator.kernels import slice_starts
 from engine.slices.axes import ANGLES, MOMENTA, POSITIONS, STATE, Axis, Coordinate, Direction, Energy, ParameterAxis
-from engine.slices.slice_starts import check_coordinates, compute_required_energy, compute_states, momentum_left
+from engine.slices.slice_starts import check_coordinates, compute_required_energy, compute_states, default_solved
 from engine.systems.potential import Potential
 from engine.systems.system import System
 from engine.systems.well_units import WellUnits
@@ -77,7 +77,7 @@ class Slice:
             check_type("fixed", coordinate, Coordinate)
         used = [axis for axis in self.axes if isinstance(axis, Coordinate)] + [coordinate for coordinate, _ in self.fixed]
         if self.solved is None:
-            object.__setattr__(self, "solved", momentum_left(self.axes, used))
+            object.__setattr__(self, "solved", default_solved(self.axes, used))
         check_coordinates(self.axes, used, self.fixed, self.decided)
         if self.sign not in (1, -1) or (self.decided is Coordinate.SPEED and self.sign < 0):
             legal = "1" if self.decided is Coordinate.SPEED else "1 or -1"
@@ -117,7 +117,7 @@ class Slice:
 
     @property
     def key(self) -> str:
-        """A name for files, such as ``x_px`` or ``x_theta-y0.1``, with 6 digits of the fixed values."""
+        """A name for files, such as ``x_px`` or ``x_theta-y0.1``, with 6 significant digits of the fixed values."""
         fixed = "".join(f"-{coordinate.key}{value:.6g}" for coordinate, value in self.fixed)
         return "_".join(self.axis_names) + fixed + ("" if self.sign > 0 else "-negative")
 
@@ -125,7 +125,7 @@ class Slice:
     def title(self) -> str:
         """The name in texts, such as "(x, px)": axes, fixed values, and the determined momentum if it is not the usual one."""
         conditions = [f"{coordinate.symbol} = {value:.6g}" for coordinate, value in self.fixed]
-        usual = momentum_left(self.axes, [axis for axis in self.axes if isinstance(axis, Coordinate)])
+        usual = default_solved(self.axes, [axis for axis in self.axes if isinstance(axis, Coordinate)])
         if self.sign < 0 or (self.decided is not usual and self.decided is not Coordinate.SPEED):
             conditions.append(f"{self.decided.symbol} {'>' if self.sign > 0 else '<'} 0")
         return ", ".join([f"({', '.join(self.axis_symbols)})", *conditions])
@@ -185,7 +185,7 @@ class Slice:
         return self.abscissa.unit(units), self.ordinate.unit(units)
 
     def restore[Computed](self, result: Computed, units: WellUnits) -> Computed:
-        """Convert a result from units of the well; `result.x` and `result.ordinate` are positions on this slice."""
+        """Convert a result from units of the well to those of the potential; its `x` and `ordinate` are places on this slice."""
         x_unit, ordinate_unit = self.axis_units(units)
         x, ordinate = x_unit * result.x, ordinate_unit * result.ordinate  # type: ignore[attr-defined]
         return replace(units.restore(result), x=x, ordinate=ordinate)  # type: ignore[type-var]
@@ -218,9 +218,9 @@ class Slice:
         return compute_states(self, potential, energy, x, ordinate)
 
     def required_energy(self, potential: Potential, x: np.ndarray, ordinate: np.ndarray) -> np.ndarray:
-        """Return the lowest energy of a start at each point.
+        """Return the lowest energy of a start at each point, of the shape of `x`.
 
-        With an axis h, this energy is relative to the h of the point, so forbidden points are positive.
+        With an axis h, this energy is relative to the h of the point, so it is positive at forbidden points.
         """
         return compute_required_energy(self, potential, x, ordinate)
 
@@ -228,17 +228,19 @@ class Slice:
         """Return the slice with its parameter in another system; ValueError if that system lacks the parameter or its range."""
         if self.parameter is None or self.parameter.system == system:
             return self
-        abscissa, ordinate = (replace(axis, system=system) if isinstance(axis, ParameterAxis) else axis for axis in self.axes)
-        return Slice(abscissa, ordinate, self.solved, self.sign, self.fixed)
+        return self._with_axes(*(replace(axis, system=system) if isinstance(axis, ParameterAxis) else axis for axis in self.axes))
 
     def check_one_potential(self, name: str) -> None:
-        """Raise ValueError, with `name` as the parameter, if an axis is a parameter of the system."""
+        """Raise ValueError if an axis is a parameter of the system. The message begins with `name`, the wrong argument."""
         if self.parameter is not None:
             raise ValueError(f"{name}: is on {self.title}; must be on a slice of one potential, without a parameter as axis")
 
     def line(self, value: float) -> Slice:
-        """Return the slice of the starts at one value of the parameter that is an axis."""
-        abscissa, ordinate = (axis.at(value) if isinstance(axis, ParameterAxis) else axis for axis in self.axes)
+        """Return the slice, of one potential, at one value of the parameter that is an axis."""
+        return self._with_axes(*(axis.at(value) if isinstance(axis, ParameterAxis) else axis for axis in self.axes))
+
+    def _with_axes(self, abscissa: Axis, ordinate: Axis) -> Slice:
+        """Return the slice with other axes. A `Plane` becomes a `Slice`."""
         return Slice(abscissa, ordinate, self.solved, self.sign, self.fixed)
 
     def system_at(self, system: System, x: float, ordinate: float) -> System:

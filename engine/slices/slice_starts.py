@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from engine.slices.slice import Slice
 
 
-def momentum_left(axes: tuple[Axis, Axis], used: Sequence[Coordinate]) -> Coordinate:
+def default_solved(axes: tuple[Axis, Axis], used: Sequence[Coordinate]) -> Coordinate:
     """Return the coordinate that the energy determines by default."""
     if any(angle in used for angle in ANGLES):
         return Coordinate.SPEED
@@ -36,7 +36,8 @@ def check_coordinates(
     names = ", ".join([*(axis.key for axis in axes), *(c.key for c, _ in fixed), decided.key])
     if Coordinate.SPEED in used:
         raise ValueError(f"slice of {names}: must have no axis and no fixed value of v, which only the energy decides")
-    if len({*used, decided}) <= len(used) or any(c is Coordinate.H for c, _ in fixed):
+    is_repeated = len({*used, decided}) <= len(used)
+    if is_repeated or any(c is Coordinate.H for c, _ in fixed):
         raise ValueError(f"slice of {names}: each of {all_names} must be used at most once")
     if len({axis.key for axis in axes}) < 2 or sum(isinstance(axis, ParameterAxis) for axis in axes) > 1:
         raise ValueError(f"slice of {names}: the axes must be different ones, at most one of them a parameter")
@@ -49,7 +50,7 @@ def check_coordinates(
         )
     if decided is not Coordinate.SPEED and (angle_count or decided in all_used):
         raise ValueError(f"slice of {names}: {decided.key}, which the energy decides, must not be set by an axis or an angle")
-    if np.linalg.matrix_rank(_rows_of(axes)) < sum(_moves_state(axis) for axis in axes):
+    if np.linalg.matrix_rank(_axis_directions(axes)) < sum(_moves_state(axis) for axis in axes):
         raise ValueError(f"slice of {names}: the directions of the axes must not be parallel")
 
 
@@ -57,8 +58,8 @@ def _moves_state(axis: Axis) -> bool:
     return isinstance(axis, Direction) or axis in STATE
 
 
-def _rows_of(axes: tuple[Axis, Axis]) -> np.ndarray:
-    """Return the directions of the axes in (x, y, px, py), of shape (2, 4); zeros for axes of other kinds."""
+def _axis_directions(axes: tuple[Axis, Axis]) -> np.ndarray:
+    """Return the directions of the axes in (x, y, px, py), of shape (2, 4); zeros for axes that do not move the state."""
     components = [axis.components if isinstance(axis, Direction) else {axis: 1.0} for axis in axes]
     return np.array([[row.get(coordinate, 0.0) for coordinate in STATE] for row in components])
 
@@ -71,7 +72,7 @@ def compute_states(plane: Slice, potential: Potential, energy: Any, x: np.ndarra
             line_energy = energy if np.ndim(energy) == 0 else energy[mask]
             states[mask] = compute_states(line, line_potential, line_energy, x[mask], ordinate[mask])
         return states
-    start = _coordinates(plane, x, ordinate)
+    start = _start_coordinates(plane, x, ordinate)
     # An overflow far from the origin gives a forbidden start. At the centre of a body, the speed is infinite.
     with np.errstate(over="ignore", invalid="ignore"):
         # In the mass times H, the kinetic energy is ½(px² + py²).
@@ -95,7 +96,7 @@ def compute_required_energy(plane: Slice, potential: Potential, x: np.ndarray, o
         for mask, line, line_potential in _lines(plane, x, ordinate):
             required[mask] = compute_required_energy(line, line_potential, x[mask], ordinate[mask])
         return required
-    start = _coordinates(plane, x, ordinate)
+    start = _start_coordinates(plane, x, ordinate)
     value = potential.mass * potential.value(start[Coordinate.X], start[Coordinate.Y])
     rest_energy = kernel.rest_energy(_fixed_momentum(plane, start), value) / potential.mass
     return rest_energy - plane.energies(0.0, x, ordinate)
@@ -114,13 +115,13 @@ def _lines(plane: Slice, x: np.ndarray, ordinate: np.ndarray) -> Iterator[tuple[
             continue
 
 
-def _coordinates(plane: Slice, x: np.ndarray, ordinate: np.ndarray) -> dict[Coordinate, np.ndarray]:
+def _start_coordinates(plane: Slice, x: np.ndarray, ordinate: np.ndarray) -> dict[Coordinate, np.ndarray]:
     """Return arrays of the coordinates of starts; the momenta determined by the energy are not set yet."""
     fixed: Mapping[Coordinate, float] = dict(plane.fixed)
     start = {coordinate: np.full_like(x, fixed.get(coordinate, 0.0)) for coordinate in (*STATE, *fixed)}
     # Coordinates are set first; directions move starts from there.
-    for axis, along in sorted(zip(plane.axes, (x, ordinate), strict=True), key=lambda pair: isinstance(pair[0], Direction)):
-        axis.move(start, along)
+    for axis, axis_values in sorted(zip(plane.axes, (x, ordinate), strict=True), key=lambda pair: isinstance(pair[0], Direction)):
+        axis.move(start, axis_values)
     return start
 
 

@@ -62,11 +62,10 @@ def read_slice(axes: str, fixed_values: str, system: System) -> Slice:
     """
     if axes in {plane.key for plane in Plane} and not fixed_values:
         return checked_slice(axes)
-    names = axes.split(",")
-    if len(names) != len(("abscissa", "ordinate")):
+    if axes.count(",") != 1:
         keys = ", ".join(plane.key for plane in Plane)
         raise ValueError(f"axes={short_repr(axes)}: must be one of {keys}, or two axes such as x,py")
-    abscissa, ordinate = (_read_axis(name, system) for name in names)
+    abscissa, ordinate = (_read_axis(text, system) for text in axes.split(","))
     fixed: list[tuple[Coordinate, float]] = []
     solved, sign = None, 1
     for part in fixed_values.split(",") if fixed_values else ():
@@ -77,7 +76,7 @@ def read_slice(axes: str, fixed_values: str, system: System) -> Slice:
         if value in _SIGNS:
             solved, sign = coordinate, _SIGNS[value]
         else:
-            fixed.append((coordinate, _number("fix", part, value)))
+            fixed.append((coordinate, _read_number("fix", part, value)))
     return checked_slice(Slice(abscissa, ordinate, solved, sign, tuple(fixed)))
 
 
@@ -102,7 +101,7 @@ def _read_axis(text: str, system: System) -> Axis:
     key = _without_alias(name)
     if key in AXIS_NAMES and not numbers:
         return _COORDINATES[key]
-    values = [_number("axes", text, number) for number in numbers.split(":")] if numbers else []
+    values = [_read_number("axes", text, number) for number in numbers.split(":")] if numbers else []
     if key in system.parameter_names and len(values) in (0, _RANGE_SIZE):
         low, high = values or default_range(system, key)
         return ParameterAxis(key, low, high, system)
@@ -117,8 +116,8 @@ def _without_alias(name: str) -> str:
     return _ALIASES.get(stripped, stripped)
 
 
-def _number(parameter: str, text: str, number: str) -> float:
-    """Return a number that is part of a text; `parameter` is the name of the parameter, for messages."""
+def _read_number(parameter: str, text: str, number: str) -> float:
+    """Return the number in a part of a text; ValueError, with the name of the parameter, if the part is not a number."""
     try:
         return float(number)
     except ValueError:

@@ -33,7 +33,7 @@ def map_job(spec: MapSpec) -> Job[EscapeMap]:
 
 
 def members_job(axis: ParameterAxis | None) -> Job[None] | None:
-    """Return the job that finds the potentials along a parameter of a typed formula, within limits; None for other axes."""
+    """Return the job that finds the potentials along a parameter of a typed formula, with limited resources; else None."""
     if axis is None or axis.system.case != TYPED:
         return None
     return Job(find_members, (axis,), queue=Queue.LIMITED)
@@ -41,9 +41,11 @@ def members_job(axis: ParameterAxis | None) -> Job[None] | None:
 
 def measure_job(spec: MapSpec, name: str, box: Window | None = None) -> Job[Any]:
     """Return the job of a measure of a map, or of the starts in a box. A measure with a `Measure.place` ignores the box."""
+    measure = MEASURES[name]
+    used_box = box if measure.place == "" else None
     # Slow measures make many short calls.
-    queue = Queue.BACKGROUND if MEASURES[name].slow else Queue.LONG_CALL
-    return Job(measure_map, (map_job(spec), name, None if MEASURES[name].place else box), queue=queue)
+    queue = Queue.BACKGROUND if measure.slow else Queue.LONG_CALL
+    return Job(measure_map, (map_job(spec), name, used_box), queue=queue)
 
 
 def sweep_job(spec: SweepSpec) -> Job[Sweep]:
@@ -52,12 +54,12 @@ def sweep_job(spec: SweepSpec) -> Job[Sweep]:
 
 
 def _find_shorter_map(job: Job[EscapeMap], cache: ResultCache) -> EscapeMap | None:
-    """Return the cached map with the largest t_max up to that of the job; None unless it can be resumed."""
+    """Return the cached map, otherwise equal, with the largest t_max up to that of the job; None unless it can be resumed."""
     (spec,) = job.arguments
     cached_specs = (key.arguments[0] for key in cache if isinstance(key, Job) and key.function is compute_map)
     # Energies are compared first, because this is cheap and there may be thousands of maps.
-    same_energy = (cached for cached in cached_specs if cached.energy == spec.energy)
-    shorter = [cached for cached in same_energy if cached.t_max <= spec.t_max and replace(cached, t_max=spec.t_max) == spec]
+    specs_of_energy = (cached for cached in cached_specs if cached.energy == spec.energy)
+    shorter = [cached for cached in specs_of_energy if cached.t_max <= spec.t_max and replace(cached, t_max=spec.t_max) == spec]
     if not shorter:
         return None
     # The map may have been evicted since.
@@ -69,7 +71,6 @@ def _measure_point(point: SweepPoint, escape_map: EscapeMap, *, execution: Execu
     return compute_point(point, escape_map=escape_map, execution=execution)
 
 
-# The job manager passes the keyword arguments. `find_result` returns the results of other jobs.
 def _compute_sweep(
     spec: SweepSpec,
     *,
@@ -77,9 +78,10 @@ def _compute_sweep(
     execution: Execution,
     find_result: Callable[[Job[Any]], Any],
 ) -> Sweep:
+    """Compute a sweep. The job manager passes the keyword arguments; `find_result` returns the results of other jobs."""
     members = members_job(spec.along)
     if members is not None:
-        # The potentials of a typed formula are found within limits before they are used here.
+        # The potentials of a typed formula must be found with limited resources before they are used in this process.
         find_result(members)
 
     def measure(point: SweepPoint) -> xr.Dataset:

@@ -18,8 +18,8 @@ from engine.propagation.fates import Fate
 from engine.slices.window import Window
 from engine.systems.outcomes import Outcome
 
-MOST_JUDGED = 2000
-"""Largest number of bounded starts, drawn at random, that are judged. So many give a 95 % interval of ± 2 %."""
+MAX_JUDGED_STARTS = 2000
+"""Largest number of bounded starts, drawn at random, that are judged. They give a share to about ± 2 % (95 % interval)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +35,7 @@ class MeasuredMap:
     execution
         How additional orbits are computed.
     effort
-        Number of additional orbits as a share of the usual number; a tenth makes intervals up to three times as wide.
+        Number of additional orbits as a share of the usual number; a tenth makes intervals about three times as wide.
     """
 
     escape_map: EscapeMap
@@ -62,21 +62,21 @@ class MeasuredMap:
     def find_characters(self) -> np.ndarray:
         """Return the `Regularity` codes of bounded starts that count, (n,), from new orbits.
 
-        If there are more starts than `effort` allows, some are drawn at random.
+        If there are more of these starts than `effort` allows, some are drawn at random, except along a parameter.
         """
-        index = np.s_[:, :] if self.box is None else read_starts("escape_map", self.escape_map).place(self.box)
+        index = np.s_[:, :] if self.box is None else read_starts("escape_map", self.escape_map).pixel_slices(self.box)
         is_bounded = np.zeros(self.escape_map.fate.shape, bool)
         is_bounded[index] = self.starts.fate == Fate.BOUNDED
         pixels = np.flatnonzero(is_bounded)
-        most_pixels = round(self.effort * MOST_JUDGED)
+        most_pixels = round(self.effort * MAX_JUDGED_STARTS)
         # Along a parameter all starts are judged, because each line of pixels has its own mirror images.
         if pixels.size > most_pixels and self.spec.plane.parameter is None:
             pixels = np.random.default_rng(0).choice(pixels, most_pixels, replace=False)
-        regularity = compute_regularity(self._map_of(pixels), execution=self.execution)
+        regularity = compute_regularity(self._restricted_map(pixels), execution=self.execution)
         self.execution.raise_if_cancelled()
         return regularity.character.ravel()[pixels]
 
-    def _map_of(self, pixels: np.ndarray) -> EscapeMap:
+    def _restricted_map(self, pixels: np.ndarray) -> EscapeMap:
         """Return the map with the fates of n pixels and of their mirror images; all other starts are outside."""
         escape_map = self.escape_map
         is_kept = np.zeros(escape_map.fate.size, bool)

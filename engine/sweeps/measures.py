@@ -21,8 +21,8 @@ from engine.measures.chaotic_share import ChaoticShare, compute_chaotic_share
 from engine.measures.decay_law_fits import fit_decay_laws
 from engine.measures.decay_laws import DecayLaws
 from engine.measures.escape_statistics import EscapeStatistics
-from engine.measures.islands import LEAST_ISLAND, compute_islands
-from engine.measures.measure import HIGH, LOW, NO_CURVE, Bars, Curve, Measure, Quantity, Variables
+from engine.measures.islands import MIN_ISLAND_PIXELS, compute_islands
+from engine.measures.measure import HIGH_TEMPLATE, LOW_TEMPLATE, NO_CURVE, Bars, Curve, Measure, Quantity, Variables
 from engine.measures.power_law_fit import UncertaintyExponent
 from engine.measures.wada import compute_wada_test
 from engine.propagation.fates import Fate, renumber
@@ -36,8 +36,8 @@ if TYPE_CHECKING:
 _describe = methodcaller("describe")
 
 
-def _describe_shares(point: SweepPoint, statistics: EscapeStatistics) -> Variables:
-    """Return the shares of the interior starts that are bounded, and of each outcome, with 95 % intervals (Wilson 1927).
+def _share_variables(point: SweepPoint, statistics: EscapeStatistics) -> Variables:
+    """Return the shares of bounded orbits and of each outcome among the interior starts, with 95 % intervals (Wilson 1927).
 
     The intervals hold for independent random starts.
     """
@@ -45,30 +45,27 @@ def _describe_shares(point: SweepPoint, statistics: EscapeStatistics) -> Variabl
     for fate, number in enumerate(point.numbers):
         shares[number] = statistics.shares[fate]
         low[number], high[number] = statistics.share_intervals[fate]
-    descriptions = {
-        "share": "share of the interior starts",
-        "share_low": LOW.format("share"),
-        "share_high": HIGH.format("share"),
+    described = {
+        "share": (shares, "share of the interior starts"),
+        "share_low": (low, LOW_TEMPLATE.format("share")),
+        "share_high": (high, HIGH_TEMPLATE.format("share")),
     }
     return {
-        "outcome": ("outcome", np.arange(shares.size), _describe_fates(point)),
-        **{
-            name: ("outcome", values, {"long_name": descriptions[name], "units": "1"})
-            for name, values in (("share", shares), ("share_low", low), ("share_high", high))
-        },
+        "outcome": ("outcome", np.arange(shares.size), _fate_attributes(point)),
+        **{name: ("outcome", values, {"long_name": text, "units": "1"}) for name, (values, text) in described.items()},
     }
 
 
-def _describe_map(point: SweepPoint, escape_map: EscapeMap) -> Variables:
+def _map_variables(point: SweepPoint, escape_map: EscapeMap) -> Variables:
     """Return all arrays of the map, as in `EscapeMap.to_xarray`; fates have the numbers of the sweep."""
     dataset = escape_map.to_xarray()
     sweep_fate = renumber(escape_map.fate, np.array(point.numbers, escape_map.fate.dtype))
-    attributes = {**dataset["fate"].attrs, **_describe_fates(point)}
+    attributes = {**dataset["fate"].attrs, **_fate_attributes(point)}
     variables = {str(name): variable for name, variable in dataset.variables.items()}
     return variables | {"fate": (dataset["fate"].dims, sweep_fate, attributes)}
 
 
-def _describe_fates(point: SweepPoint) -> dict[str, str]:
+def _fate_attributes(point: SweepPoint) -> dict[str, str]:
     """Return the attributes that explain the numbers of fates in the sweep."""
     return describe_codes(Fate, [outcome.label for outcome in point.outcomes])
 
@@ -80,7 +77,7 @@ def _read_decay_rate(laws: DecayLaws) -> tuple[float, float, float]:
 
 
 def _find_exponent(measured: MeasuredMap) -> UncertaintyExponent | None:
-    """Return the exponent; None if no exit is open."""
+    """Return the exponent; None if no exit over a saddle is open."""
     spec = measured.spec
     if not spec.potential.well.open_channels(spec.common_energy or 0.0):
         return None
@@ -101,7 +98,7 @@ def _find_flux(measured: MeasuredMap) -> EscapeFlux | None:
     return compute_flux(spec.potential, spec.common_energy) if has_flux else None
 
 
-_ALL = (
+_ENTRIES = (
     Measure(
         "shares", "Shares of the interior starts", "how many starts end where",
         lambda measured: measured.statistics,
@@ -109,7 +106,7 @@ _ALL = (
             Quantity("direct_share", "share that escapes without an upward crossing of y = 0", attrgetter("direct_share")),
         ),
         curve=Curve("percentage of starts"),
-        other_variables=_describe_shares,
+        other_variables=_share_variables,
         help="The shares of the interior starts that escape through each exit, and of the starts that stay, against the energy "
         "or a parameter. Just above the escape energy nearly all stay. The islands of bounded orbits shrink and vanish one "
         "after the other as the energy rises.",
@@ -133,7 +130,7 @@ _ALL = (
                 "bounded_area", "area of the bounded starts", attrgetter("area", "area_error"), Bars.GRID_ERROR, "all islands"
             ),
             Quantity(
-                "islands", f"connected parts of the bounded starts with at least {LEAST_ISLAND} pixels", attrgetter("count")
+                "islands", f"connected parts of the bounded starts with at least {MIN_ISLAND_PIXELS} pixels", attrgetter("count")
             ),
             Quantity(
                 "largest_island", "area of the largest of these parts", attrgetter("largest", "largest_error"),
@@ -258,10 +255,10 @@ _ALL = (
             Quantity("worst_energy_error", "largest relative energy error of any orbit", attrgetter("worst_energy_error")),
         ),
     ),
-    Measure("maps", "Maps", "the arrays of the maps", lambda measured: measured.escape_map, other_variables=_describe_map),
+    Measure("maps", "Maps", "the arrays of the maps", lambda measured: measured.escape_map, other_variables=_map_variables),
 )  # fmt: skip
 
-MEASURES: Mapping[str, Measure] = MappingProxyType({measure.name: measure for measure in _ALL})
+MEASURES: Mapping[str, Measure] = MappingProxyType({measure.name: measure for measure in _ENTRIES})
 """The measures by name."""
 
 CURVES = tuple(name for name, measure in MEASURES.items() if measure.curve != NO_CURVE)
@@ -271,12 +268,12 @@ QUICK_CURVES = tuple(name for name in CURVES if not MEASURES[name].slow)
 """Names of the measures in `CURVES` that take little time in addition to the map."""
 
 
-# Share of the usual number of additional orbits that a measure integrates, because a sweep measures many maps.
-_EFFORT = 0.1
+# Number of additional orbits of a measure as a share of the usual number, small because a sweep measures many maps.
+_SWEEP_EFFORT = 0.1
 
 
 def measure_map(escape_map: EscapeMap, name: str, box: Window | None = None, *, execution: Execution = DEFAULT_EXECUTION) -> Any:
-    """Return the result of the measure `name` of a complete map, or of a box in it; None if the measure is not defined."""
+    """Return the result of the measure `name` for a complete map, or for a box in it; None if it is not defined there."""
     return MEASURES[name].compute(MeasuredMap(escape_map, box, execution))
 
 
@@ -310,7 +307,7 @@ def compute_point(
         escape_map = compute_map(point.map_spec, execution=execution.part(0, 2))
     if not escape_map.complete:
         raise CancelledError
-    measured = MeasuredMap(escape_map, execution=execution.part(1, 2), effort=_EFFORT)
+    measured = MeasuredMap(escape_map, execution=execution.part(1, 2), effort=_SWEEP_EFFORT)
     variables: dict[str, Any] = {}
     for name in point.measures:
         variables |= MEASURES[name].variables(point, MEASURES[name].compute(measured))

@@ -30,10 +30,10 @@ _READERS: dict[Any, Callable[[xr.Dataset], Result]] = {
     Sweep: Sweep,
     Potential: lambda dataset: read_potential(dataset.attrs),
 }
-# Name of a file that every Zarr store contains.
+# Name of a file in every Zarr store of format 3.
 _ZARR_FILE = "zarr.json"
 # First bytes of HDF5 files, and thus of NetCDF 4 files.
-_HDF5_START = b"\x89HDF"
+_HDF5_SIGNATURE = b"\x89HDF"
 
 
 @overload
@@ -97,7 +97,7 @@ def _open(path: str | os.PathLike[str]) -> Any:
             f"path={os.fspath(path)}: is a folder without {_ZARR_FILE}; must be a NetCDF file or a Zarr store of format 3"
         )
     with open(path, "rb") as file:
-        if file.read(len(_HDF5_START)) == _HDF5_START:
+        if file.read(len(_HDF5_SIGNATURE)) == _HDF5_SIGNATURE:
             require_package("h5netcdf", "files")
     try:
         dataset = xr.open_dataset(path)
@@ -121,13 +121,13 @@ def _read(path: str | os.PathLike[str], dataset: xr.Dataset) -> Any:
 
 
 def _read_fields(kind: Any, dataset: xr.Dataset) -> Any:
-    """Return a result from its fields; fields that the file does not contain have their default values, or are None."""
+    """Return a result from its fields; a field that the file does not contain has its default value, or is None without one."""
     hints = get_type_hints(kind)
     values = kind.read_parts(dataset)
     if kind is SampledOrbits:
-        dataset = _with_times_of_each(dataset)
+        dataset = _with_times_of_each_orbit(dataset)
     elif issubclass(kind, PixelAnalysis):
-        dataset = _with_names_of_axes(dataset)
+        dataset = _with_axis_names(dataset)
     for field in fields(kind):
         stored_name = kind.held_as.get(field.name, field.name)
         if field.name in values:
@@ -146,20 +146,20 @@ def _read_fields(kind: Any, dataset: xr.Dataset) -> Any:
 
 def _read_made_by(result: RecordedResult, dataset: xr.Dataset) -> dict[str, Any]:
     """Return the attributes that say how a result was made, without its numbers."""
-    result_names = {"result", "outcomes", *result.numbers(), *(field.name for field in fields(result))} - _REQUEST_NUMBERS
+    result_names = {"result", "outcomes", *result.numbers(), *(field.name for field in fields(result))} - _NUMBERS_OF_REQUEST
     return {name: value for name, value in plain_attributes(dataset.attrs).items() if name not in result_names}
 
 
-def _with_times_of_each(dataset: xr.Dataset) -> xr.Dataset:
-    """Return the dataset of sampled orbits, in which common times become the times of each orbit."""
+def _with_times_of_each_orbit(dataset: xr.Dataset) -> xr.Dataset:
+    """Return the dataset of sampled orbits with the times of each orbit, also if all orbits have common times."""
     if "t" not in dataset.dims:
         return dataset
     dataset = dataset.rename_dims(t="sample")
     return dataset.assign(t=dataset["t"].broadcast_like(dataset["x"]).transpose(*dataset["x"].dims))
 
 
-def _with_names_of_axes(dataset: xr.Dataset) -> xr.Dataset:
-    """Return the dataset of an analysis of a map, in which the axes have the names x and ordinate."""
+def _with_axis_names(dataset: xr.Dataset) -> xr.Dataset:
+    """Return the dataset of an analysis of a map with its axes renamed to x and ordinate, as the fields are named."""
     ordinate, abscissa = next(variable.dims for variable in dataset.data_vars.values() if variable.ndim == 2)
     return dataset.rename({abscissa: "x", ordinate: "ordinate"})
 
@@ -171,5 +171,5 @@ _FIELD_READERS: Mapping[str, Callable[[xr.Dataset], Any]] = {
     "outcomes": lambda dataset: read_outcomes(dataset.attrs.get("outcomes", "[]")),
     "made_by": lambda dataset: {},
 }
-# Names of numbers of results that also belong to the request; files contain them only once.
-_REQUEST_NUMBERS = {"potential", "energy", "t_max"}
+# Numbers of results that also say how the result was made; files contain them only once.
+_NUMBERS_OF_REQUEST = {"potential", "energy", "t_max"}

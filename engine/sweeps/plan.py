@@ -17,10 +17,10 @@ from engine.maps.spec import MapSpec
 from engine.sweeps.spec import SweepSpec
 from engine.sweeps.warmup import prepare_for_evidence, prepare_for_maps
 
-# Sides in pixels of the coarse maps on which plans are based. Two sizes show the cost that does not depend on the size.
+# Sides in pixels of the coarse maps on which plans are based. From two sizes follows the cost that does not depend on the size.
 _COARSE_SIDES = (48, 96)
 # Largest number of values at which these maps are computed.
-_PLANNED_VALUES = 12
+_MAX_PLANNED_VALUES = 12
 
 MOST_CORES = 1_000_000
 """Largest number of workers of a plan."""
@@ -35,7 +35,7 @@ class SweepPlan:
     orbits
         Number of starts at all values, including forbidden and outside starts.
     seconds
-        Wall time in seconds if all cores are busy throughout.
+        Wall time in seconds if all workers are busy throughout.
     bytes
         Size of the arrays of the maps before compression, an upper bound for the size of their store.
     cores
@@ -58,7 +58,7 @@ class SweepPlan:
 
 @checks_types(spec=SweepSpec, execution=Execution)
 def plan_sweep(spec: SweepSpec, *, cores: int | None = None, execution: Execution = DEFAULT_EXECUTION) -> SweepPlan:
-    """Estimate the cost of a sweep of maps from the processor time of coarse maps, 48 and 96 pixels a side, at twelve values.
+    """Estimate the cost of a sweep of maps from the processor time of coarse maps, 48 and 96 pixels a side, at up to 12 values.
 
     For larger maps the cost grows at most linearly with the number of pixels, and more slowly if invariant curves enclose many
     orbits. In trials with 40 maps the estimate was correct to within a fifth. At t_max = 1e5 planning takes some seconds, or a
@@ -98,7 +98,7 @@ def plan_sweep(spec: SweepSpec, *, cores: int | None = None, execution: Executio
     prepare_for_maps(spec.potential)
     prepare_for_evidence(spec.potential)
     count = len(spec.values)
-    indices = np.unique(((np.arange(_PLANNED_VALUES) + 0.5) * count / _PLANNED_VALUES).astype(int))
+    indices = np.unique(((np.arange(_MAX_PLANNED_VALUES) + 0.5) * count / _MAX_PLANNED_VALUES).astype(int))
     seconds = [_predict_seconds(spec.point(spec.values[index]).map_spec, execution) for index in indices]
     pixel_bytes = sum(np.dtype(dtype).itemsize for name, (dtype, _) in PIXEL_ARRAYS.items() if name != "started")
     orbits = spec.count * spec.resolution[0] * spec.resolution[1]
@@ -106,18 +106,18 @@ def plan_sweep(spec: SweepSpec, *, cores: int | None = None, execution: Executio
 
 
 def _predict_seconds(spec: MapSpec, execution: Execution) -> float:
-    """Return the processor time of one map in seconds, extrapolated linearly from two coarse maps."""
+    """Predict the processor time of one map in seconds, extrapolated linearly from two coarse maps."""
     pixel_count = np.prod(spec.resolution)
     small_count, large_count = (side * side for side in _COARSE_SIDES)
     small_seconds, large_seconds = (measure_seconds(replace(spec, resolution=(side, side)), execution) for side in _COARSE_SIDES)
-    slope = (large_seconds - small_seconds) / (large_count - small_count)
+    slope, mean = (large_seconds - small_seconds) / (large_count - small_count), large_seconds / large_count
     # A slope of 0 or less is measurement noise.
-    seconds_per_pixel = min(slope, large_seconds / large_count) if slope > 0.0 else large_seconds / large_count
+    seconds_per_pixel = min(slope, mean) if slope > 0.0 else mean
     return large_seconds + seconds_per_pixel * max(float(pixel_count) - large_count, 0.0)
 
 
 def measure_seconds(spec: MapSpec, execution: Execution) -> float:
-    """Return the processor time of a map in seconds; CancelledError if it is cancelled."""
+    """Measure the processor time of a map in seconds; CancelledError if its computation is cancelled."""
     begin = time.thread_time()
     # The map is computed in this thread, because its processor time is measured.
     if not compute_map(spec, execution=execution.in_this_thread()).complete:

@@ -30,8 +30,8 @@ MOST_VALUES = 10_000
 MOST_REFINED = 1000
 """Largest number of refining values of a sweep."""
 
-EXTENT = ("requested", "refine", "count")
-"""Names of attributes of a sweep that only describe its values and their number."""
+VALUE_ATTRIBUTES = ("requested", "refine", "count")
+"""Names of the attributes of a sweep that describe only its values and their number."""
 
 
 @with_former_fields
@@ -85,7 +85,7 @@ class SweepSpec:
     energy: float | None = None
     refine: int = 0
 
-    # `__init__` also accepts types that it converts. The fields have the types of the stored values.
+    # `__init__` accepts more types than the fields have, and converts them. This declaration tells type checkers so.
     if TYPE_CHECKING:
 
         def __init__(
@@ -107,11 +107,12 @@ class SweepSpec:
         check_type("along", self.along, (ParameterAxis, type(None)))
         if (self.along is None) != (self.energy is None):
             raise ValueError(f"energy={short_repr(self.energy)}: must be given along a parameter, and None along the energy")
-        if self.along is not None:
+        if self.along is not None and self.energy is not None:
             # This validates the parameter, which must belong to the system of the potential.
-            MapSpec(self.potential, Slice(Coordinate.X, self.along), self.energy or 0.0)
+            MapSpec(self.potential, Slice(Coordinate.X, self.along), self.energy)
         plane, values, measures = _checked_plane(self.plane), _checked_values(self.values), _checked_measures(self.measures)
-        if checked_count("refine", self.refine, 0, MOST_REFINED) and "shares" not in measures:
+        refine = checked_count("refine", self.refine, 0, MOST_REFINED)
+        if refine > 0 and "shares" not in measures:
             raise ValueError(f"refine={self.refine}: must be 0 without the measure 'shares', which decides where to refine")
         if "maps" in measures and self.along is not None and self.window is None:
             raise ValueError("window=None: must be given for maps along a parameter, which have common axes")
@@ -142,7 +143,7 @@ class SweepSpec:
         return self.potential.outcomes_at((self.values[0], self.values[-1]))
 
     def point(self, value: float) -> SweepPoint:
-        """Return the measurement at one value; ValueError if the system has no potential there."""
+        """Return the request for the measurement at one value; ValueError if the system has no potential there."""
         energy = self._energy_at(value)
         if self.along is None:
             potential, numbers = self.potential, tuple(range(len(self.potential.outcomes) + 1))

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 _COUNT_ATTRIBUTE = "finished"
 # Pattern of the names of the temporary files of Zarr.
 _PARTIAL_FILES = "*.partial"
-# Names of attributes that follow from the potential, in words that may change from version to version.
-_WORDS = ("outcomes", "exit_names")
+# Names of attributes that follow from the potential, but whose wording may differ between versions.
+_WORDED_ATTRIBUTES = ("outcomes", "exit_names")
 # Options of xarray for the format of the group.
 _OPTIONS: Mapping[str, Any] = {"consolidated": False, "zarr_format": 3}
 
@@ -49,10 +49,10 @@ def open_store(path: Path, attributes: Mapping[str, Any]) -> Iterator[SweepStore
 
 
 class SweepStore:
-    """Values of a sweep on disk, in the order in which they were appended.
+    """The measures of a sweep at its values on disk, in the order in which they were appended.
 
-    Arrays have one chunk, and thus one file, for each value. The number of finished values is written last, so that a killed
-    process loses only the current value.
+    Arrays have one chunk, and thus one file, for each value. The number of finished values is written last. A killed process
+    therefore loses only the current value.
     """
 
     def __init__(self, path: Path, attributes: Mapping[str, Any]) -> None:
@@ -60,7 +60,7 @@ class SweepStore:
         # Number of values on the disk.
         self._finished = 0
         if path.exists() and any(path.iterdir()):
-            self._open()
+            self._resume()
 
     def read(self) -> xr.Dataset:
         """Return all values in ascending order; arrays are read from the disk on access."""
@@ -75,11 +75,11 @@ class SweepStore:
         return dataset if np.all(np.diff(values) > 0.0) else dataset.sortby(axis)
 
     def append(self, point: xr.Dataset) -> None:
-        """Add a value. It counts only when its arrays are on the disk, in case of power failure or a full disk."""
+        """Add a value. It counts only after its arrays are on the disk, in case of a power failure or a full disk."""
         import zarr
 
         mode: dict[str, Any] = {"append_dim": self._attributes["axis"]} if self._finished else {"mode": "w"}
-        with _naming(self._path):
+        with _named_in_errors(self._path):
             point.assign_attrs(self._attributes | {_COUNT_ATTRIBUTE: self._finished}).to_zarr(self._path, **mode, **_OPTIONS)
             for pattern in ("*/zarr.json", f"*/c/{self._finished}", f"*/c/{self._finished}/**/*"):
                 for file in self._path.glob(pattern):
@@ -88,8 +88,8 @@ class SweepStore:
             _consolidate(self._path)
         self._finished += 1
 
-    def _open(self) -> None:
-        """Continue after the values of an earlier run, and remove what a killed run left."""
+    def _resume(self) -> None:
+        """Continue after the values of an earlier run, and remove the incomplete data of a killed run."""
         import zarr
 
         if not (self._path / "zarr.json").exists():
@@ -111,11 +111,15 @@ class SweepStore:
                 array.resize((self._finished, *array.shape[1:]))
 
 
-def check_same_sweep(label: str, found: Mapping[str, Any], wanted: Mapping[str, Any], *, but: Sequence[str] = ()) -> None:
-    """Raise a ValueError that names the difference if the attributes `found` belong to another sweep."""
+def check_same_sweep(label: str, found: Mapping[str, Any], wanted: Mapping[str, Any], *, ignored: Sequence[str] = ()) -> None:
+    """Raise a ValueError that states the difference if the attributes `found` belong to another sweep.
+
+    Attributes that are `ignored` are not compared.
+    """
     # The window is compared last, because a default window follows from other attributes. Types differ in files.
     for name, value in sorted(wanted.items(), key=lambda item: item[0] == "window"):
-        if name not in {*but, *_WORDS} and (name not in found or np.ravel(found[name]).tolist() != np.ravel(value).tolist()):
+        is_compared = name not in {*ignored, *_WORDED_ATTRIBUTES}
+        if is_compared and (name not in found or np.ravel(found[name]).tolist() != np.ravel(value).tolist()):
             raise ValueError(f"{label}: holds another sweep, with {name}={found.get(name)!r}; must have {name}={value!r}")
 
 
@@ -135,7 +139,7 @@ def _sync_to_disk(file: Path) -> None:
 
 
 @contextmanager
-def _naming(path: Path) -> Iterator[None]:
+def _named_in_errors(path: Path) -> Iterator[None]:
     """Add the path of the store to errors of the operating system that name no file, such as a full disk."""
     try:
         yield

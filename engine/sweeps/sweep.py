@@ -18,7 +18,7 @@ from engine.foundations.result import Result
 from engine.foundations.validation import checks_types
 from engine.sweeps.measured_map import SweepPoint
 from engine.sweeps.measures import compute_point
-from engine.sweeps.spec import EXTENT, SweepSpec
+from engine.sweeps.spec import VALUE_ATTRIBUTES, SweepSpec
 from engine.sweeps.store import SweepStore, check_same_sweep, open_store
 from engine.systems.outcomes import Outcome, read_outcomes
 
@@ -69,7 +69,10 @@ class Sweep(Result):
         return np.asarray(self.dataset[name].values)
 
     def interval(self, name: str) -> tuple[np.ndarray, np.ndarray]:
-        """Return the ends of the 95 % interval of a measure, or the measure minus and plus its error; a missing error is 0."""
+        """Return the ends of the error bars of a measure: of the 95 % interval, or the measure minus and plus its error.
+
+        For a measure without an error, both ends are the measure.
+        """
         if f"{name}_low" in self.dataset:
             return self[f"{name}_low"], self[f"{name}_high"]
         error = self[f"{name}_error"] if f"{name}_error" in self.dataset else 0.0
@@ -78,7 +81,7 @@ class Sweep(Result):
     def columns(self) -> Mapping[str, np.ndarray]:
         """Return all numbers by name, the energy or parameter first.
 
-        A share gives a column for each outcome: ``share_bounded``, ``share_exit_1``.
+        A share has a column for each outcome, such as ``share_bounded`` and ``share_exit_1``.
         """
         labels = ["bounded", *(re.sub(r"\W+", "_", outcome.label) for outcome in self.outcomes)]
         columns = {self.name: self.values}
@@ -183,7 +186,7 @@ def _measure_all(
     measure: Callable[[SweepPoint], xr.Dataset] | None,
     execution: Execution,
 ) -> Sweep:
-    """Measure the values that the storage lacks: values of the request in the given order, then values that refine it."""
+    """Measure the values missing in the storage: values of the request in the given order, then values that refine it."""
     dataset = storage.read()
     while (value := _next_value(spec, dataset, order)) is not None:
         part = execution.part(dataset.sizes[spec.name], spec.count)
@@ -221,8 +224,8 @@ class _MemoryStorage:
 
 
 def _known_points(spec: SweepSpec, earlier: Sweep, attributes: Mapping[str, object]) -> list[xr.Dataset]:
-    """Return the points of an earlier sweep at the values of the request, and at as many other values as refine the request."""
-    check_same_sweep("earlier", earlier.dataset.attrs, attributes, but=EXTENT)
+    """Return the points of an earlier sweep at the values of the request, and at other values up to the number to refine."""
+    check_same_sweep("earlier", earlier.dataset.attrs, attributes, ignored=VALUE_ATTRIBUTES)
     earlier_values = earlier.values.tolist()
     other_values = [value for value in earlier_values if value not in spec.values]
     used_values = {*spec.values, *other_values[: spec.count - len(spec.values)]}
@@ -235,20 +238,22 @@ def _next_value(spec: SweepSpec, dataset: xr.Dataset, order: Sequence[float]) ->
     The values of the request come first, then the middle of the two neighbours between which shares change most.
     """
     values = dataset[spec.name].values
-    missing = (value for value in order if value not in values)
-    if (first := next(missing, None)) is not None:
-        return first
+    next_given = next((value for value in order if value not in values), None)
+    if next_given is not None:
+        return next_given
     if values.size >= spec.count:
         return None
-    changes = np.abs(np.diff(dataset["share"].values, axis=0)).max(axis=1)
-    steepest = int(np.argmax(changes))
+    largest_changes = np.abs(np.diff(dataset["share"].values, axis=0)).max(axis=1)
+    steepest = int(np.argmax(largest_changes))
     return float(0.5 * (values[steepest] + values[steepest + 1]))
 
 
 def _coarse_to_fine(values: Sequence[float]) -> list[float]:
     """Return the values in another order: the ends first, and then repeatedly the midpoints."""
     count = len(values)
-    order, step = [0, count - 1], 1 << (count - 1).bit_length()
+    order = [0, count - 1]
+    # The smallest power of 2 above the last index.
+    step = 1 << (count - 1).bit_length()
     while step > 1:
         step //= 2
         order += range(step, count, 2 * step)

@@ -64,10 +64,10 @@ class Compilations:
             self._changed.wait_for(lambda: not self._running_count)
 
 
-_for_maps = Compilations()
+_map_compilations = Compilations()
 
 
-def _known_kernels(potential: Potential) -> ModuleType | None:
+def _find_known_kernels(potential: Potential) -> ModuleType | None:
     """Return the kernels of a potential; None if they are not generated yet, or can no longer be compiled."""
     scaled_potential = potential.in_well_units
     if not is_generated(scaled_potential.form.definition, scaled_potential.well.setting):
@@ -79,8 +79,8 @@ def _known_kernels(potential: Potential) -> ModuleType | None:
 
 
 def is_ready_for_maps(potential: Potential) -> bool:
-    """Return whether the kernels of maps are compiled. Potentials with equal powers and number of channels share kernels."""
-    kernels = _known_kernels(potential)
+    """Return whether the kernels for the first frame of a map of this potential are compiled."""
+    kernels = _find_known_kernels(potential)
     return kernels is not None and all(getattr(kernels, name).signatures for name in _MAP_KERNELS)
 
 
@@ -90,17 +90,16 @@ def prepare_for_maps(potential: Potential) -> None:
     Parameters
     ----------
     potential
-        Any `Potential` with an exit. Compilation takes some seconds.
+        Any `Potential` with an exit. Compilation takes several seconds.
     """
     if is_ready_for_maps(potential):
         return
     energy = _open_energy(potential)
-    spec = small_map(potential, energy)
-    _for_maps.run(
+    _map_compilations.run(
         # The first use of the kernels generates their code, and the calls of a search and of a map compile it.
         lambda: potential.in_well_units.well.kernels,
         lambda: find_lyapunov_orbits(potential, energy),
-        lambda: compute_map(spec, execution=_EXECUTION),
+        lambda: compute_map(small_map(potential, energy), execution=_EXECUTION),
     )
 
 
@@ -114,7 +113,7 @@ def prepare_for_evidence(potential: Potential) -> None:
     """
     if not potential.tori_are_evidence:
         return
-    scaled_potential, start = potential.in_well_units, _start(potential) / potential.units.state
+    scaled_potential, start = potential.in_well_units, _start_state(potential) / potential.units.state
     call_after_maps(
         lambda: count_agreeing_digits(scaled_potential, start, _T_MAX, execution=_EXECUTION),
         lambda: find_section_points(scaled_potential, start, 1, _T_MAX, execution=_EXECUTION),
@@ -140,13 +139,13 @@ def small_map(potential: Potential, energy: float) -> MapSpec:
 
 
 def _open_energy(potential: Potential) -> float:
-    """Return an energy at which orbits can escape."""
+    """Return an energy at which orbits can escape: just above the escape energy, or any with an escape radius."""
     return potential.well.energy_at(1.01) if potential.escape_radius is None else potential.well.bottom + potential.units.energy
 
 
-def _start(potential: Potential) -> np.ndarray:
+def _start_state(potential: Potential) -> np.ndarray:
     """Return a state of low energy in the middle of a well or, without a well, at the typical radius, of shape (1, 4)."""
-    if potential.well.is_minimum and potential.escape_radius is None:
+    if potential.well.is_convex_at_origin and potential.escape_radius is None:
         return SECTION.states(potential, potential.well.energy_at(0.5), np.zeros(1), np.zeros(1))
     return SECTION.states(potential, _open_energy(potential), np.array([potential.well.typical_radius]), np.zeros(1))
 
@@ -154,5 +153,5 @@ def _start(potential: Potential) -> np.ndarray:
 def call_after_maps(*calls: Callable[[], object]) -> None:
     """Make calls that compile kernels one after the other, each at a time when no kernels for maps are compiled."""
     for call in calls:
-        _for_maps.wait()
+        _map_compilations.wait()
         call()

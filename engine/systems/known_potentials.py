@@ -12,14 +12,14 @@ from engine.systems.system import System
 
 
 @cache
-def _potential(name: str) -> Potential:
+def _make_potential(name: str) -> Potential:
     return System(name).potential
 
 
-CASES: Mapping[str, Potential] = ByName("case", PAPER_ENERGIES, _potential)
+CASES: Mapping[str, Potential] = ByName("case", PAPER_ENERGIES, _make_potential)
 """The three cases of Zotos (2014): V = (x² + y²)/2 + V1 with V1 = −x y², −x (x²/3 − y²) and −x² y²."""
 
 POTENTIALS: Mapping[str, Potential] = ByName(
-    "potential", CATALOGUE, _potential, {name: entry.title for name, entry in CATALOGUE.items()}
+    "potential", CATALOGUE, _make_potential, {name: entry.title for name, entry in CATALOGUE.items()}
 )
 """All potentials included in the engine, by name: ``POTENTIALS["HH"]``. The three cases of Zotos (2014) come first."""

@@ -21,7 +21,7 @@ class ChannelMerger(NamedTuple):
 
 
 class MergedExit(NamedTuple):
-    """The increasing numbers of two or more channels that form one exit, and whether the exit leads all around the well."""
+    """The numbers, in increasing order, of two or more channels that form one exit, and whether the exit surrounds the well."""
 
     channels: tuple[int, ...]
     closes_ring: bool
@@ -51,33 +51,34 @@ def merged_exits(mergers: Sequence[ChannelMerger], energy: float) -> tuple[Merge
     )
 
 
-def exit_numbers(mergers: Sequence[ChannelMerger], outcomes: int) -> np.ndarray:
-    """Return the exit numbers of outcomes, of shape (mergers + 1, outcomes + 1).
+def exit_numbers(mergers: Sequence[ChannelMerger], outcome_count: int) -> np.ndarray:
+    """Return the exit numbers of outcomes, int8, of shape (mergers + 1, outcome_count + 1).
 
     Row k is for energies above the lowest k mergers, and column n for the outcome with fate n. `mergers` are sorted by energy.
     """
-    numbers = np.tile(np.arange(outcomes + 1, dtype=np.int8), (len(mergers) + 1, 1))
+    numbers = np.tile(np.arange(outcome_count + 1, dtype=np.int8), (len(mergers) + 1, 1))
     for k in range(len(mergers)):
         for merged in merged_exits(mergers[: k + 1], np.inf):
             numbers[k + 1, list(merged.channels)] = merged.channels[0]
     return numbers
 
 
-def describe_channel(channel: int, mergers: Sequence[ChannelMerger], low: float, high: float, names: Sequence[str] = ()) -> str:
+def name_exit(channel: int, mergers: Sequence[ChannelMerger], low: float, high: float, names: Sequence[str] = ()) -> str:
     """Return the name of the exit to which a channel belongs at the energies from `low` to `high`.
 
     A separate channel is "1". In an exit of several channels, the lowest channel is "1+3", and another is "3 in 1+3". For a range
     of energies, the name can be "1, 1+3 above h = 0.3". By default, the name of a channel is its number.
     """
-    changes = [(low, _name_at(channel, mergers, low, names))]
+    changes = [(low, _name_exit_at(channel, mergers, low, names))]
     for energy in sorted(merger.energy for merger in mergers if low <= merger.energy < high):
-        name = _name_at(channel, mergers, np.nextafter(energy, np.inf), names)
+        name = _name_exit_at(channel, mergers, np.nextafter(energy, np.inf), names)
         if name != changes[-1][1]:
             changes.append((energy, name))
     return ", ".join([changes[0][1], *(f"{name} above h = {energy:.6g}" for energy, name in changes[1:])])
 
 
-def _name_at(channel: int, mergers: Sequence[ChannelMerger], energy: float, names: Sequence[str]) -> str:
+def _name_exit_at(channel: int, mergers: Sequence[ChannelMerger], energy: float, names: Sequence[str]) -> str:
+    """Return the name at one energy, see `name_exit`."""
     channel_name = name_channels([channel], names)
     for merged in merged_exits(mergers, energy):
         if channel in merged.channels:

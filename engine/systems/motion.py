@@ -1,4 +1,4 @@
-"""Equations of motion: what V, the mass and the rotation of the frame determine, such as H, but not the ends of orbits."""
+"""Quantities that follow from V, the mass and the rotation of the frame, such as H, without the ends of orbits."""
 
 from __future__ import annotations
 
@@ -137,12 +137,14 @@ class Motion(Result):
         """
         if self.rotation:
             raise ValueError(f"potential={self.name}: must be one of a frame that does not rotate")
-        half = -0.5 * self.mass * checked_number("rotation", rotation) ** 2
-        return self._copy_with(form=self.form.plus({(2, 0): half, (0, 2): half}), rotation=rotation) if rotation else self
+        coefficient = -0.5 * self.mass * checked_number("rotation", rotation) ** 2
+        if not rotation:
+            return self
+        return self._copy_with(form=self.form.plus({(2, 0): coefficient, (0, 2): coefficient}), rotation=rotation)
 
     @cached_property
     def reversed_in_time(self) -> Self:
-        """Return the potential with −Ω. Its orbits are those of this potential backward in time, with reversed velocities."""
+        """The potential with −Ω. Its orbits are those of this potential backward in time, with reversed velocities."""
         return self._copy_with(rotation=-self.rotation) if self.rotation else self
 
     def with_parameters(self, omega_1: float = 1.0, omega_2: float = 1.0, epsilon: float = 1.0) -> Self:

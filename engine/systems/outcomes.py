@@ -44,7 +44,7 @@ class Kind:
     event
         One word for the event that ends an orbit: "escape", "collision".
     origin
-        Text on how an orbit began if it ends in this way backward in time, with {label} and {present} of the outcome.
+        Text on the beginning of an orbit that ends in this way backward in time, with {label} and {present} of the outcome.
     """
 
     key: ClassVar[str]
@@ -80,7 +80,7 @@ class End(Kind):
     clause, syntax, spellings
         For the clause after a formula: pattern of the parameters, description of the clause in errors, and other spellings of
         `word`.
-    most
+    most_clauses
         Largest number of clauses of this kind after a formula.
     attribute
         Name of the attribute in files.
@@ -92,7 +92,7 @@ class End(Kind):
     clause: ClassVar[str] = r"\s*(?P<name>[\w ]{0,40}?)\s*\((?P<x>[^,;]*),(?P<y>[^,;]*)\)(?P<radius>[^();]*)$"
     syntax: ClassVar[str] = "{} (x, y) radius"
     spellings: ClassVar[tuple[str, ...]] = ()
-    most: ClassVar[int] = 8
+    most_clauses: ClassVar[int] = 8
     attribute: ClassVar[str]
 
     x: float
@@ -118,7 +118,7 @@ class End(Kind):
 
     @property
     def geometry(self) -> str:
-        """The circle in words."""
+        """A description of the circle, such as "disc of radius 0.1 around (1, 0)"."""
         return f"disc of radius {format_number(self.radius)} around ({format_number(self.x)}, {format_number(self.y)})"
 
     @classmethod
@@ -149,7 +149,7 @@ class End(Kind):
         return replace(self, x=self.x - x, y=self.y - y)
 
     def contains(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """Return whether points, in arrays of any shape, lie where orbits have ended."""
+        """Return whether points, given by arrays of the same shape, lie where orbits have ended."""
         distance = np.hypot(x - self.x, y - self.y)
         return distance < self.radius if self.side < 0 else distance > self.radius
 
@@ -183,7 +183,7 @@ class EscapeCircle(End):
 
     key, word, attribute = "escape", "escape", "escape_radius"
     label, action = "escape", "escape beyond the escape radius"
-    side, clause, syntax, most = 1, "(?P<radius>[^;]*)$", "one {} radius", 1
+    side, clause, syntax, most_clauses = 1, "(?P<radius>[^;]*)$", "one {} radius", 1
 
     x: float = field(default=0.0, init=False, repr=False)
     y: float = field(default=0.0, init=False, repr=False)
@@ -294,7 +294,7 @@ def write_outcomes(outcomes: Sequence[Outcome]) -> str:
 
 
 def read_outcomes(text: str) -> tuple[Outcome, ...]:
-    """Read outcomes from an attribute."""
+    """Read outcomes from an attribute of a file, see `write_outcomes`."""
     rows = json.loads(text)
     keys = [key for key, *_ in rows]
     # The number of an outcome among the outcomes of its kind.

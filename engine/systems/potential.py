@@ -67,7 +67,7 @@ class Potential(Motion):
     origin
         (x, y) of the origin of the axes in the coordinates of the formula, see `at_minimum`. It has no influence on any result.
     lineage
-        The way in which the well is found.
+        The way in which the well of the potential is found.
     system
         The `System` that made this potential; None without one.
     ends
@@ -203,18 +203,21 @@ class Potential(Motion):
 
     @cached_property
     def in_well_units(self) -> Potential:
-        """Return the potential in units L of length and E of energy of the well: V(L x, L y) / E with a mass of 1.
+        """The potential in units L of length and E of energy of the well: V(L x, L y) / E with a mass of 1.
 
-        If all units are 1, the result is the potential itself.
+        If all units are 1, this is the potential itself.
         """
         return self if self.units == WellUnits() else scaled_to_well(self)
 
-    def continued(self, family: str, found: np.ndarray, maxima: np.ndarray, around: Sequence[Sequence[int]]) -> Potential:
-        """Return the potential as a member of a family, with known exits. The parameters are those of `ContinuedWell`."""
-        return replace(self, lineage=Lineage(family, partial(ContinuedWell, found=found, maxima=maxima, around=around)))
+    def continued(
+        self, family: str, saddles: np.ndarray, maxima: np.ndarray, saddle_indices: Sequence[Sequence[int]]
+    ) -> Potential:
+        """Return the potential as a member of a family, with exits at known saddles, see `ContinuedWell`."""
+        make_well = partial(ContinuedWell, exit_saddles=saddles, maxima=maxima, saddle_indices=saddle_indices)
+        return replace(self, lineage=Lineage(family, make_well))
 
     def _copy_with(self, **values: Any) -> Potential:
-        """Return a copy with other values of some attributes. Its well is searched again."""
+        """Return a copy with other values of some attributes. The exits of its well are searched again."""
         return replace(self, lineage=SEARCHED, system=None, **values)
 
     def at_minimum(self, x: float = 0.0, y: float = 0.0) -> Potential:
@@ -264,7 +267,7 @@ class Potential(Motion):
         return checked_t_max(t_max, longest, lambda: self.well.exact_time_unit, name=name)
 
     def check_without_gaps(self, what: str) -> None:
-        """Raise ValueError if there are `gaps`, for computations with fixed steps."""
+        """Raise ValueError if there are `gaps`. `what` names, in the plural, computations with fixed steps."""
         if self.gaps:
             raise ValueError(
                 f"potential={self.name}: has {self.gaps[0].word}s; "

@@ -67,29 +67,29 @@ class ContinuedWell(Well):
 
     Attributes
     ----------
-    found
+    exit_saddles
         The saddles of all exits, of shape (n, 2), in any order.
     maxima
         The maxima between exits, of shape (m, 2).
-    around
-        For each maximum, the indices of its exits among the saddles.
+    saddle_indices
+        For each maximum, the indices in `exit_saddles` of the exits that it separates.
     """
 
-    found: np.ndarray
+    exit_saddles: np.ndarray
     maxima: np.ndarray
-    around: Sequence[Sequence[int]]
+    saddle_indices: Sequence[Sequence[int]]
 
     @cached_property
     def saddles(self) -> np.ndarray:
         """See `Well.saddles`."""
-        return self._in_channel_order(self.found)
+        return self._in_channel_order(self.exit_saddles)
 
     @cached_property
     def channel_mergers(self) -> tuple[ChannelMerger, ...]:
         """See `Well.channel_mergers`."""
-        # The channel of each saddle in `found`.
-        channels = np.array([1 + np.argmin(np.hypot(*(self.saddles - saddle).T)) for saddle in self.found], int)
-        return self._mergers_at(self.maxima, [np.sort(channels[list(indices)]) for indices in self.around])
+        # The channels of `exit_saddles`.
+        channels = np.array([1 + np.argmin(np.hypot(*(self.saddles - saddle).T)) for saddle in self.exit_saddles], int)
+        return self._mergers_at(self.maxima, [np.sort(channels[list(indices)]) for indices in self.saddle_indices])
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,7 @@ class Lineage:
         Name of the family from which the exits were continued (`ParameterFamily`); otherwise empty. Continued exits may differ in
         the last bit from exits found from the critical points, so caches keep their results apart.
     make_well
-        Function that makes the well from form, rotation, ends and mass. Results depend on `family` alone.
+        Function that makes the well from form, rotation, ends and mass. Lineages with the same `family` compare equal.
     """
 
     family: str = ""

@@ -53,7 +53,7 @@ class System:
         check_type("case", self.case, str)
         check_type("formula", self.formula, str)
         check_type("parameters", self.parameters, Mapping)
-        # This raises the error for an unknown case.
+        # The property raises the error for an unknown case.
         _ = self.entry
         # Titles and links must not depend on the order in which parameters were chosen.
         positions = {name: position for position, name in enumerate(WELL_PARAMETERS)}
@@ -85,11 +85,11 @@ class System:
     @property
     def potential(self) -> Potential:
         """The potential; ValueError if the formula or a parameter is invalid."""
-        return _potential(self)
+        return _make_potential(self)
 
     @property
     def letters(self) -> dict[str, float]:
-        """The values of the letters of the formula; empty if a character of the formula is not understood."""
+        """The values of the letters of a typed formula; empty if the formula has an unknown character or too many letters."""
         try:
             return {name: self.value_of(name) for name in formula_letters(self.formula)}
         except ValueError:
@@ -97,7 +97,7 @@ class System:
 
     @property
     def parameter_names(self) -> tuple[str, ...]:
-        """The names of all parameters."""
+        """The names of the parameters that users can choose, and of the letters of a typed formula."""
         return (*self.entry.adjustable, *self.letters)
 
     def default_of(self, name: str) -> float:
@@ -128,7 +128,7 @@ class System:
 
     @property
     def well_parameters(self) -> dict[str, float]:
-        """The values of ω1, ω2 and ε that are not 1."""
+        """The values of ω1, ω2 and ε that differ from their defaults."""
         return {name: value for name, value in self.parameters.items() if name in WELL_PARAMETERS and name != ROTATION}
 
     @property
@@ -157,7 +157,7 @@ class System:
 
 
 @lru_cache(maxsize=64)
-def _potential(system: System) -> Potential:
+def _make_potential(system: System) -> Potential:
     entry = system.entry
     if system.case != TYPED and (unknown := [name for name in system.parameters if name not in entry.adjustable]):
         legal = ", ".join(entry.adjustable) or "none"

@@ -18,7 +18,7 @@ from engine.systems.forms.exit_saddles import find_maxima_beside, leads_out_of_w
 from engine.systems.forms.expression_form import Form
 from engine.systems.forms.form import hessian_matrix
 from engine.systems.forms.stored_points import stored_points
-from engine.systems.merged_channels import ChannelMerger, MergedExit, describe_channel, exit_numbers, merged_exits
+from engine.systems.merged_channels import ChannelMerger, MergedExit, exit_numbers, merged_exits, name_exit
 from engine.systems.outcomes import End, EscapeCircle, Exit, Outcome, outcomes_of
 from engine.systems.well_units import WellUnits, nearest_power_of_two
 
@@ -32,21 +32,21 @@ _ROUNDING = 1e-13
 # Time step for a frequency of 1. At the order of the Taylor kernels, energy is conserved as well as by adaptive steps.
 _FIXED_STEP = 1.0 / 3.0
 # Typical radius of orbits in units of the escape radius.
-_TYPICAL_SHARE = 0.1
+_TYPICAL_RADIUS_SHARE = 0.1
 # Number of points on a circle of the typical radius.
 _CIRCLE_POINTS = 64
 
 
 @dataclass(frozen=True, eq=False)
 class Well(ReadOnlyArrays):
-    """The well, or the centre, at the origin of a potential, with its exits.
+    """The well, or the body, at the origin of a potential, with its exits.
 
-    Lengths and energies are in the units of the potential.
+    Lengths, energies and times are in the units of the potential.
 
     Attributes
     ----------
     form, rotation, ends, mass
-        The data of the potential.
+        See `Potential`.
     """
 
     form: Form
@@ -106,7 +106,7 @@ class Well(ReadOnlyArrays):
 
     @cached_property
     def saddle_energies(self) -> np.ndarray:
-        """V at each exit saddle, in channel order, of shape (channels,)."""
+        """V at the exit saddles, in channel order, of shape (channels,)."""
         return read_only(np.asarray(self.form.value(self.saddles[:, 0], self.saddles[:, 1]), dtype=float))
 
     @cached_property
@@ -139,7 +139,7 @@ class Well(ReadOnlyArrays):
         directions = np.array([self._unstable_direction(saddle) for saddle in self.saddles]).reshape(-1, 2)
         if self.mirror_in_x:
             for k in np.flatnonzero(self.saddles[:, 0] < 0.0):
-                directions[k] = directions[self.mirror_channels[k + 1] - 1] * [-1.0, 1.0]
+                directions[k] = directions[self.mirror_fates[k + 1] - 1] * [-1.0, 1.0]
         return read_only(directions)
 
     def _unstable_direction(self, saddle: np.ndarray) -> np.ndarray:
@@ -166,7 +166,7 @@ class Well(ReadOnlyArrays):
 
     @property
     def fixed_step(self) -> float:
-        """The time step of fixed-step integration."""
+        """The time step of fixed-step integration, for a potential in units of its well."""
         return _FIXED_STEP / max(1.0, self.fastest_frequency)
 
     @cached_property
@@ -181,16 +181,16 @@ class Well(ReadOnlyArrays):
         points, indices = self.critical_points, self.critical_indices
         # Indices of the exit saddles among the critical points: the nearest, because `saddles` are rounded.
         saddles = np.array([np.argmin(np.hypot(*(points - saddle).T)) for saddle in self.saddles], int)
-        # Whether each critical point is a maximum beside each exit, of shape (channels, points).
+        # For each exit and each critical point, whether the point is a maximum beside the exit, of shape (channels, points).
         is_beside = stored_points("maxima", form, lambda: find_maxima_beside(form, points, indices, saddles))
         maxima = np.flatnonzero(is_beside.sum(axis=0) > 1)
         return self._mergers_at(points[maxima], [np.flatnonzero(is_beside[:, k]) + 1 for k in maxima])
 
-    def _mergers_at(self, maxima: np.ndarray, channels: Sequence[np.ndarray]) -> tuple[ChannelMerger, ...]:
-        """Return the mergers at maxima (n, 2) between channels, the lowest first."""
-        pairs = zip(maxima.tolist(), channels, strict=True)
+    def _mergers_at(self, maxima: np.ndarray, adjacent_channels: Sequence[np.ndarray]) -> tuple[ChannelMerger, ...]:
+        """Return the mergers at maxima (n, 2), each between adjacent channels, the lowest first."""
+        pairs = zip(maxima.tolist(), adjacent_channels, strict=True)
         return tuple(
-            sorted(ChannelMerger(float(self.form.value(x, y)), x, y, tuple(around.tolist())) for (x, y), around in pairs)
+            sorted(ChannelMerger(float(self.form.value(x, y)), x, y, tuple(numbers.tolist())) for (x, y), numbers in pairs)
         )
 
     def merged_exits(self, energy: float) -> tuple[MergedExit, ...]:
@@ -202,19 +202,19 @@ class Well(ReadOnlyArrays):
         merger_count = np.searchsorted([merger.energy for merger in self.channel_mergers], np.asarray(energy), side="left")
         return exit_numbers(self.channel_mergers, len(self.outcomes))[merger_count]
 
-    def outcomes_at(self, energy: float | tuple[float, float], given: Sequence[str] = ()) -> tuple[Outcome, ...]:
+    def outcomes_at(self, energy: float | tuple[float, float], names: Sequence[str] = ()) -> tuple[Outcome, ...]:
         """Return `outcomes` with the names that exits have at an energy, or in a range of energies (low, high).
 
-        given: the names of all channels. By default, an exit is called "exit 1".
+        names: the names of all channels. Without names, an exit is called "exit 1".
         """
         low, high = energy if isinstance(energy, tuple) else (energy, energy)
-        if not (given or self.merged_exits(high)):
+        if not (names or self.merged_exits(high)):
             return self.outcomes
         numbers_at_low = self.exit_numbers(low)
-        names = [describe_channel(channel, self.channel_mergers, low, high, given) for channel in range(1, self.channels + 1)]
+        exit_names = [name_exit(channel, self.channel_mergers, low, high, names) for channel in range(1, self.channels + 1)]
         exits = [
-            Exit.outcome(channel, name if given else f"{Exit.word} {name}", occurs=bool(numbers_at_low[channel] == channel))
-            for channel, name in enumerate(names, 1)
+            Exit.outcome(channel, name if names else f"{Exit.word} {name}", occurs=bool(numbers_at_low[channel] == channel))
+            for channel, name in enumerate(exit_names, 1)
         ]
         return (*exits, *self.outcomes[self.channels :])
 
@@ -229,12 +229,13 @@ class Well(ReadOnlyArrays):
         return self.form.mirror_in_y and self._mirrors_ends([1.0, -1.0])
 
     def _mirrors_ends(self, signs: Sequence[float]) -> bool:
+        """Return whether a change of the signs of x and y maps the ends onto each other, in a frame at rest."""
         circles = {(end.key, end.x, end.y, end.radius) for end in self.ends}
         images = {(key, signs[0] * x, signs[1] * y, radius) for key, x, y, radius in circles}
         return not self.rotation and images == circles
 
     @cached_property
-    def mirror_channels(self) -> np.ndarray:
+    def mirror_fates(self) -> np.ndarray:
         """The fate onto which x → −x maps each fate, of shape (outcomes + 1,). Entry 0 is 0. Requires `mirror_in_x`."""
         ends_by_kind = [np.array([(end.x, end.y) for end in group]) for _, group in groupby(self.ends, type)]
         images = [np.arange(1)]
@@ -247,24 +248,25 @@ class Well(ReadOnlyArrays):
         return read_only(np.concatenate(images).astype(np.int8))
 
     def mirror_numbers(self, energy: Any) -> np.ndarray:
-        """Return `mirror_channels` as exit numbers at energies (…), of shape (…, outcomes + 1)."""
-        return self.exit_numbers(energy)[..., self.mirror_channels]
+        """Return `mirror_fates` as exit numbers at energies (…), of shape (…, outcomes + 1)."""
+        return self.exit_numbers(energy)[..., self.mirror_fates]
 
     @cached_property
-    def is_minimum(self) -> bool:
+    def is_convex_at_origin(self) -> bool:
         """Whether V curves upward in all directions at the origin."""
         matrix = hessian_matrix(self.form, 0.0, 0.0)
         return bool(np.isfinite(matrix).all() and np.linalg.eigvalsh(matrix)[0] > 0.0)
 
     @property
     def typical_radius(self) -> float:
-        """Half the distance of the nearest exit saddle, or a share of the escape radius; 0 without either."""
+        """Half the distance of the nearest exit saddle, or a tenth of the escape radius; 0 without either."""
         if self.escape_radius is not None:
-            return _TYPICAL_SHARE * self.escape_radius
-        return 0.5 * float(np.hypot(*self.saddles.T).min(initial=0.0 if not self.channels else np.inf))
+            return _TYPICAL_RADIUS_SHARE * self.escape_radius
+        return 0.5 * float(np.hypot(*self.saddles.T).min()) if self.channels else 0.0
 
     @property
     def _typical_circle(self) -> np.ndarray:
+        """Points on the circle of `typical_radius`, of shape (2, n)."""
         angle = 2.0 * np.pi / _CIRCLE_POINTS * (0.5 + np.arange(_CIRCLE_POINTS))
         return self.typical_radius * np.array([np.cos(angle), np.sin(angle)])
 
@@ -275,12 +277,12 @@ class Well(ReadOnlyArrays):
         Without a well, this is the frequency of a circular orbit of `typical_radius`. The square of this frequency is the mean
         slope of V divided by the radius.
         """
-        return self._fastest_light_frequency / float(np.sqrt(self.mass))
+        return self._unit_mass_frequency / float(np.sqrt(self.mass))
 
     @cached_property
-    def _fastest_light_frequency(self) -> float:
-        """The value of `fastest_frequency` for a mass of 1."""
-        if self.is_minimum or not self.typical_radius:
+    def _unit_mass_frequency(self) -> float:
+        """The value of `fastest_frequency` with a mass of 1."""
+        if self.is_convex_at_origin or not self.typical_radius:
             matrix = hessian_matrix(self.form, 0.0, 0.0)
             if not np.isfinite(matrix).all():
                 return np.nan
@@ -298,13 +300,13 @@ class Well(ReadOnlyArrays):
 
     @cached_property
     def units(self) -> WellUnits:
-        """The units of the well, rounded to powers of 2 for a mass of 1; all are 1 for the three cases of Zotos (2014).
+        """The units of the well; all are 1 for the three cases of Zotos (2014).
 
         The unit of length is the distance of the nearest exit saddle; with an escape radius, a tenth of this radius; without
-        exits, the length of the form. The unit of time is 1/ω of the fastest small oscillation in the well, see
-        `fastest_frequency`. The unit of mass is the mass.
+        exits, the length of the form. With a mass of 1, the unit of time is 1/ω of the fastest small oscillation in the well, see
+        `fastest_frequency`. Both are rounded to powers of 2. The unit of mass is the mass.
         """
-        frequency = self._fastest_light_frequency
+        frequency = self._unit_mass_frequency
         time = 1.0 / nearest_power_of_two(frequency) if np.isfinite(frequency) and frequency > 0.0 else 1.0
         return WellUnits(self._length_unit, time, self.mass)
 
@@ -327,7 +329,7 @@ class Well(ReadOnlyArrays):
 
         Without a well, this is the mean of V on a circle of `typical_radius`.
         """
-        if self.is_minimum or not self.typical_radius:
+        if self.is_convex_at_origin or not self.typical_radius:
             return float(self.form.value(0.0, 0.0))
         value = self.form.value(*self._typical_circle)
         return float(value[np.isfinite(value)].mean())

@@ -15,13 +15,13 @@ import numpy as np
 
 
 def _quantity(length: int, time: int, mass: int = 0) -> dict[str, tuple[int, int, int]]:
-    """Return metadata of a field: the powers of length, time and mass in the unit of its value, for `WellUnits.restore`."""
+    """Return the metadata of a field: the powers of length, time and mass in the unit of its value, for `WellUnits.restore`."""
     return {_UNIT: (length, time, mass)}
 
 
 # Key of the metadata of fields whose values have a unit.
 _UNIT = "unit"
-# Metadata of such fields.
+# Metadata of fields with these quantities.
 LENGTH, TIME, AREA = _quantity(1, 0), _quantity(0, 1), _quantity(2, 0)
 RATE, MOMENTUM, ENERGY = _quantity(0, -1), _quantity(1, -1, 1), _quantity(2, -2, 1)
 
@@ -34,30 +34,30 @@ class WellUnits:
     ----------
     length
         Unit of x and y, a power of 2.
-    light_time
-        Unit of time of the same well for a mass of 1, a power of 2.
+    unit_mass_time
+        Unit of time of the same well with a mass of 1, a power of 2.
     mass
         Unit of mass.
     """
 
     length: float = 1.0
-    light_time: float = 1.0
+    unit_mass_time: float = 1.0
     mass: float = 1.0
 
     @property
     def time(self) -> float:
         """Unit of time, which is proportional to √mass."""
-        return self.light_time * math.sqrt(self.mass)
+        return self.unit_mass_time * math.sqrt(self.mass)
 
     @property
     def momentum(self) -> float:
         """Unit of px and py."""
-        return self.length / self.light_time * math.sqrt(self.mass)
+        return self.length / self.unit_mass_time * math.sqrt(self.mass)
 
     @property
     def energy(self) -> float:
         """Unit of H and V, a power of 2."""
-        return (self.length / self.light_time) ** 2
+        return (self.length / self.unit_mass_time) ** 2
 
     @property
     def state(self) -> np.ndarray:
@@ -66,25 +66,25 @@ class WellUnits:
 
     @property
     def inverse(self) -> WellUnits:
-        """Return the units with which `restore` converts from the units of the potential to those of the well."""
-        return WellUnits(1.0 / self.length, 1.0 / self.light_time, 1.0 / self.mass)
+        """The units with which `restore` converts from the units of the potential to those of the well."""
+        return WellUnits(1.0 / self.length, 1.0 / self.unit_mass_time, 1.0 / self.mass)
 
     def restore[Computed](self, result: Computed) -> Computed:
-        """Convert a result from these units to the units of the potential.
+        """Convert a result, an instance of a dataclass, from these units to the units of the potential.
 
         Fields whose metadata is a quantity, such as `TIME`, are converted. Read-only arrays stay read-only.
         """
         if self == WellUnits():
             return result
         restored = {}
-        for each in fields(result):  # type: ignore[arg-type]
-            if _UNIT in each.metadata:
-                restored[each.name] = getattr(result, each.name) * self._unit(*each.metadata[_UNIT])
+        for quantity in fields(result):  # type: ignore[arg-type]
+            if _UNIT in quantity.metadata:
+                restored[quantity.name] = getattr(result, quantity.name) * self._unit(*quantity.metadata[_UNIT])
         return replace(result, **restored)  # type: ignore[type-var]
 
     def _unit(self, length: int, time: int, mass: int) -> float:
-        """Return the unit of a quantity. √mass, which rounds, has the power 0 in units of length and energy."""
-        return self.length**length * self.light_time**time * math.sqrt(self.mass) ** (time + 2 * mass)
+        """Return the unit of a quantity with these powers. √mass, which rounds, has the power 0 for lengths and energies."""
+        return self.length**length * self.unit_mass_time**time * math.sqrt(self.mass) ** (time + 2 * mass)
 
 
 def nearest_power_of_two(value: float) -> float:

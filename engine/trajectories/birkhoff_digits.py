@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from engine.evidence.birkhoff_averages import TORUS_DIGITS, WINDOWS, count_agreeing_digits
-from engine.exits.exit_rows import exits_of_orbit
+from engine.exits.exit_rows import exit_curves_if_known
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.foundations.result import Chart, RecordedResult
 from engine.foundations.validation import checked_state, checks_types
@@ -25,7 +25,8 @@ class BirkhoffDigits(RecordedResult):
     Attributes
     ----------
     windows
-        (m,) increasing window lengths T, dimensionless; the orbit is bounded for 2T. Empty if the orbit is too short.
+        (m,) increasing window lengths T, dimensionless; the orbit is bounded for 2T. Empty without windows, see
+        `compute_birkhoff_digits`.
     digits
         (m,) agreeing digits, above 0 and at most 16. On a recognised torus the last value is 8 or more.
     time_unit
@@ -88,7 +89,7 @@ def compute_birkhoff_digits(
 
 def _compare_windows(potential: Potential, start: np.ndarray, t_max: float, execution: Execution) -> BirkhoffDigits:
     """Apply `compute_birkhoff_digits` to a state (1, 4) in units of the well."""
-    curves = exits_of_orbit(potential, float(potential.energy(start)[0]))[0][None]
+    curves = exit_curves_if_known(potential, float(potential.energy(start)[0]))[0][None]
     orbit = OrbitBatch.from_starts(start, np.zeros(1, np.int64))
     orbit.mark_outside(potential, np.arange(1), curves, execution=execution.in_this_thread())
     digits: list[float] = []

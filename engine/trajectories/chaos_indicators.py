@@ -31,9 +31,9 @@ On tori ln|w|/ln t can come close to `CHAOTIC_POWER` at t = 30.
 """
 
 REGULAR_SALI = 1e-5
-"""A SALI above this is no sign of chaos.
+"""A SALI above this value is no sign of chaos.
 
-Orbits between this value and `CHAOS_THRESHOLD` are a few tori, and orbits that become chaotic later.
+The orbits between this value and `CHAOS_THRESHOLD` were a few tori, and orbits that became chaotic later.
 """
 
 CHAOTIC_POWER = 2.0
@@ -43,15 +43,15 @@ On tori ln|w|/ln t stayed below 1.5 from t = 100 to 1e5.
 """
 
 REGULAR_POWER = 1.5
-"""Fastest growth from t/10 to t, as a power of t, that is no sign of chaos. On a torus a deviation vector grows like t."""
+"""Largest growth of a deviation vector from t/10 to t, as a power of t, that is no sign of chaos. On a torus it grows like t."""
 
 CHAOTIC_DIGITS = dict(zip(WINDOWS, (1.0, 2.0, 3.0, 4.0), strict=True))
-"""By window length T, the number of digits below which an orbit is chaotic.
+"""By window length T in units of the well, the number of digits below which an orbit is chaotic.
 
 The smallest numbers on tori were 1.4, 2.2, 3.8 and 6.8.
 """
 
-# Number of samples from which the growth of a deviation vector is fitted.
+# Number of samples to which the growth of a deviation vector is fitted.
 _GROWTH_FIT_SAMPLES = 200
 
 
@@ -112,7 +112,7 @@ class Indicator:
     applies
         Returns whether an orbit has this indicator.
     of_deviations
-        Whether the indicator is computed from deviation vectors, which can show chaos; other indicators recognise tori.
+        Whether the indicator is computed from deviation vectors, which can show chaos; other indicators detect tori.
     """
 
     name: str
@@ -144,24 +144,25 @@ def evaluate_indicators(orbit: Orbit, digits: BirkhoffDigits | None = None) -> t
     return tuple(_evaluate(indicator, orbit, digits) for indicator in INDICATORS if indicator.applies(orbit, digits))
 
 
-def _evaluate(indicator: Indicator, orbit: Orbit, digits: BirkhoffDigits | None) -> IndicatorVerdict:
+def _evaluate(indicator: Indicator, orbit: Orbit, digits: _Digits) -> IndicatorVerdict:
     judgement: _Judgement
     if orbit.fate == Fate.BOUNDED:
         judgement = indicator.judge(orbit, digits)
     elif orbit.fate >= 1:
-        judgement = indicator.judge_inside(orbit) or (None, _describe_escape(orbit))
+        judgement = indicator.judge_inside(orbit) or (None, _describe_escape_without_chaos(orbit))
     else:
         judgement = (None, describe_fate(orbit.fate, orbit.outcomes))
     return IndicatorVerdict(indicator.name, indicator.value(orbit, digits), *judgement)
 
 
-def _describe_escape(orbit: Orbit) -> str:
+def _describe_escape_without_chaos(orbit: Orbit) -> str:
     # The first word: "escapes" of "escapes through exit 1".
     verb = outcome_of(orbit.fate, orbit.outcomes).present.partition(" ")[0]
     return f"No sign of chaos before the orbit {verb} at t = {format_time(orbit.escape_time)}."
 
 
 def _describe_end(orbit: Orbit) -> str:
+    """Return the event that ended an orbit, with its time, such as "escape through exit 1 at t = 15.2"."""
     return f"{outcome_of(orbit.fate, orbit.outcomes).event} at t = {format_time(orbit.escape_time)}"
 
 
@@ -170,27 +171,27 @@ def _judge_sali_inside(orbit: Orbit) -> _Judgement | None:
     smallest_sali = float(np.min(orbit.sali))
     if not is_chaotic(smallest_sali):
         return None
-    return (
-        Verdict.CHAOTIC_INSIDE,
-        f"SALI fell to {smallest_sali:.2g} before the {_describe_end(orbit)}: {CHAOS_THRESHOLD:g} or below is chaotic.",
-    )
+    fall = f"SALI fell to {smallest_sali:.2g} before the {_describe_end(orbit)}"
+    return Verdict.CHAOTIC_INSIDE, f"{fall}: {CHAOS_THRESHOLD:g} or below is chaotic."
 
 
 def _judge_growth_inside(orbit: Orbit) -> _Judgement | None:
     """Return the verdict on an escaping orbit from the growth of a deviation vector; None if the growth shows no chaos."""
-    t_end = float(orbit.t[-1])
-    log_growth = float(orbit.lyapunov_exponent[-1]) * t_end
+    t_end, log_growth = _measure_growth(orbit)
     if t_end < MIN_GROWTH_TIME * orbit.time_unit or log_growth <= _growth_limit(t_end, orbit.time_unit):
         return None
-    power = f"t^{CHAOTIC_POWER:g}"
-    return (
-        Verdict.CHAOTIC_INSIDE,
-        f"A deviation vector grew by e^{log_growth:.3g} before the {_describe_end(orbit)}, more than {power}.",
-    )
+    growth = f"A deviation vector grew by e^{log_growth:.3g} before the {_describe_end(orbit)}"
+    return Verdict.CHAOTIC_INSIDE, f"{growth}, more than t^{CHAOTIC_POWER:g}."
+
+
+def _measure_growth(orbit: Orbit) -> tuple[float, float]:
+    """Return the time at the end of an orbit, and the logarithm of the growth of its first deviation vector until then."""
+    t_end = float(orbit.t[-1])
+    return t_end, float(orbit.lyapunov_exponent[-1]) * t_end
 
 
 def _growth_limit(t_end: float, time_unit: float) -> float:
-    """Return the logarithm of the largest growth of a deviation vector that is not chaotic."""
+    """Return the logarithm of the largest growth of a deviation vector until `t_end` that is no evidence of chaos."""
     return CHAOTIC_POWER * float(np.log(t_end / time_unit))
 
 
@@ -208,8 +209,7 @@ def _judge_sali(orbit: Orbit, digits: _Digits) -> _Judgement:
 
 
 def _judge_exponent(orbit: Orbit, digits: _Digits) -> _Judgement:
-    t_end = float(orbit.t[-1])
-    log_growth = float(orbit.lyapunov_exponent[-1]) * t_end
+    t_end, log_growth = _measure_growth(orbit)
     if t_end < MIN_GROWTH_TIME * orbit.time_unit:
         verdict, reason = _undecided_too_short(t_end)
     else:
@@ -218,7 +218,7 @@ def _judge_exponent(orbit: Orbit, digits: _Digits) -> _Judgement:
 
 
 def _judge_growth(log_growth: float, power: float, t_end: float, time_unit: float) -> tuple[Verdict, str]:
-    """Return verdict and reason, given the logarithm of the growth until `t_end` and the power of t of the recent growth."""
+    """Return verdict and reason, given the logarithm of the growth until `t_end` and the recent growth as a power of t."""
     limit = _growth_limit(t_end, time_unit)
     if log_growth > limit:
         return Verdict.CHAOTIC, f"more than t^{CHAOTIC_POWER:g} = e^{limit:.3g}, which no torus reaches"
@@ -258,7 +258,7 @@ def _judge_halves(orbit: Orbit, digits: _Digits) -> _Judgement:
     return verdict, f"Averages over both halves of the orbit agree to {value:.1f} digits, {reason}."
 
 
-def _last_digits(orbit: Orbit, digits: _Digits) -> float:
+def _digits_of_longest_window(orbit: Orbit, digits: _Digits) -> float:
     return float(digits.digits[-1]) if digits is not None and digits.digits.size else float("nan")
 
 
@@ -266,8 +266,9 @@ def _judge_digits(orbit: Orbit, digits: _Digits) -> _Judgement:
     if digits is None or not digits.digits.size:
         return Verdict.UNDECIDED, f"No windows to compare: {_reason_without_windows(orbit)}."
     window, value = float(digits.windows[-1]), float(digits.digits[-1])
-    # The nearest of the known windows, because the quotient is rounded.
-    limit = CHAOTIC_DIGITS[min(WINDOWS, key=lambda known: abs(known - window / digits.time_unit))]
+    # The quotient is rounded, so the nearest of the windows is used.
+    nearest_window = min(WINDOWS, key=lambda each: abs(each - window / digits.time_unit))
+    limit = CHAOTIC_DIGITS[nearest_window]
     if value >= TORUS_DIGITS:
         verdict, reason = Verdict.REGULAR, f"{TORUS_DIGITS:g} or more, as on a torus"
     elif value < limit:
@@ -310,7 +311,7 @@ INDICATORS = (
     ),
     Indicator(
         "Birkhoff digits",
-        value=_last_digits,
+        value=_digits_of_longest_window,
         judge=_judge_digits,
         applies=lambda orbit, digits: digits is not None,
     ),

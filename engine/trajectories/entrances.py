@@ -15,18 +15,18 @@ from engine.systems.potential import Potential
 
 # Number of points along half a Lyapunov orbit at which the flux is summed.
 _POINTS = 2001
-# Distance of the starts from the line across the exit, as a share of its length; at 0, rounding would decide what is inside.
+# Distance of the starts from the exit line, as a share of its length; at 0, rounding would decide which starts are inside.
 _SHIFT = 1e-7
 
 
 @checks_types(potential=Potential)
 def sample_entrances(potential: Potential, energy: float, count: int, *, seed: int = 0) -> np.ndarray:
-    """Draw random states on the Lyapunov orbits that move into the well, with the distribution of the flux.
+    """Draw random states of orbits that enter the well through its exits, with the distribution of the flux.
 
-    These are the orbits that enter from outside, through each exit in proportion to its flux. The times until they leave are the
-    gap times (Ezra, Waalkens & Wiggins 2009, J. Chem. Phys. 130, 164118). Their mean is `EscapeFlux.mean_passage_time` if orbits
-    that never leave occupy no volume. The time of an orbit that is still inside at t_max is NaN; if NaN is replaced by t_max, as
-    in the example, the mean is a lower bound.
+    Orbits enter through each exit in proportion to its flux. The times until they leave are the gap times (Ezra, Waalkens &
+    Wiggins 2009, J. Chem. Phys. 130, 164118). Their mean is `EscapeFlux.mean_passage_time` if orbits that never leave occupy no
+    volume. The time of an orbit that is still inside at t_max is NaN; if NaN is replaced by t_max, as in the example, the mean is
+    a lower bound.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ def sample_entrances(potential: Potential, energy: float, count: int, *, seed: i
     count
         Number of states, 1 to 10 000 000.
     seed
-        0 to 2⁶³ − 1; equal seeds give equal states.
+        Seed of the random numbers, 0 to 2⁶³ − 1; equal seeds give equal states.
 
     Returns
     -------
@@ -97,7 +97,7 @@ def sample_entrances_by_exit(potential: Potential, energy: float, count: int, *,
     if not orbits:
         raise ValueError(f"energy={h}: all exits are closed; must be above the escape energy {potential.escape_energy:.6g}")
     lines = [_ExitLine(potential, orbit) for orbit in orbits]
-    flux = np.array([line.flux[-1] for line in lines])
+    flux = np.array([line.cumulative_flux[-1] for line in lines])
     line_index = random.choice(len(lines), count, p=flux / flux.sum())
     states = np.empty((count, 4))
     for index, line in enumerate(lines):
@@ -106,7 +106,7 @@ def sample_entrances_by_exit(potential: Potential, energy: float, count: int, *,
 
 
 class _ExitLine:
-    """Draws states that cross an exit line, half a Lyapunov orbit, inward. Their distribution is that of the flux."""
+    """Draws states that cross an exit line inward, with the distribution of the flux. The line is half a Lyapunov orbit."""
 
     def __init__(self, potential: Potential, orbit: LyapunovOrbit) -> None:
         # The import is slow and seldom needed.
@@ -118,17 +118,16 @@ class _ExitLine:
         self.times = np.linspace(0.0, 0.5 * orbit.period, _POINTS)
         speed_squared = (self._path(self.times, 1) ** 2).sum(axis=1)
         increments = 0.5 * (speed_squared[1:] + speed_squared[:-1]) * np.diff(self.times)
-        # The flux through the line up to each point, without constant factors.
-        self.flux = np.concatenate([[0.0], np.cumsum(increments)])
+        # Flux through the line from its beginning to the point of each time, without constant factors.
+        self.cumulative_flux = np.concatenate([[0.0], np.cumsum(increments)])
         self._length = float(np.hypot(*(path[-1] - path[0])))
-        # 1 if the well is to the left of the line, otherwise −1.
-        self._side = 1.0
         self._side = self._find_side()
 
     def draw(self, count: int, random: np.random.Generator) -> np.ndarray:
-        """Draw states, (count, 4), uniform in the flux: in p·dq along the line, and in the momentum's component along it."""
-        times = np.interp(random.uniform(0.0, self.flux[-1], count), self.flux, self.times)
-        points, along, inward = self._frame(times)
+        """Draw states, (count, 4), uniform in the flux: in ∫ p·dq along the line, and in the component of p along the line."""
+        times = np.interp(random.uniform(0.0, self.cumulative_flux[-1], count), self.cumulative_flux, self.times)
+        points, along, left = self._points_and_directions(times)
+        inward = self._side * left
         points = points + _SHIFT * self._length * inward
         kinetic = np.maximum(self._energy - self._potential.value(*points.T), 0.0)
         momentum = np.sqrt(2.0 * self._potential.mass * kinetic)
@@ -136,16 +135,16 @@ class _ExitLine:
         directions = sine[:, None] * along + np.sqrt(1.0 - sine * sine)[:, None] * inward
         return np.column_stack([points, momentum[:, None] * directions])
 
-    def _frame(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return points of the line, and unit vectors along it and into the well."""
+    def _points_and_directions(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return points of the line, (n, 2), and unit vectors along the line and to its left, (n, 2) each."""
         velocity: Any = self._path(times, 1)
         along = velocity / np.maximum(np.hypot(*velocity.T), np.finfo(float).tiny)[:, None]
-        return self._path(times), along, self._side * np.column_stack([-along[:, 1], along[:, 0]])
+        return self._path(times), along, np.column_stack([-along[:, 1], along[:, 0]])
 
     def _find_side(self) -> float:
-        """Return the side of the well, while `_side` is 1: a point a little to the left of the middle of the line decides."""
-        middle, _, left = self._frame(self.times[[_POINTS // 2]])
-        # The point is so far from the line that rounding does not decide.
+        """Return 1 if the well is to the left of the line, otherwise −1."""
+        middle, _, left = self._points_and_directions(self.times[[_POINTS // 2]])
+        # A point to the left of the middle of the line, so far away that rounding does not decide on which side it is.
         test_point = middle + 1e3 * _SHIFT * self._length * left
         outside = find_outside_channels(self._potential, self._energy, *np.ascontiguousarray(test_point.T))
         return -1.0 if outside[0] else 1.0

@@ -18,11 +18,11 @@ from engine.slices.default_window import default_window
 from engine.slices.planes import SPACE
 from engine.systems.potential import Potential
 
-# Number of rows of points between which the edge of the interior is searched; a multiple of 3, see `_interior_area`.
+# Number of rows of points, in each of which the edges of the interior are searched; a multiple of 3, see `_interior_area`.
 _ROWS = 513
-# Number of columns of these points.
+# Number of points in a row.
 _COLUMNS = 256
-# Halvings of the distance between a point inside and the next point outside.
+# Number of halvings of the distance between a point inside and the next point outside.
 _HALVINGS = 40
 
 
@@ -129,8 +129,8 @@ def compute_flux(potential: Potential, energy: float) -> EscapeFlux:
     Raises
     ------
     ValueError
-        If `energy` is not finite or below the bottom of the well, the exits are not defined there (see `find_lyapunov_orbits`),
-        or the frame rotates.
+        If `energy` is not finite or not above the bottom of the well, the exits are not defined at this energy (see
+        `find_lyapunov_orbits`), or the frame rotates.
 
     Examples
     --------
@@ -141,8 +141,9 @@ def compute_flux(potential: Potential, energy: float) -> EscapeFlux:
     """
     potential.check_at_rest("the flux and the volume inside")
     h = checked_number("energy", energy)
-    if h <= float(potential.value(0.0, 0.0)):
-        raise ValueError(f"energy={h}: must be above the bottom of the well, {float(potential.value(0.0, 0.0)):.6g}")
+    bottom = float(potential.value(0.0, 0.0))
+    if h <= bottom:
+        raise ValueError(f"energy={h}: must be above the bottom of the well, {bottom:.6g}")
     orbits = find_lyapunov_orbits(potential, h)
     # ∮ p·dq is the integral of p²/m = 2 (h − V). The mean over evenly spaced times of a period converges exponentially.
     actions = [orbit.period * float(np.mean(2.0 * (h - potential.value(orbit.x[:-1], orbit.y[:-1])))) for orbit in orbits]
@@ -153,7 +154,7 @@ def compute_flux(potential: Potential, energy: float) -> EscapeFlux:
 
 
 def _interior_area(potential: Potential, h: float) -> tuple[float, float]:
-    """Return the area of the interior and its error, from the lengths of its sections with evenly spaced lines."""
+    """Return the area of the interior and its error, from the lengths of its sections with evenly spaced rows."""
     window = default_window(potential, SPACE, h)
     row_height = window.height / _ROWS
     y = window.ordinate_low + row_height * (np.arange(_ROWS) + 0.5)
@@ -167,7 +168,8 @@ def _interior_area(potential: Potential, h: float) -> tuple[float, float]:
     # The length of a row is the sum of its right edges minus the sum of its left edges.
     np.add.at(lengths, row, np.where(inside[row, column], edge_x, -edge_x))
     area = float(lengths.sum()) * row_height
-    # The lengths behave like square roots at their ends. The middle row of every three rows therefore has 3^1.5 times the error.
+    # The lengths behave like square roots at the ends of the interior. The sum over every third row, the middle one of three,
+    # therefore has 3^1.5 times the error.
     return area, abs(area - 3.0 * row_height * float(lengths[1::3].sum())) / (3.0**1.5 - 1.0)
 
 

@@ -23,12 +23,12 @@ from engine.systems.well_units import LENGTH
 _MIN_DISTANCE = 1e-13
 # Number of directions in which neighbours lie.
 _DIRECTIONS = 16
-# Number of neighbours for each factor of 10 in distance.
+# Number of neighbours in all directions together for each factor of 10 in distance.
 _STARTS_PER_DECADE = 80
-# Number of neighbours classified together, from the inside out. An orbit that escapes late has a divergent start on one of the
-# first rings, so neighbours farther out, some of them bounded for much longer, need not be integrated.
+# Number of neighbours classified together, on the inner rings first. Around a start that escapes late, one of the first rings
+# has a divergent start, so neighbours farther out, some of them bounded for much longer, need not be integrated.
 _BATCH_SIZE = 128
-# Number of refinements. Two into 10 sections reduce the gap between two rings, a factor of at most 1.6, to less than 1 %.
+# Number of refinements. Two, into 10 sections each, reduce the gap between two rings, a factor of at most 1.6, to less than 1 %.
 _REFINEMENTS = 2
 # Number of sections of a refinement.
 _SECTIONS = 10
@@ -124,9 +124,10 @@ def find_divergent_start(
     (1, 4, 0.047)
     """
     plane = checked_slice(plane)
-    h = _checked_energy(plane, energy, x, ordinate)
-    if plane.parameter is not None:
-        potential, plane = plane.potential_at(potential, x, ordinate), plane.line((x, ordinate)[plane.parameter_axis or 0])
+    h = _checked_start_energy(plane, energy, x, ordinate)
+    if plane.parameter_axis is not None:
+        potential = plane.potential_at(potential, x, ordinate)
+        plane = plane.line((x, ordinate)[plane.parameter_axis])
     t_max = potential.checked_t_max(t_max)
     units = potential.units
     nearest = _MIN_DISTANCE * units.length
@@ -137,9 +138,10 @@ def find_divergent_start(
     search = _Search(potential.in_well_units, plane.in_well_units(units), h / units.energy, centre, execution)
     search.classify_centre(t_max / units.time)
     if search.centre_fate in (Fate.FORBIDDEN, Fate.OUTSIDE):
-        fate, condition = name_fate(search.centre_fate), plane.limiting_curve(potential.mass).replace("=", "≤")
+        condition = plane.limiting_curve(potential.mass).replace("=", "≤")
         start = ", ".join(f"{name}={value}" for name, value in zip(plane.axis_names, (x, ordinate), strict=True))
-        raise ValueError(f"{start}: {fate} on {plane.title} at h={h}; must have {condition} and lie inside all exits")
+        fate_name = name_fate(search.centre_fate)
+        raise ValueError(f"{start}: {fate_name} on {plane.title} at h={h}; must have {condition} and lie inside all exits")
     divergent = search.find_nearest(furthest / units.length)
     if divergent is None:
         return None
@@ -147,7 +149,7 @@ def find_divergent_start(
     return replace(plane.restore(divergent, units), made_by=made_by)
 
 
-def _checked_energy(plane: Slice, energy: Energy, x: float, ordinate: float) -> float:
+def _checked_start_energy(plane: Slice, energy: Energy, x: float, ordinate: float) -> float:
     """Return the energy h of the start; ValueError unless h and the coordinates are finite numbers."""
     for name, value in zip(plane.axis_names, (x, ordinate), strict=True):
         checked_number(name, value)
@@ -173,33 +175,28 @@ class _Bracket:
 class _Search:
     """Searches for divergent starts around the start `centre` (2,) = x, ordinate, at energy `h`, in units of the well."""
 
-    def __init__(
-        self,
-        potential: Potential,
-        plane: Slice,
-        h: float,
-        centre: np.ndarray,
-        execution: Execution,
-    ) -> None:
+    def __init__(self, potential: Potential, plane: Slice, h: float, centre: np.ndarray, execution: Execution) -> None:
         self.potential, self.plane, self.h, self.centre = potential, plane, h, centre
         self.execution = execution
 
     def classify_centre(self, t_max: float) -> None:
-        """Set the fate of the centre and the integration time of its neighbours."""
+        """Find the fate of the centre, and set the integration time of its neighbours."""
         fate, escape_time = self.classify(self.centre[None], t_max)
         self.centre_fate = int(fate[0])
         scaled_time = _HORIZON_FACTOR * escape_time[0] if self.centre_fate >= 1 else 0.0
         self.horizon = min(t_max, max(_SHORTEST_HORIZON, scaled_time))
 
     def find_nearest(self, furthest: float) -> DivergentStart | None:
-        """Find the nearest divergent start, from the inside out."""
-        directions = _directions(self.plane)
+        """Find the nearest divergent start up to the distance `furthest`; None if there is none."""
+        directions = _search_directions(self.plane)
         # The batches of rings are classified one by one, up to the first with a divergent start.
         brackets = (self.find_bracket(radii, directions) for radii in _ring_radii(furthest, len(directions)))
         bracket = next(filter(None, brackets), None)
         if bracket is None:
             return None
-        for _ in range(_REFINEMENTS if bracket.high > _MIN_DISTANCE else 0):
+        # Below the smallest distance, rounding would decide.
+        refinements = _REFINEMENTS if bracket.high > _MIN_DISTANCE else 0
+        for _ in range(refinements):
             radii = np.linspace(bracket.low, bracket.high, _SECTIONS + 1)
             # The last of these rings has a divergent start, so `or` only excludes None for the type checker.
             bracket = self.find_bracket(radii, bracket.directions) or bracket
@@ -232,7 +229,7 @@ class _Search:
         return fate.reshape(points.shape[:-1]), escape_time.reshape(points.shape[:-1])
 
 
-def _directions(plane: Slice) -> np.ndarray:
+def _search_directions(plane: Slice) -> np.ndarray:
     """Return unit vectors, (m, 2); with an axis h, the two directions of constant energy."""
     if not all(plane.free_axes):
         direction = np.array(plane.free_axes, float)

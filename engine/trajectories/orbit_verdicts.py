@@ -1,4 +1,4 @@
-"""The verdict on one orbit: escaped or bounded, until when, and regular or chaotic. All texts on orbits are based on it."""
+"""The verdict on one orbit: escaped or bounded, until what time, and regular or chaotic. All texts on orbits are based on it."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class OrbitVerdict(OrbitResult):
         What the indicators show until `t_end`. For a bounded orbit: "regular", "chaotic", "no sign of chaos" (like a regular
         orbit but without evidence of a torus), or "undecided". For other orbits: "chaotic while inside" or None.
     indicators
-        The indicators that determine the character, with their values; empty if no indicator does.
+        Names and values of the indicators whose conclusion is the character, separated by commas; empty if there are none.
     outcomes
         The outcomes of the potential, see `Potential.outcomes`; empty if they are not known.
     exits_unknown
@@ -73,8 +73,8 @@ class OrbitVerdict(OrbitResult):
 
     def describe(self) -> str:
         """Describe the verdict in one sentence; if exits are not known, a second sentence says why."""
-        note = f" Exits are not known at this energy: {self.exits_unknown}." if self.exits_unknown else ""
-        return self._describe_fate() + note
+        reason = f" Exits are not known at this energy: {self.exits_unknown}." if self.exits_unknown else ""
+        return self._describe_fate() + reason
 
     def _describe_fate(self) -> str:
         crossings, time = f"{format_count(self.crossings, 'upward crossing')} of y = 0", format_time(self.t_end)
@@ -170,14 +170,14 @@ def judge_orbit(orbit: Orbit, digits: BirkhoffDigits | None = None) -> OrbitVerd
     """
     findings = evaluate_indicators(orbit, digits)
     conclusions = [finding.conclusion for finding in findings]
-    character = _combine(findings) if orbit.fate == Fate.BOUNDED else _judge_inside(conclusions)
+    character = _combine_conclusions(findings) if orbit.fate == Fate.BOUNDED else _judge_inside(conclusions)
     return OrbitVerdict(
         orbit.fate,
         float(orbit.t[-1]),
         orbit.crossings,
         _find_evidence(orbit, digits, Verdict.CHAOTIC in conclusions),
         character,
-        _deciding_indicators(findings, character),
+        _name_deciding_indicators(findings, character),
         orbit.outcomes,
         orbit.exits_unknown,
         findings=findings,
@@ -185,7 +185,7 @@ def judge_orbit(orbit: Orbit, digits: BirkhoffDigits | None = None) -> OrbitVerd
     )
 
 
-def _combine(findings: Sequence[IndicatorVerdict]) -> Verdict:
+def _combine_conclusions(findings: Sequence[IndicatorVerdict]) -> Verdict:
     """Combine the conclusions on a bounded orbit, see `judge_orbit`."""
     decisive = {Verdict.REGULAR, Verdict.CHAOTIC}.intersection(finding.conclusion for finding in findings)
     if len(decisive) == 1:
@@ -199,7 +199,7 @@ def _judge_inside(conclusions: Sequence[Verdict | None]) -> Verdict | None:
     return Verdict.CHAOTIC_INSIDE if Verdict.CHAOTIC_INSIDE in conclusions else None
 
 
-def _deciding_indicators(findings: Sequence[IndicatorVerdict], character: Verdict | None) -> str:
+def _name_deciding_indicators(findings: Sequence[IndicatorVerdict], character: Verdict | None) -> str:
     """Return the names and values of the indicators that conclude this character; empty without a character."""
     deciding = [finding for finding in findings if character is not None and finding.conclusion is character]
     return ", ".join(f"{finding.name} {finding.value:.2g}" for finding in deciding)

@@ -27,7 +27,7 @@ _COMPONENTS = 4
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SampledOrbits(OrbitResult):
-    """The paths of n orbits at m times each, dimensionless; arrays are read-only.
+    """The states of n orbits at m times each, dimensionless; arrays are read-only.
 
     Attributes
     ----------
@@ -103,7 +103,7 @@ def sample_orbits(potential: Potential, states: Any, times: Any, *, execution: E
     concurrent.futures.CancelledError
         If cancelled.
     ValueError
-        If a state is not finite, or the times are not ascending.
+        If there is no state, a state is not finite, or the times are out of range or not ascending.
 
     Examples
     --------
@@ -135,12 +135,12 @@ def sample_orbits(potential: Potential, states: Any, times: Any, *, execution: E
         execution.report(lambda index=index: (index + 1) / len(futures))  # type: ignore[misc]
     energies = potential.energy(states)
     outcomes = potential.outcomes_at((float(energies.min()), float(energies.max())))
-    orbits = units.restore(_join(scaled_potential, states / units.state, times / units.time, results))
+    orbits = units.restore(_join_orbits(scaled_potential, states / units.state, times / units.time, results))
     return replace(orbits, outcomes=outcomes, made_by=potential.describe_run(t_max=float(times[:, -1].max())))
 
 
 def _sample_orbit(potential: Potential, start: np.ndarray, times: np.ndarray) -> tuple[np.ndarray, Outcomes]:
-    """Return the states of one orbit, of shape (4, m), and its outcome, in units of the well."""
+    """Return the states of one orbit at m times, of shape (4, m), and its outcome, in units of the well."""
     curves = exit_curves(potential, float(potential.energy(start)))
     recorded = record_orbit(potential, start, curves, times[-1], SERIAL_EXECUTION)
     path = np.full((_COMPONENTS, times.size), np.nan)
@@ -153,8 +153,8 @@ def _sample_orbit(potential: Potential, start: np.ndarray, times: np.ndarray) ->
     return path, recorded.outcomes
 
 
-def _join(potential: Potential, states: np.ndarray, times: np.ndarray, results: list[Any]) -> SampledOrbits:
-    """Join the results of `_sample_orbit` for all orbits, in units of the well."""
+def _join_orbits(potential: Potential, states: np.ndarray, times: np.ndarray, results: list[Any]) -> SampledOrbits:
+    """Join the paths and outcomes that `_sample_orbit` returned for all orbits, in units of the well."""
     paths = np.array([path for path, _ in results]).reshape(len(results), _COMPONENTS, times.shape[1])
     names = ("fate", "escape_time", "crossings")
     outcomes = (np.concatenate([getattr(outcome, name) for _, outcome in results]) for name in names)

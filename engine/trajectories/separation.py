@@ -16,7 +16,7 @@ from engine.systems.potential import Potential
 from engine.systems.well_units import LENGTH, TIME
 
 LONGEST_SEPARATION = 2000.0
-"""Longest time over which two orbits are compared, in units of the well; neighbours in a chaotic sea separate much earlier."""
+"""Longest time over which two orbits are compared, in units of the well. Neighbours in a chaotic sea separate much earlier."""
 
 # Number of times at which the distance is computed.
 _SAMPLES = 2000
@@ -29,7 +29,7 @@ class Separation(RecordedResult):
     Attributes
     ----------
     t
-        (n,) times, evenly spaced from 0.
+        (n,) times, evenly spaced, from 0.
     distance
         (n,) √(Δx² + Δy² + Δpx² + Δpy²), with momenta in units in which the unit of time of the well is 1; 0 where both states are
         exactly equal.

@@ -33,10 +33,10 @@ _MAX_PARTS = 8
 
 @dataclass(frozen=True)
 class PointSpacing:
-    """Largest distance between neighbouring points: `fine` in the window that is drawn, `coarse` elsewhere.
+    """Largest distance between neighbouring points, in units of the well: `fine` in the window that is drawn, `coarse` elsewhere.
 
-    `low` and `high` are the corners of the window on the plane of the unstable manifold, where px has the opposite sign. They are
-    None for the whole plane.
+    `low` and `high`, (2,) each, are the corners of the window with its margin, on the plane of the unstable manifold, where px
+    has the opposite sign. They are None for the whole plane.
     """
 
     coarse: float
@@ -67,6 +67,7 @@ class PointSpacing:
 
     def thin(self, piece: np.ndarray) -> Iterator[np.ndarray]:
         """Yield the lines (m, 2) of a piece in the window, without points close to the line between their neighbours."""
+        # The import is slow and seldom needed.
         import shapely
 
         line = shapely.simplify(shapely.LineString(piece), _THINNING_TOLERANCE * self.fine, preserve_topology=False)
@@ -78,7 +79,7 @@ class PointSpacing:
 def refine_passages(
     find_passages: Callable[[np.ndarray], np.ndarray], count: int, spacing: PointSpacing, max_orbits: int
 ) -> np.ndarray:
-    """Return passages of orbits of rising phase, (n, count, 3); orbits are added until the curves are smooth.
+    """Return passages of orbits in order of phase, (n, count, 3). Orbits are added until the curves are smooth.
 
     `find_passages` is a function of phases (m,) that returns the passages, (m, count, 3): x, px and time. At most `max_orbits`
     orbits are added.
@@ -88,7 +89,7 @@ def refine_passages(
     for min_width, passage in itertools.product(_MIN_WIDTHS, range(count)):
         while True:
             width = np.diff(phases)
-            parts = _affordable(_parts_needed(passages[:, passage], spacing), width, min_width, max_orbits)
+            parts = _limit_parts(_count_parts(passages[:, passage], spacing), width, min_width, max_orbits)
             if parts.max() == 1:
                 break
             interval, new_phases = _subdivide(phases, width, parts)
@@ -99,22 +100,25 @@ def refine_passages(
 
 
 def _subdivide(phases: np.ndarray, width: np.ndarray, parts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the interval and the value of each new phase, if intervals are split into equal `parts` (n,)."""
-    interval = np.repeat(np.arange(parts.size), parts - 1)
-    position = np.arange(interval.size) - np.repeat(np.cumsum(parts - 1) - (parts - 1), parts - 1) + 1
+    """Return, for each new phase, its interval and its value, if each interval is split into equal `parts` (n,)."""
+    new_counts = parts - 1
+    first_index = np.cumsum(new_counts) - new_counts
+    interval = np.repeat(np.arange(parts.size), new_counts)
+    # The new phases of each interval have the positions 1, 2, …
+    position = np.arange(interval.size) - first_index[interval] + 1
     return interval, phases[interval] + width[interval] * position / parts[interval]
 
 
-def _affordable(parts: np.ndarray, width: np.ndarray, min_width: float, max_orbits: int) -> np.ndarray:
-    """Limit `parts` (n,) to widths of `min_width` or more and to `max_orbits` new orbits, the widest intervals first."""
+def _limit_parts(parts: np.ndarray, width: np.ndarray, min_width: float, max_orbits: int) -> np.ndarray:
+    """Limit `parts` (n,) to widths of `min_width` or more, and to `max_orbits` new orbits in the widest intervals."""
     parts = np.minimum(parts, np.maximum(width / min_width, 1.0)).astype(int)
     widest_first = np.argsort(-width, kind="stable")
     parts[widest_first[np.cumsum(parts[widest_first] - 1) > max_orbits]] = 1
     return parts
 
 
-def _parts_needed(points: np.ndarray, spacing: PointSpacing) -> np.ndarray:
-    """Return into how many parts to split each interval between points (n, 3) x, px, time; 1 keeps an interval."""
+def _count_parts(points: np.ndarray, spacing: PointSpacing) -> np.ndarray:
+    """Return the number of parts, (n − 1,), into which to split each interval between points (n, 3) x, px, time; 1 keeps it."""
     allowed = spacing.between(points[:, :2])
     exists = np.isfinite(points[:, 0])
     step = np.diff(points, axis=0)
@@ -138,8 +142,8 @@ def _sagitta(step: np.ndarray, length: np.ndarray) -> np.ndarray:
     step_in, step_out = step[:-1], step[1:]
     area = np.abs(step_in[:, 0] * step_out[:, 1] - step_in[:, 1] * step_out[:, 0])
     chord = np.maximum(np.hypot(*(step_in + step_out).T), np.finfo(float).tiny)
-    goes_ahead = np.sum(step_in * step_out, axis=1) > 0.0
-    sagitta: np.ndarray = np.where(goes_ahead, area / chord, np.maximum(length[:-1], length[1:]))
+    continues_forward = np.sum(step_in * step_out, axis=1) > 0.0
+    sagitta: np.ndarray = np.where(continues_forward, area / chord, np.maximum(length[:-1], length[1:]))
     return np.where(np.isnan(area), 0.0, sagitta)
 
 

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 MOST_IMAGES = 6
-"""Largest number of images; the arcs of later images are too fine and too many to plot."""
+"""Largest number of images. The arcs of later images would be too fine and too many to plot."""
 
 ORBITS_PER_IMAGE = 20_000
 """Largest number of orbits per channel and image, about 0.3 s of work. Arcs that these orbits do not resolve are left out."""
@@ -109,9 +109,8 @@ class StableManifolds(Result):
     def describe(self) -> str:
         """Return the numbers of arcs and points in one sentence."""
         images = sorted({arc.image for arc in self.arcs})
-        image_text = (
-            f"images {', '.join(map(str, images))}" if len(images) > 1 else f"image {images[0]}" if images else "no image"
-        )
+        label = "images" if len(images) > 1 else "image"
+        image_text = f"{label} {', '.join(map(str, images))}" if images else "no image"
         points = format_whole(sum(arc.x.size for arc in self.arcs))
         note = ", some of them truncated spirals" if self.truncated else ""
         return f"Stable manifolds of the Lyapunov orbits, {image_text}: {len(self.arcs)} arcs of {points} points{note}."
@@ -183,25 +182,30 @@ def find_stable_manifolds(
     zoom_window = None if window is None else checked_window(window)
     units = potential.units
     factors = 1.0 / units.length, 1.0 / units.momentum
-    spacing = PointSpacing.for_window(
-        plane_window.scaled(*factors), None if zoom_window is None else zoom_window.scaled(*factors)
-    )
-    scaled_potential = potential.in_well_units
-    scaled_energy = energy / units.energy
-    orbits = {orbit.channel: orbit for orbit in find_orbits_in_well_units(scaled_potential, scaled_energy)}
-    # A window need not be symmetric, so all channels are computed in a window.
-    uses_mirror = scaled_potential.well.mirror_in_x and window is None
-    mirror_channel = (
-        scaled_potential.well.mirror_numbers(scaled_energy) if uses_mirror else np.arange(scaled_potential.channels + 1)
-    )
-    computed_channels = [channel for channel in orbits if channel <= mirror_channel[channel]]
+    scaled_zoom = None if zoom_window is None else zoom_window.scaled(*factors)
+    spacing = PointSpacing.for_window(plane_window.scaled(*factors), scaled_zoom)
+    # A given window need not be symmetric, so all channels are computed in it.
+    uses_mirror = potential.in_well_units.well.mirror_in_x and window is None
+    arcs, truncated = _find_all_arcs(potential.in_well_units, energy / units.energy, images, spacing, uses_mirror, execution)
+    return StableManifolds(potential, energy, tuple(map(units.restore, arcs)), images, truncated)
+
+
+def _find_all_arcs(
+    potential: Potential, energy: float, images: int, spacing: PointSpacing, uses_mirror: bool, execution: Execution
+) -> tuple[list[ManifoldArc], bool]:
+    """Return the arcs of all channels in units of the well, and whether any arc is truncated.
+
+    With `uses_mirror`, the arcs of the second of two mirror channels are copied from the first.
+    """
+    orbits = {orbit.channel: orbit for orbit in find_orbits_in_well_units(potential, energy)}
+    mirror_channels = potential.well.mirror_numbers(energy) if uses_mirror else np.arange(potential.channels + 1)
+    computed_channels = [channel for channel in orbits if channel <= mirror_channels[channel]]
     # Each thread mostly waits for the tiles of its channel.
     with ThreadPoolExecutor(max(len(computed_channels), 1)) as threads:
         results = threads.map(lambda channel: _find_arcs(orbits[channel], images, spacing, execution), computed_channels)
         arcs = dict(zip(computed_channels, results, strict=True))
     truncated = any(is_truncated for _, is_truncated in arcs.values())
-    restored = tuple(units.restore(arc) for channel in orbits for arc in _arcs_of(channel, arcs, int(mirror_channel[channel])))
-    return StableManifolds(potential, energy, restored, images, truncated)
+    return [arc for channel in orbits for arc in _arcs_of(channel, arcs, int(mirror_channels[channel]))], truncated
 
 
 def _arcs_of(channel: int, arcs: dict[int, tuple[list[ManifoldArc], bool]], mirror_channel: int) -> list[ManifoldArc]:
@@ -229,16 +233,16 @@ def _find_arcs(orbit: LyapunovOrbit, images: int, spacing: PointSpacing, executi
     arcs = []
     is_truncated = False
     for image in range(1, images + 1):
-        first = 0 if image == 1 else tube.near_passages + image - 1
         # The passages near the Lyapunov orbit join end to end and belong to image 1.
+        first = 0 if image == 1 else tube.near_passages + image - 1
         curve = np.concatenate([passages[:, k] for k in range(first, tube.near_passages + image)])
         pieces = split_curve(curve, spacing, closed=tube.near_passages == 0)
         is_truncated |= not (len(pieces) == 1 and np.isfinite(curve).all())
-        arcs += [_arc(orbit.channel, image, line) for piece in pieces for line in spacing.thin(piece)]
+        arcs += [_reversed_arc(orbit.channel, image, line) for piece in pieces for line in spacing.thin(piece)]
     return arcs, is_truncated
 
 
-def _arc(channel: int, image: int, line: np.ndarray) -> ManifoldArc:
-    """Return an arc of the stable manifold, given a line (m, 2) of the unstable manifold, by reversing the momenta."""
+def _reversed_arc(channel: int, image: int, line: np.ndarray) -> ManifoldArc:
+    """Return an arc of the stable manifold: a line (m, 2) of the unstable manifold with reversed momenta."""
     x, px = line.T
     return ManifoldArc(channel, image, x.copy(), -px)

@@ -1,4 +1,4 @@
-"""Integration of one orbit: path, SALI, Lyapunov exponent, R², crossings, exit and energy error."""
+"""Integration of one orbit: states, SALI, Lyapunov exponent, R², crossings, fate and energy error."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from engine.evidence.birkhoff_averages import compare_halves
-from engine.exits.exit_rows import exits_of_orbit
+from engine.exits.exit_rows import exit_curves_if_known
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.foundations.former_names import with_former_fields
 from engine.foundations.validation import checked_state, checks_types
@@ -28,15 +28,15 @@ MAX_ORBIT_TIME = 1e7
 # Interval between samples, in units of the well, unless it gives too few or too many samples.
 _SAMPLE_INTERVAL = 0.02
 # Smallest number of intervals between samples.
-_MIN_SAMPLES = 400
-# Largest number of intervals between samples, unless there are more integrator steps.
-_MAX_SAMPLES = 500_000
+_MIN_INTERVALS = 400
+# Largest number of intervals between samples, unless there are more integration steps.
+_MAX_INTERVALS = 500_000
 
 
 @with_former_fields
 @dataclass(frozen=True, eq=False, repr=False)
 class Orbit(OrbitResult):
-    """One orbit, dimensionless, sampled at n evenly spaced times from 0 to the escape or t_max; arrays are read-only.
+    """One orbit, dimensionless, sampled at n evenly spaced times from 0 to its end or t_max; arrays are read-only.
 
     An orbit exactly at rest on a saddle is bounded; its samples end where rounding carries the orbit off the saddle.
 
@@ -121,7 +121,7 @@ class Orbit(OrbitResult):
                [ 0.1585, -0.0726],
                [ 0.2122, -0.0821]])
         """
-        potential = self._known_potential
+        potential = self._required_potential
         units, kernels = potential.units, potential.in_well_units.well.kernels
         samples = np.stack([self.x, self.y, self.px, self.py]) / units.state[:, None]
         times = self.t / units.time
@@ -144,10 +144,10 @@ class Orbit(OrbitResult):
         array([8.9])
         """
         start = (self.x[0], self.y[0], self.px[0], self.py[0])
-        return compute_birkhoff_digits(self._known_potential, start, float(self.t[-1]), execution=execution)
+        return compute_birkhoff_digits(self._required_potential, start, float(self.t[-1]), execution=execution)
 
     @property
-    def _known_potential(self) -> Potential:
+    def _required_potential(self) -> Potential:
         if self.potential is None:
             raise ValueError("this orbit has no potential; must be one of `integrate_orbit`")
         return self.potential
@@ -199,7 +199,7 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, exe
 def _integrate(potential: Potential, start: np.ndarray, t_max: float, execution: Execution) -> Orbit:
     """Apply `integrate_orbit` in units of the well."""
     energy = float(potential.energy(start))
-    curves, exits_unknown = exits_of_orbit(potential, energy)
+    curves, exits_unknown = exit_curves_if_known(potential, energy)
     recorded = record_orbit(potential, start, curves, t_max, execution)
     times, (x, y, px, py), sali, exponent = _sample_orbit(potential, start, recorded, execution)
     arrays = (times, x, y, px, py, sali, exponent, x * x + y * y)
@@ -211,6 +211,7 @@ def _integrate(potential: Potential, start: np.ndarray, t_max: float, execution:
 
 
 def _find_evidence(potential: Potential, energy: float, fate: int) -> Evidence:
+    """Return why an orbit is bounded, see `Orbit.evidence`."""
     if fate != Fate.BOUNDED:
         return Evidence.NONE
     return Evidence.CLOSED if potential.well.is_closed_at(energy) else Evidence.INTEGRATED
@@ -238,15 +239,16 @@ def _sample_orbit(
 
 
 def _starts_of_short_steps(times: np.ndarray, starts: np.ndarray) -> np.ndarray:
-    """Return the starts of the steps in those intervals between samples that contain a whole step, as near a body.
+    """Return the start times of the steps in those intervals between samples that contain a whole step, as near a body.
 
-    Deviation vectors are carried over an interval by one series, which is valid for about one step only.
+    One series carries the deviation vectors over an interval. It is valid for about one step only.
     """
     interval = np.searchsorted(times, starts, side="right") - 1
+    # With two starts in an interval, the step from one to the other is inside.
     contains_step = np.bincount(interval, minlength=times.size) > 1
     return starts[contains_step[interval]]
 
 
-def _sample_count(t_end: float, steps: int) -> int:
-    """Return the number of samples: at least one per integration step, and more for short orbits."""
-    return max(int(np.clip(t_end / _SAMPLE_INTERVAL, _MIN_SAMPLES, _MAX_SAMPLES)), steps) + 1
+def _sample_count(t_end: float, step_count: int) -> int:
+    """Return the number of samples: more than there are integration steps, and more still for short orbits."""
+    return max(int(np.clip(t_end / _SAMPLE_INTERVAL, _MIN_INTERVALS, _MAX_INTERVALS)), step_count) + 1

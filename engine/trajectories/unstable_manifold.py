@@ -21,9 +21,10 @@ from engine.systems.potential import Potential
 # the size of the well, the distance of such an orbit from the manifold scales with the third power of the displacement: 4e-8 for
 # 1e-2, 3e-11 for 1e-3, and thus 3e-13 for this value.
 _MAX_DISPLACEMENT = 2e-4
-# Longest time per passage of the section, in periods; an orbit that stays near another Lyapunov orbit for longer is not needed.
+# Longest time per passage of the section, in periods. Later passages, of orbits that stay near another Lyapunov orbit, are not
+# needed.
 _MAX_PERIODS_PER_PASSAGE = 12.0
-# Smallest multiplier of an unstable orbit. Over a saddle, multipliers are 38 or more; near 1, an orbit is about to become stable.
+# Smallest multiplier of an unstable orbit. Over a saddle, multipliers are 38 or more; near 1, an orbit is almost stable.
 _MIN_MULTIPLIER = 1.5
 # End of the first image of a Lyapunov orbit that crosses y = 0, in units of the distance of the saddle from the origin. Such an
 # orbit is itself a point of the section, where one infinite curve begins. The image ends where a displacement that continued to
@@ -48,9 +49,9 @@ class UnstableManifold:
     direction
         (4,) unit vector in phase space: the inward unstable direction at the first point of the orbit, a point of rest.
     multiplier
-        Unstable eigenvalue of the monodromy matrix, above 1.
+        Unstable Floquet multiplier, the eigenvalue of the monodromy matrix of largest modulus, above 1.5.
     min_displacement, max_displacement
-        Displacements of phase 0 and of phase 1, dimensionless.
+        Displacements of phase 0 and of phase 1, in units of the well.
     near_passages
         Number of initial passages of y = 0 near the Lyapunov orbit; 0 if that orbit does not cross y = 0.
     """
@@ -73,7 +74,7 @@ class UnstableManifold:
         """
         orbit.potential.check_at_rest("manifolds of Lyapunov orbits")
         monodromy = monodromy_matrix(orbit.potential, orbit.start, orbit.period)
-        multiplier, direction = _leading_eigenvector(monodromy)
+        multiplier, direction = _leading_eigenpair(monodromy)
         if not multiplier > _MIN_MULTIPLIER:
             raise ValueError(
                 f"the Lyapunov orbit of channel {orbit.channel} is not unstable; "
@@ -81,14 +82,9 @@ class UnstableManifold:
             )
         if direction[:2] @ orbit.outward > 0.0:
             direction = -direction
-        largest, near_passages = _MAX_DISPLACEMENT, 0
-        if orbit.y[0] * orbit.y[orbit.y.size // 2] <= 0.0:
-            # The ends of the orbit are on different sides of y = 0.
-            end = _FIRST_IMAGE_END * float(np.hypot(*orbit.potential.saddles[orbit.channel - 1]))
-            periods = math.ceil(math.log(end / _MAX_DISPLACEMENT) / math.log(multiplier))
-            largest, near_passages = end * multiplier**-periods, periods - 1
+        largest, near_passages = _choose_displacement(orbit, multiplier)
         manifold = cls(orbit, read_only(direction), multiplier, largest / multiplier, largest, near_passages)
-        left_eigenvector = _leading_eigenvector(monodromy.T)[1]
+        _, left_eigenvector = _leading_eigenpair(monodromy.T)
         return replace(manifold, max_displacement=manifold._displacement_after_period(left_eigenvector))
 
     @property
@@ -114,7 +110,7 @@ class UnstableManifold:
         return displacement
 
     def find_passages(self, phases: np.ndarray, count: int, execution: Execution = DEFAULT_EXECUTION) -> np.ndarray:
-        """Find the first downward passages of y = 0 of the orbits with these phases, until they escape.
+        """Find the first downward passages of y = 0 of the orbits with these phases before they escape.
 
         Parameters
         ----------
@@ -141,7 +137,7 @@ class UnstableManifold:
         # The second term is the time in which the smallest displacement would grow to 1.
         duration = count * _MAX_PERIODS_PER_PASSAGE * self.orbit.period - growth_time * math.log(self.min_displacement)
         passages = map_tiles(
-            _passages, self.potential, self.start_states(displacements), count, curves, exit_gates(curves), duration,
+            _find_passages_of_tile, self.potential, self.start_states(displacements), count, curves, exit_gates(curves), duration,
             shape=(count, 3), execution=execution, tiles_per_task=_TILES_PER_TASK,
         )  # fmt: skip
         execution.raise_if_cancelled()
@@ -163,14 +159,25 @@ class UnstableManifold:
         return states
 
 
-def _leading_eigenvector(matrix: np.ndarray) -> tuple[float, np.ndarray]:
-    """Return the eigenvalue of largest modulus and its unit eigenvector, as real parts."""
+def _choose_displacement(orbit: LyapunovOrbit, multiplier: float) -> tuple[float, int]:
+    """Return `max_displacement`, without nonlinear terms, and `near_passages`, see `UnstableManifold`."""
+    # The points of rest have the first and the middle index.
+    crosses_section = orbit.y[0] * orbit.y[orbit.y.size // 2] <= 0.0
+    if not crosses_section:
+        return _MAX_DISPLACEMENT, 0
+    end = _FIRST_IMAGE_END * float(np.hypot(*orbit.potential.saddles[orbit.channel - 1]))
+    periods = math.ceil(math.log(end / _MAX_DISPLACEMENT) / math.log(multiplier))
+    return end * multiplier**-periods, periods - 1
+
+
+def _leading_eigenpair(matrix: np.ndarray) -> tuple[float, np.ndarray]:
+    """Return the eigenvalue of largest modulus and its unit eigenvector, which are real for an unstable orbit."""
     values, vectors = np.linalg.eig(matrix)
     leading = int(np.argmax(np.abs(values)))
     return float(values[leading].real), vectors[:, leading].real.copy()
 
 
-def _passages(
+def _find_passages_of_tile(
     potential: Potential, tile: np.ndarray, count: int, curves: np.ndarray, gates: np.ndarray, duration: float
 ) -> np.ndarray:
     """Return the passages of the orbits in a tile (4, lanes), of shape (lanes, count, 3)."""

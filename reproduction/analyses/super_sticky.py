@@ -127,7 +127,7 @@ def find_super_sticky_orbits(
     outcome_index = np.searchsorted(first_pixels, np.minimum(pixels, mirror.partner[pixels]))
     fate = outcomes.fate[outcome_index]
     if mirror.symmetric:
-        fate = np.where(is_integrated, fate, spec.potential.well.mirror_channels[fate])
+        fate = np.where(is_integrated, fate, spec.potential.well.mirror_fates[fate])
     return SuperStickySearch(
         spec, int(np.count_nonzero(escape_map.fate == Fate.BOUNDED)), x, ordinate, states, fate,
         outcomes.escape_time[outcome_index], outcomes.crossings[outcome_index], images=2 if mirror.symmetric else 1, t_max=t_max,

@@ -12,8 +12,8 @@ _NOTHING = MapActions(
     tap=lambda x, ordinate: None,
     dive=lambda x, ordinate: None,
     zoom=lambda window: None,
-    rest=lambda: None,
-    box=lambda box: None,
+    end_gesture=lambda: None,
+    count_in=lambda box: None,
 )
 
 

@@ -66,10 +66,9 @@ export function render({model, el}) {
   rail.addEventListener("input", () => drag(value.read()))
   for (const event of ["change", "pointerup", "pointercancel"]) rail.addEventListener(event, release)
   rail.addEventListener("keydown", press)
-  const forgetShown = hear("energyshown", energy => write(clamped(energy)))
+  model.on("lifecycle:remove", hear("energyshown", energy => write(clamped(energy))))
   // The engine may be loaded while the user holds the slider.
-  const forgetAsked = hear("energyasked", () => value.unsent && tell("energydragged", value.read()))
-  for (const forget of [forgetShown, forgetAsked]) model.on("lifecycle:remove", forget)
+  model.on("lifecycle:remove", hear("energyasked", () => value.unsent && tell("energydragged", value.read())))
   model.on(["low", "high", "decimals", "label", "note", "disabled", "shown"], follow)
   follow()
 }

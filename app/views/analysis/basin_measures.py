@@ -56,7 +56,7 @@ class BasinMeasuresView:
     def __init__(self, state: ViewState, on_measure: Callable[[str], None], on_copy: Callable[[str], None]) -> None:
         slow = [measure for measure in DESCRIBED_MEASURES if measure.slow]
         self.buttons = {one.name: button(f"Measure the {one.title.lower()}", partial(on_measure, one.name)) for one in slow}
-        self.whole = button(COUNT_WHOLE, lambda: state.param.update(box=None))
+        self.count_whole = button(COUNT_WHOLE, lambda: state.param.update(box=None))
         self.text = TextPane("", name="measures", sizing_mode="stretch_width")
         self.copy = copy_button(self._rows, on_copy)
         self._sentences: dict[str, str] = {}
@@ -71,7 +71,7 @@ class BasinMeasuresView:
 
     def _follow_box(self, box: Window | None) -> None:
         """Name the region of the measures, the whole view for None, and remove slow measures of the previous region."""
-        self.whole.visible = box is not None
+        self.count_whole.visible = box is not None
         self._remove([measure.name for measure in DESCRIBED_MEASURES if measure.slow and counts_in_box(measure)])
 
     def show(self, name: str, result: Any) -> None:
@@ -85,24 +85,24 @@ class BasinMeasuresView:
         assert sentence is not None
         self._results[name] = result
         self._draw(result)
-        self._put(name, sentence(result))
+        self._set_sentence(name, sentence(result))
 
     def wait_for(self, name: str) -> None:
         """Show that a slow measure is being computed."""
         self.buttons[name].disabled = True
-        self._put(name, _COMPUTING_ORBITS)
+        self._set_sentence(name, _COMPUTING_ORBITS)
 
     def say(self, name: str, sentence: str) -> None:
         """Show why a measure has no result."""
         self._remove([name])
-        self._put(name, sentence)
+        self._set_sentence(name, sentence)
 
     def parts(self) -> list[Build]:
         """Return functions that make the parts of the section."""
         return [self._build_texts, lambda: [self.survival.build()], lambda: [self.uncertainty.build()]]
 
     def _build_texts(self) -> list[pn.viewable.Viewable]:
-        return [pn.Column(self.text, self.whole, self.copy, *self.buttons.values(), margin=0)]
+        return [pn.Column(self.text, self.count_whole, self.copy, *self.buttons.values(), margin=0)]
 
     def _remove(self, names: list[str]) -> None:
         for name in names:
@@ -120,7 +120,7 @@ class BasinMeasuresView:
         elif isinstance(result, DecayLaws):
             self.survival.show(survival_chart(result) if result.times.size else None)
 
-    def _put(self, name: str, sentence: str) -> None:
+    def _set_sentence(self, name: str, sentence: str) -> None:
         self._sentences[name] = sentence
         self._write()
 
@@ -130,19 +130,19 @@ class BasinMeasuresView:
         return [row for title, result in results for row in number_rows(title, result.numbers())]
 
     def _write(self) -> None:
-        region = "In the box drawn on the maps" if self.whole.visible else "In the whole view"
+        region = "In the box drawn on the maps" if self.count_whole.visible else "In the whole view"
         described = [(one, self._sentences[one.name]) for one in DESCRIBED_MEASURES if one.name in self._sentences]
-        body = "".join(_rows_of(measure, self._results.get(measure.name), sentence) for measure, sentence in described)
+        body = "".join(_measure_section(measure, self._results.get(measure.name), sentence) for measure, sentence in described)
         table = f"<table aria-label='measures'><caption>{region}</caption>{body}</table>" if body else ""
-        details = (f"<p id='told-{one.name}' class='help-text' popover>{escape(sentence)}</p>" for one, sentence in described)
+        details = (f"<p id='details-{one.name}' class='help-text' popover>{escape(sentence)}</p>" for one, sentence in described)
         self.text.object = with_terms(f"{table}{''.join(details)}")
 
 
-def _rows_of(measure: Measure, result: Any, sentence: str) -> str:
-    """Return the title and meaning of a measure, and a row for each number; without numbers, the description of the measure."""
-    texts = [] if result is None else [(quantity.label, _value(quantity, result)) for quantity in measure.quantities]
+def _measure_section(measure: Measure, result: Any, sentence: str) -> str:
+    """Return the title and meaning of a measure, and a row for each number; without numbers, the sentence about the result."""
+    texts = [] if result is None else [(quantity.label, _format_quantity(quantity, result)) for quantity in measure.quantities]
     numbers = {label: text for label, text in texts if label and text}
-    details = f" <button type='button' class='term' popovertarget='told-{measure.name}'>details</button>"
+    details = f" <button type='button' class='term' popovertarget='details-{measure.name}'>details</button>"
     place = f", {measure.place}" if measure.place else ""
     description = "" if numbers else f"<br>{escape(sentence)}"
     head = f"<b>{measure.title}</b>{details if numbers else ''}<br>{measure.meaning}{place}{description}"
@@ -150,10 +150,10 @@ def _rows_of(measure: Measure, result: Any, sentence: str) -> str:
     return f"<tbody><tr><th colspan=2>{head}</th></tr>{rows}</tbody>"
 
 
-def _value(quantity: Quantity, result: Any) -> str:
+def _format_quantity(quantity: Quantity, result: Any) -> str:
     """Return a number with its error or its interval; empty if the number is not known."""
-    reading = quantity.read(result)
-    value, *bars = reading if isinstance(reading, tuple) else (reading,)
+    value_and_bars = quantity.read(result)
+    value, *bars = value_and_bars if isinstance(value_and_bars, tuple) else (value_and_bars,)
     if not math.isfinite(value):
         return ""
     match bars:

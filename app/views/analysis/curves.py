@@ -15,7 +15,7 @@ from bokeh.models import Range1d, Span
 
 from app.state.view_state import ViewState
 from app.views.components.charts import ChartView
-from app.views.components.collapsible_section import InTurns, Later
+from app.views.components.collapsible_section import InTurns, Later, at_once
 from app.views.components.texts import TextPane, plain_symbol
 from app.views.components.widgets import FULL_HEIGHT, button, flex_row
 from engine import Measure, System
@@ -66,12 +66,12 @@ class CurvesView:
         state: ViewState,
         on_sweep: Callable[[], None],
         on_value: Callable[[float], None],
-        later: Later = lambda call: call,
+        later: Later = at_once,
     ) -> None:
         self._state, self._on_value = state, on_value
         self.shown: Sweep | None = None
         self.running = False
-        self._began = 0.0
+        self._start_time = 0.0
         self.button = button(START, on_sweep, width=180, align="end")
         self.against = pn.widgets.Select(label="Against", options={"h": "h"}, value="h", width=80)
         self.text = TextPane(HINT, name="sweep", margin=(4, 10), sizing_mode="stretch_width", css_classes=["whole-row"])
@@ -106,7 +106,7 @@ class CurvesView:
     def show_running(self, running: bool) -> None:
         """Label the button with its next action."""
         if running and not self.running:
-            self._began = time.monotonic()
+            self._start_time = time.monotonic()
         self.running = running
         self.button.label = STOP if running else START
 
@@ -121,7 +121,7 @@ class CurvesView:
         for chart in sweep_charts(curves, self._state.colours):
             self._charts[chart.frame.name].show(chart)
         self._mark()
-        self.text.object = _progress(curves, time.monotonic() - self._began)
+        self.text.object = _progress(curves, time.monotonic() - self._start_time)
 
     def say(self, sentence: str) -> None:
         """Show why there are no curves."""
@@ -161,8 +161,8 @@ def _progress(curves: Sweep, seconds: float) -> str:
     done = curves.values.size
     total = request["count"]
     energy = f" at h = {format_number(request['energy'], 6)}" if request["along"] else ""
-    where = f"values of {curves.symbol} on {request['plane']}{energy}"
+    values = f"values of {curves.symbol} on {request['plane']}{energy}"
     if curves.complete:
-        return f"{total} {where}. Click a curve to open the map there."
+        return f"{total} {values}. Click a curve to open the map there."
     time_left = f" about {format_whole(seconds * (total - done) / done)} s left" if done else ""
-    return f"{done} of {total} {where} …{time_left}"
+    return f"{done} of {total} {values} …{time_left}"

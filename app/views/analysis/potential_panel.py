@@ -28,7 +28,7 @@ _SLIDER_ENDS = (0.2, 2.0)
 # Ends of the other sliders.
 _OTHER_SLIDER_ENDS = {"rotation": (-1.0, 1.0)}
 # Smallest distance of the ends of a letter's slider from 0. For a large initial value, the distance is twice that value.
-_LEAST_REACH = 2.0
+_SMALLEST_REACH = 2.0
 _PLACEHOLDER = "½(x² + y²) − x²y + y³/3"
 _HINT = (
     f"Numbers, x, y, r², √, exp, log, sin, cos, letters with sliders, and + − * / ^ ( ), at most {LONGEST_TEXT} characters, "
@@ -70,21 +70,21 @@ class PotentialPanel:
         """The review of the system of the maps."""
         self.shown = used.system
         """The system of the widgets, which may differ from the system of the maps."""
-        known = {f"{entry.title}: {entry.description}": name for name, entry in CATALOGUE.items()}
+        names = {f"{entry.title}: {entry.description}": name for name, entry in CATALOGUE.items()}
         self.known = pn.widgets.Select(
-            label="Potential", options={**known, "Typed": TYPED}, value="I", sizing_mode="stretch_width", margin=(5, 0)
+            label="Potential", options={**names, "Typed": TYPED}, value="I", sizing_mode="stretch_width", margin=(5, 0)
         )
         self.formula = FormulaBox(
             self._take_text, "", label="V(x, y) =", placeholder=_PLACEHOLDER, sizing_mode="stretch_width", margin=(5, 0)
         )
         self.typeset = TextPane("", css_classes=["typeset"], sizing_mode="stretch_width", margin=0)
         self.message = StatusPane("", css_classes=["potential-message"], sizing_mode="stretch_width", margin=0)
-        self.move = button("Use this well", self._move, visible=False, margin=(8, 0))
+        self.use_well = button("Use this well", self._use_well, visible=False, margin=(8, 0))
         self.additions = [
             *(button(label, partial(self._add, term=term), margin=0) for label, term in _TERMS.items()),
             *(button(label, partial(self._add, clause=clause), margin=0) for label, clause in _CLAUSES.items()),
         ]
-        self.sliders = {name: self._make_slider(name) for name in WELL_PARAMETERS}
+        self.sliders = {name: self._make_well_slider(name) for name in WELL_PARAMETERS}
         self.letter_sliders: dict[str, ParameterSlider] = {}
         self.letters = pn.Column(sizing_mode="stretch_width", margin=0)
         reset = lambda: self._choose(System(self.shown.case, self.shown.formula))  # noqa: E731
@@ -96,7 +96,7 @@ class PotentialPanel:
 
     def build(self) -> list[pn.viewable.Viewable]:
         """Return the parts of a column, parts of fixed height first: no part moves while the formula is typed."""
-        buttons = flex_row(self.reset, self.move, gap="8px")
+        buttons = flex_row(self.reset, self.use_well, gap="8px")
         return [
             self.known,
             self.formula,
@@ -110,18 +110,22 @@ class PotentialPanel:
             self.facts,
         ]
 
-    def _make_slider(self, name: str) -> ParameterSlider:
-        label, _, (lowest, highest) = WELL_PARAMETERS[name]
-        low, high = _OTHER_SLIDER_ENDS.get(name, _SLIDER_ENDS)
-        return ParameterSlider(
-            partial(self._slide, name), 1.0, label=plain_symbol(label), low=low, high=high, lowest=lowest, highest=highest,
-            sizing_mode="stretch_width", margin=(2, 0),
-        )  # fmt: skip
+    def _make_well_slider(self, name: str) -> ParameterSlider:
+        symbol, _, legal_range = WELL_PARAMETERS[name]
+        ends = _OTHER_SLIDER_ENDS.get(name, _SLIDER_ENDS)
+        return self._make_slider(name, 1.0, plain_symbol(symbol), ends, legal_range)
 
     def _make_letter_slider(self, name: str, value: float) -> ParameterSlider:
-        reach = max(_LEAST_REACH, 2.0 * abs(value))
+        reach = max(_SMALLEST_REACH, 2.0 * abs(value))
+        return self._make_slider(name, value, name, (-reach, reach), (-LARGEST_VALUE, LARGEST_VALUE))
+
+    def _make_slider(
+        self, name: str, value: float, label: str, ends: tuple[float, float], legal_range: tuple[float, float]
+    ) -> ParameterSlider:
+        """Return the slider of a parameter between `ends`. Its box takes all numbers of the legal range."""
+        (low, high), (lowest, highest) = ends, legal_range
         return ParameterSlider(
-            partial(self._slide, name), value, label=name, low=-reach, high=reach, lowest=-LARGEST_VALUE, highest=LARGEST_VALUE,
+            partial(self._slide, name), value, label=label, low=low, high=high, lowest=lowest, highest=highest,
             sizing_mode="stretch_width", margin=(2, 0),
         )  # fmt: skip
 
@@ -148,7 +152,7 @@ class PotentialPanel:
         self.typeset.object = potential_formula(reviewed.potential)
         self._write(_alert(problem) if problem else _accepted(reviewed, note))
         self._offer(reviewed.well if problem else None)
-        self.facts.object = _points(reviewed) + _remarks(reviewed)
+        self.facts.object = _critical_points_table(reviewed) + _remark_paragraphs(reviewed)
 
     def wait(self) -> None:
         """Show that the system of the widgets is being reviewed."""
@@ -170,7 +174,7 @@ class PotentialPanel:
     def _offer(self, well: tuple[float, float] | None) -> None:
         """Offer to move the axes to a well; None offers nothing."""
         self._offered_well = well
-        self.move.visible = well is not None
+        self.use_well.visible = well is not None
 
     def _choose(self, system: System) -> None:
         """Show a system in all widgets, and propose it."""
@@ -178,7 +182,7 @@ class PotentialPanel:
         self._propose(system, done=True)
 
     def _show(self, system: System) -> None:
-        self.formula.show(_text(system))
+        self.formula.show(_formula_of(system))
         self._show_around_text(system)
 
     def _show_around_text(self, system: System) -> None:
@@ -205,10 +209,10 @@ class PotentialPanel:
     def _take_text(self, text: str, done: bool) -> None:
         """Propose the system of a typed formula, or the system of the maps if the formula is the same."""
         used = self.used.system
-        self._show_around_text(used if text == _text(used) else _typed(text, self.shown))
+        self._show_around_text(used if text == _formula_of(used) else _typed_system(text, self.shown))
         self._propose(self.shown, done=done)
 
-    def _move(self) -> None:
+    def _use_well(self) -> None:
         if self._offered_well is not None:
             x, y = self._offered_well
             typed = self.shown.as_typed
@@ -226,12 +230,12 @@ class PotentialPanel:
         self._propose(self.shown, done=done)
 
 
-def _text(system: System) -> str:
+def _formula_of(system: System) -> str:
     """Return the formula of a system without the values of its parameters."""
     return system.entry.formula
 
 
-def _typed(text: str, previous: System) -> System:
+def _typed_system(text: str, previous: System) -> System:
     """Return the system of a typed formula. Its parameters have their values in the previous system."""
     typed = System(TYPED, text)
     return replace(typed, parameters={name: previous.value_of(name) for name in typed.parameter_names})
@@ -246,7 +250,7 @@ def _accepted(review: PotentialReview, note: str) -> str:
     return f"<p>{ends}{describe_outcomes(review.potential)}</p><p class='quiet'>{escape(note)}</p>"
 
 
-def _points(review: PotentialReview) -> str:
+def _critical_points_table(review: PotentialReview) -> str:
     """Return a table of the critical points, exits first."""
     rows = "".join(
         f"<tr><td>{point.kind.value}</td><td>({format_number(point.x)}, {format_number(point.y)})</td>"
@@ -258,5 +262,5 @@ def _points(review: PotentialReview) -> str:
     return f"<table><tr>{head}</tr>{rows}</table>" if rows else ""
 
 
-def _remarks(review: PotentialReview) -> str:
+def _remark_paragraphs(review: PotentialReview) -> str:
     return "".join(f"<p class='quiet'>{escape(remark)}</p>" for remark in review.remarks)

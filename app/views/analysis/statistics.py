@@ -46,13 +46,13 @@ class StatisticsView:
         self._times = HistogramView(TIMES, _TIMES_TEXT)
         self._probabilities = HistogramView(PROBABILITIES, _PROBABILITIES_TEXT)
         self.table = TextPane("", name="statistics", sizing_mode="stretch_width")
-        self.whole = button(COUNT_WHOLE, lambda: state.param.update(box=None))
+        self.count_whole = button(COUNT_WHOLE, lambda: state.param.update(box=None))
         self.copy = copy_button(self._rows, on_copy)
-        state.follow(lambda box: self.whole.param.update(visible=box is not None), "box")
+        state.follow(lambda box: self.count_whole.param.update(visible=box is not None), "box")
         state.param.watch(lambda *events: self._count(), ["box", "analysis", "palette"])
-        results.param.watch(lambda event: self._show(event.new), "frame")
+        results.param.watch(lambda event: self._take_frame(event.new), "frame")
 
-    def _show(self, frame: EscapeMap | None) -> None:
+    def _take_frame(self, frame: EscapeMap | None) -> None:
         """Count the pixels of a frame of full resolution."""
         if frame is not None and frame.stride == 1:
             self._frame = frame
@@ -63,7 +63,7 @@ class StatisticsView:
         return [self._build_table, lambda: [self._times.build()], lambda: [self._probabilities.build()]]
 
     def _build_table(self) -> list[pn.viewable.Viewable]:
-        return [pn.Column(self.whole, self.table, self.copy, margin=0, css_classes=["plot"])]
+        return [pn.Column(self.count_whole, self.table, self.copy, margin=0, css_classes=["plot"])]
 
     def _count(self) -> None:
         """Count and show the pixels of the last frame, if the tab is open."""
@@ -74,20 +74,20 @@ class StatisticsView:
         self._times.show(times_chart(statistics))
         self._probabilities.show(probabilities_chart(statistics))
 
-    def _shares(self, statistics: EscapeStatistics) -> list[tuple[str, str, int]]:
+    def _listed_fates(self, statistics: EscapeStatistics) -> list[tuple[str, str, int]]:
         """Return name, colour and code of each fate in the table."""
         palette = self._state.colours
         ends = [(entry.label, entry.colour, fate) for fate, entry in palette.legend_entries(statistics.outcomes).items()]
         bounded = [("bounded", palette.bounded, int(Fate.BOUNDED))]
-        others = (("undecided", Fate.NOT_COMPUTED, statistics.undecided), (UNRESOLVED, Fate.FAILED, statistics.failed))
-        return [*ends, *bounded, *((name, palette.outcomes[fate].colour, int(fate)) for name, fate, count in others if count)]
+        rare_fates = (("undecided", Fate.NOT_COMPUTED, statistics.undecided), (UNRESOLVED, Fate.FAILED, statistics.failed))
+        return [*ends, *bounded, *((name, palette.outcomes[fate].colour, int(fate)) for name, fate, count in rare_fates if count)]
 
     def _table(self, statistics: EscapeStatistics) -> str:
         shares, intervals = statistics.shares, statistics.share_intervals
         body = "".join(
             f"<tr><td>{patch(colour, escape(name))}</td><td>{format_share(shares[code], 2)}</td>"
             f"<td class='quiet'>{format_share_range(*intervals[code])}</td></tr>"
-            for name, colour, code in self._shares(statistics)
+            for name, colour, code in self._listed_fates(statistics)
         )
         body += "".join(f"<tr><td>{name}</td><td>{value}</td></tr>" for name, value in escape_facts(statistics).items())
         place = "the whole view" if self._state.box is None else "the box drawn on the maps"
@@ -102,7 +102,7 @@ class StatisticsView:
         statistics = compute_statistics(self._frame, self._state.box)
         shares, intervals = statistics.shares, statistics.share_intervals
         rows: list[tuple[str, ...]] = [("fate", "share", "95 % low", "95 % high")]
-        for name, _, code in self._shares(statistics):
+        for name, _, code in self._listed_fates(statistics):
             low, high = intervals[code]
             rows.append((name, repr(shares[code]), repr(low), repr(high)))
         return rows + [(name, value, "", "") for name, value in escape_facts(statistics).items()]

@@ -48,7 +48,7 @@ class ChartView:
         self.y_range = _first_range("y" in frame.logarithmic)
         self.lines = ColumnDataSource({name: [] for name in _LINE_COLUMNS}, name=f"{frame.name}_lines")
         self.points = ColumnDataSource({name: [] for name in _POINT_COLUMNS}, name=f"{frame.name}_points")
-        self._key = TextPane(margin=(0, 10))
+        self._legend = TextPane(margin=(0, 10))
         self._labels = frame.labels
         self.plot: figure | None = None
         self.view = pn.Column(margin=0, sizing_mode="stretch_width", visible=False)
@@ -59,18 +59,18 @@ class ChartView:
         if chart is None:
             return
         self.lines.data, self.points.data = _line_columns(chart.series), _point_columns(chart.series)
-        for edges, limits in zip((self.x_range, self.y_range), chart.limits, strict=True):
+        for axis_range, limits in zip((self.x_range, self.y_range), chart.limits, strict=True):
             if limits is not None:
-                set_range(edges, *limits)
+                set_range(axis_range, *limits)
         entries = chart.legend()
-        self._key.param.update(object=legend(entries), visible=bool(entries))
+        self._legend.param.update(object=legend(entries), visible=bool(entries))
         self._labels = chart.frame.labels
         self._name_axes()
 
     def build(self, events: Mapping[type[Event], Callable[[Any], None]] = MappingProxyType({})) -> pn.Column:
         """Fill the view with a figure, which has callbacks for events, and return the view."""
         self.plot = self._draw()
-        self.view.objects = [FigurePane(self.plot, events), self._key]
+        self.view.objects = [FigurePane(self.plot, events), self._legend]
         self._name_axes()
         return self.view
 
@@ -111,9 +111,15 @@ def _line_columns(series: Sequence[Series]) -> dict[str, list[Any]]:
 
 
 def _point_columns(series: Sequence[Series]) -> dict[str, Any]:
-    drawn = [one for one in series if one.bars is not None]
-    columns = [(one.x, one.y, *(one.bars or ())) for one in drawn]
-    x, y, low, high = (np.concatenate([np.zeros(0), *values]) for values in zip(*columns, strict=True)) if columns else [[]] * 4
-    counts = [one.x.size for one in drawn]
-    colours, labels = (np.repeat([getattr(one, name) for one in drawn], counts).tolist() for name in ("colour", "label"))
-    return {"x": x, "y": y, "low": low, "high": high, "colour": colours, "label": labels}
+    bars = [(one, one.bars) for one in series if one.bars is not None]
+    if not bars:
+        return {name: [] for name in _POINT_COLUMNS}
+    counts = [one.x.size for one, _ in bars]
+    return {
+        "x": np.concatenate([one.x for one, _ in bars], dtype=float),
+        "y": np.concatenate([one.y for one, _ in bars], dtype=float),
+        "low": np.concatenate([low for _, (low, _) in bars], dtype=float),
+        "high": np.concatenate([high for _, (_, high) in bars], dtype=float),
+        "colour": np.repeat([one.colour for one, _ in bars], counts).tolist(),
+        "label": np.repeat([one.label for one, _ in bars], counts).tolist(),
+    }

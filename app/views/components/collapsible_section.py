@@ -29,7 +29,7 @@ class Stack:
 
     Parameters
     ----------
-    makes
+    builders
         Functions that make the parts of each content, by name. They are called when the content is first shown.
     css_class
         CSS class of the column.
@@ -41,12 +41,12 @@ class Stack:
 
     def __init__(
         self,
-        makes: Mapping[str, Sequence[Build]],
+        builders: Mapping[str, Sequence[Build]],
         css_class: str,
         head: Sequence[pn.viewable.Viewable] = (),
         later: Later = at_once,
     ) -> None:
-        self._makes, self._head, self._later = makes, head, later
+        self._builders, self._head, self._later = builders, head, later
         self._contents: dict[str, list[pn.viewable.Viewable]] = {}
         self._column = pn.Column(
             *head, sizing_mode="stretch_width", styles=FULL_HEIGHT, visible=bool(head), margin=0, css_classes=[css_class]
@@ -61,9 +61,9 @@ class Stack:
         """Replace the present content by another; None shows no content."""
         self.shown = name
         if name is not None and name not in self._contents:
-            first, *others = self._makes[name]
-            self._contents[name] = content = [*first()]
-            InTurns(others, partial(self._add, content), self._later).begin()
+            build_first, *later_builders = self._builders[name]
+            self._contents[name] = content = [*build_first()]
+            InTurns(later_builders, partial(self._add, content), self._later).begin()
         self._arrange()
 
     def _add(self, content: list[pn.viewable.Viewable], parts: Sequence[pn.viewable.Viewable]) -> None:
@@ -88,8 +88,8 @@ class Stack:
 class Fold(Stack):
     """A column with one content that opens and closes, under a button with its title."""
 
-    def __init__(self, title: str, make: Build, *, is_open: bool = False) -> None:
-        super().__init__({"content": [make]}, "fold")
+    def __init__(self, title: str, build: Build, *, is_open: bool = False) -> None:
+        super().__init__({"content": [build]}, "fold")
         self._title = title
         self.button = button("", lambda: self.toggle("content"), kind="light", margin=0, css_classes=["fold-title"])
         self.set_open(is_open)
@@ -134,10 +134,10 @@ class Drawers(Stack):
         later: Later = at_once,
     ) -> None:
         self._on_toggle = on_toggle
-        makes: dict[str, list[Build]] = {
-            name: [partial(self._make_head, title), make] for name, (_, title, make) in drawers.items()
+        builders: dict[str, list[Build]] = {
+            name: [partial(self._make_head, title), build] for name, (_, title, build) in drawers.items()
         }
-        super().__init__(makes, "drawer", later=later)
+        super().__init__(builders, "drawer", later=later)
         options = {label: name for name, (label, _, _) in drawers.items() if label}
         self.buttons = pn.widgets.CheckButtonGroup(options=options, color="light", margin=0, css_classes=["solid"])
         self.buttons.param.watch(self._press, "value")
@@ -154,8 +154,8 @@ class Drawers(Stack):
 
     def _press(self, event: Any) -> None:
         """Open the drawer of a pressed button, or close it. Other changes of the marked buttons come from `show`."""
-        pressed = [name for name in event.new if name != self.shown]
         if event.new != self._marked_buttons():
+            pressed = [name for name in event.new if name != self.shown]
             self.show(pressed[-1] if pressed else None)
 
     def _marked_buttons(self) -> list[str]:
@@ -173,7 +173,7 @@ class InTurns:
 
     Parameters
     ----------
-    makes
+    builders
         Functions that make the parts.
     add
         Adds a new part to the page.
@@ -181,20 +181,20 @@ class InTurns:
         Wraps a function to run in a later iteration of the event loop.
     """
 
-    def __init__(self, makes: Iterable[Build], add: Callable[[Sequence[pn.viewable.Viewable]], None], later: Later) -> None:
-        self._missing, self._add = deque(makes), add
+    def __init__(self, builders: Iterable[Build], add: Callable[[Sequence[pn.viewable.Viewable]], None], later: Later) -> None:
+        self._waiting_builders, self._add = deque(builders), add
         self._continue = later(self._make_next)
 
     def begin(self) -> None:
-        """Build the parts that do not exist yet."""
-        if self._missing:
+        """Make the parts that do not exist yet."""
+        if self._waiting_builders:
             self._continue()
 
     def _make_next(self) -> None:
-        if self._missing:
-            make = self._missing.popleft()
+        if self._waiting_builders:
+            build = self._waiting_builders.popleft()
             try:
-                self._add(make())
+                self._add(build())
             finally:
                 # An error in one part does not prevent the others.
                 self.begin()

@@ -11,8 +11,8 @@ from engine.foundations.wording import format_number, format_whole
 from plots.layers.picture import ColourScale, ColourTable, Legend
 from plots.pictures.palette import Entry, Mark
 
-# Number of intervals of a colour scale, in which the browser interpolates.
-_STEPS = 12
+# Number of intervals of a drawn colour scale. The browser interpolates the colours within each interval.
+_SCALE_STEPS = 12
 
 
 def patch(colour: str, label: str = "", title: str = "") -> str:
@@ -47,13 +47,13 @@ def legend(entries: Iterable[Entry]) -> str:
     return f"<div class='legend'>{legend_items(entries)}</div>"
 
 
-def picture_legend(of: Legend) -> str:
+def picture_legend(content: Legend) -> str:
     """Return HTML of the legend below a picture. The last entries are not seen if there is too little room."""
-    table = _table(of.table) if of.table is not None else ""
-    entries = chips([] if table else of.entries)
-    scale = _scale(of.scale) if of.scale is not None else ""
-    sentence = f" <span>{typeset(escape(of.sentence))}</span>" if of.sentence else ""
-    return f"{table}{entries}{scale}{sentence}{chips(of.over)}{chips(of.others if of.is_short else [])}"
+    table = _table(content.table) if content.table is not None else ""
+    entries = chips([] if table else content.entries)
+    scale = _scale(content.scale) if content.scale is not None else ""
+    sentence = f" <span>{typeset(escape(content.sentence))}</span>" if content.sentence else ""
+    return f"{table}{entries}{scale}{sentence}{chips(content.over)}{chips(content.others if content.is_short else [])}"
 
 
 def _background(entry: Entry) -> str:
@@ -65,7 +65,7 @@ def _background(entry: Entry) -> str:
 
 def _scale(scale: ColourScale) -> str:
     colours = scale.colours
-    stops = ",".join(colours[round(step * (len(colours) - 1) / _STEPS)] for step in range(_STEPS + 1))
+    stops = ",".join(colours[round(step * (len(colours) - 1) / _SCALE_STEPS)] for step in range(_SCALE_STEPS + 1))
     bar = f"<i class='scale' style='background:linear-gradient(90deg,{stops})'></i>"
     return f"<span>≤ {_number(scale.low)} {bar} ≥ {_number(scale.high)}{' (locked)' if scale.is_locked else ''}</span>"
 

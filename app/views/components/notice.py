@@ -13,15 +13,15 @@ from bokeh.models import CustomJS
 from app.views.components.texts import TextPane
 
 CONNECTION_LOST = "The connection to the server is lost. Reload this page: its address holds the view."
-"""Message of the browser when it loses the server."""
+"""Message that the browser shows when the connection is lost."""
 
-NAME = "notice"
+MODEL_NAME = "notice"
 """Name by which the server and the browser find the Bokeh model of the pane in a document."""
 
 PASSING_SECONDS = 5.0
 """Duration of a passing message, in seconds."""
 
-# JavaScript that shows a message. It does not send the change to the server, because the connection is lost.
+# JavaScript that shows a message. The change is not sent to the server, because the connection is lost.
 _ON_CONNECTION_LOST = """
 const pane = Bokeh.documents[0].get_model_by_name(name)
 pane.setv({text: html}, {sync: false})
@@ -29,10 +29,10 @@ pane.setv({text: html}, {sync: false})
 
 
 class _NamedPane(TextPane):
-    """A pane whose Bokeh model is named `NAME`."""
+    """A pane whose Bokeh model is named `MODEL_NAME`."""
 
     def _get_properties(self, doc: Document) -> dict[str, Any]:
-        return {**super()._get_properties(doc), "name": NAME}
+        return {**super()._get_properties(doc), "name": MODEL_NAME}
 
 
 class Notice:
@@ -70,14 +70,14 @@ def show_passing_notice(document: Document, sentence: str) -> None:
 
 
 def watch_connection(document: Document) -> None:
-    """Have the browser show `CONNECTION_LOST` when it loses the server."""
+    """Make the browser show `CONNECTION_LOST` when the connection is lost."""
     # The Bokeh model of the pane takes escaped HTML.
-    args = {"name": NAME, "html": escape(_html(CONNECTION_LOST))}
+    args = {"name": MODEL_NAME, "html": escape(_html(CONNECTION_LOST))}
     document.js_on_event("connection_lost", CustomJS(args=args, code=_ON_CONNECTION_LOST))
 
 
 def _set_text(document: Document, html: str) -> None:
-    model = document.get_model_by_name(NAME)
+    model = document.get_model_by_name(MODEL_NAME)
     if model is not None:
         model.text = escape(html)
 

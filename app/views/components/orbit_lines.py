@@ -17,7 +17,7 @@ Curve = tuple[np.ndarray, np.ndarray]
 """Horizontal and vertical coordinates of the points of a curve."""
 
 # Opacity of the orbits that are not chosen.
-_OTHERS_ALPHA = 0.35
+_FAINT_ALPHA = 0.35
 # A curve that encloses no area, in place of a missing envelope.
 _NO_AREA = np.full(1, np.nan), np.full(1, np.nan)
 
@@ -30,7 +30,7 @@ def in_front(orbits: Sequence[OrbitCurves | None], chosen: int) -> list[tuple[in
 
 def opacities(orbits: Sequence[tuple[int, OrbitCurves]], chosen: int) -> list[float]:
     """Return the opacity of each orbit, which is highest for the chosen orbit."""
-    return [1.0 if slot == chosen else _OTHERS_ALPHA for slot, _ in orbits]
+    return [1.0 if slot == chosen else _FAINT_ALPHA for slot, _ in orbits]
 
 
 def orbit_colours(state: ViewState) -> LinearColorMapper:
@@ -50,7 +50,7 @@ def band_style(mapper: LinearColorMapper) -> dict[str, Any]:
     return {"fill_color": {"field": "slot", "transform": mapper}, "fill_alpha": "alpha", "line_color": None}
 
 
-def lines(name: str) -> ColumnDataSource:
+def line_source(name: str) -> ColumnDataSource:
     """Return an empty data source for the lines of orbits."""
     return ColumnDataSource({"xs": [], "ys": [], "slot": [], "alpha": []}, name=name)
 

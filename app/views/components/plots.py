@@ -23,10 +23,7 @@ from engine import Window
 from plots.pictures.axis_labels import find_offset
 from plots.pictures.histories import find_decades
 
-_OFFSET_LABEL = callback_code(Path(__file__).with_name("offset_ticks.js"), "offsetLabel(tick, base, unit)")
-
-HOVER_TEXTS = Path(__file__).with_name("hover_texts.js")
-"""JavaScript module with the texts of hover tools."""
+_OFFSET_LABEL_CODE = callback_code(Path(__file__).with_name("offset_ticks.js"), "offsetLabel(tick, base, unit)")
 
 HOVER_FORMATS = {name: callback_code(NUMBERS, f"{name}(value)") for name in ("number", "count", "percent")}
 """JavaScript that formats a `value`: as a number of four digits, a whole number in groups of digits, or a percentage."""
@@ -117,7 +114,7 @@ def label_axes(plots: Iterable[figure], names: tuple[str, str], window: Window) 
         for axis, offset in zip((plot.below[0], plot.left[0]), offsets, strict=True):
             if offset is not None:
                 numbers = {"base": float(offset.base), "unit": 10.0**offset.exponent}
-                axis.formatter = CustomJSTickFormatter(args=numbers, code=_OFFSET_LABEL)
+                axis.formatter = CustomJSTickFormatter(args=numbers, code=_OFFSET_LABEL_CODE)
             elif isinstance(axis.formatter, CustomJSTickFormatter):
                 axis.formatter = BasicTickFormatter()
     return [f"Labels: {offset.describe(name)}" for name, offset in zip(names, offsets, strict=True) if offset is not None]
@@ -205,14 +202,14 @@ class LaterGlyphs:
                 self._add(plot)
 
 
-def set_range(edges: Range1d, low: float, high: float) -> None:
+def set_range(axis_range: Range1d, low: float, high: float) -> None:
     """Set the ends of an axis, and the ends to which the reset tool returns."""
-    edges.update(start=low, end=high, reset_start=low, reset_end=high)
+    axis_range.update(start=low, end=high, reset_start=low, reset_end=high)
 
 
-def set_decades(edges: Range1d, low: float, high: float) -> None:
+def set_decades(axis_range: Range1d, low: float, high: float) -> None:
     """Set the ends of a logarithmic axis: the power of ten below `low`, and a number a little above `high`."""
-    set_range(edges, *find_decades(low, high))
+    set_range(axis_range, *find_decades(low, high))
 
 
 def chart_hover(text: str, renderers: Sequence[GlyphRenderer], **options: Any) -> HoverTool:

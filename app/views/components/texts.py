@@ -19,10 +19,10 @@ _AROUND_SIGN = re.compile(r"(?<=\w) (?=(?:=|≈) [−-]?\d)|(?<=[=≤×]) (?=[�
 _SUBSCRIPT = re.compile(r"\b(?:([A-Za-z])_|(p)(?=[xy]\b)|(ω)(?=[12]\b))([a-z]{1,3}|\d)\b")
 # Powers of e and of t.
 _POWER = re.compile(r"\b([et])\^(\d+(?:\.\d+)?)")
-# Spaces at an equals sign, after an operator and inside brackets, where lines of a formula do not break.
+# Spaces at an equals sign, after an operator and inside brackets, where lines of a formula must not break.
 _IN_TERM = re.compile(r"(?<=[=+−]) | (?==)| (?=[^()]*\))")
 _SUBSCRIPT_DIGITS = str.maketrans("12", "₁₂")
-# Narrow spaces before a per cent sign and between groups of digits.
+# Spaces before a per cent sign and between groups of digits, which become narrow.
 _IN_NUMBER = re.compile(r"(?<=\d) (?=%|\d{3}\b)")
 
 

@@ -18,7 +18,7 @@ THEME_KEY = "escape-explorer-theme"
 """Key of the chosen theme, "light" or "dark", in the browser's local storage."""
 
 # JavaScript of a transform. On a dark page, it replaces `x`, the colour on a light page.
-_THEME_COLOUR = "return document.documentElement.dataset.theme === 'dark' ? dark : x"
+_THEME_COLOUR_CODE = "return document.documentElement.dataset.theme === 'dark' ? dark : x"
 
 _STYLESHEET = Path(__file__).parents[2] / "static" / "theme.css"
 
@@ -35,8 +35,8 @@ def theme_colour(name: str) -> str:
 
 
 def theme_line(name: str) -> Value:
-    """Return a colour of `LineColours` for the lines of a glyph. The browser applies the theme, and page.html each new theme."""
-    colours = CustomJSTransform(args={"dark": getattr(DARK, name)}, func=_THEME_COLOUR)
+    """Return a colour of `LineColours` for the lines of a glyph. A script of page.html applies each new theme."""
+    colours = CustomJSTransform(args={"dark": getattr(DARK, name)}, func=_THEME_COLOUR_CODE)
     return Value(getattr(LIGHT, name), transform=colours)
 
 

@@ -56,7 +56,23 @@ def switch(
     turn: Callable[[bool], object],
     **options: Any,
 ) -> Switches:
-    """Return a switch that follows a field of the view state: `is_on` reads the field, and `turn` switches on or off."""
+    """Return a switch that follows a field of the view state.
+
+    Parameters
+    ----------
+    title
+        Accessible name of the group that contains the switch.
+    option
+        Label of the switch.
+    state, name
+        View state, and the name of the field.
+    is_on
+        Returns whether the switch is on for a value of the field.
+    turn
+        Handles a click; the argument is whether the switch is on.
+    **options
+        Options of `Switches`.
+    """
     control = Switches(label=title, options=[option], **options)
 
     def take(event: Any) -> None:
@@ -122,7 +138,7 @@ def keep_place(*, shown: bool) -> dict[str, str]:
 
 
 def bind[Bound: pn.widgets.Widget](widget: Bound, state: param.Parameterized, name: str) -> Bound:
-    """Connect a widget with an attribute of a state: each follows the other."""
+    """Connect the value of a widget with a parameter of a state: each follows the other."""
 
     def write(event: Any) -> None:
         # `hold` provides the session's lock, as in `button`.

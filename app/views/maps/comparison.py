@@ -8,8 +8,8 @@ from bokeh.models import ColumnDataSource, Image, LinearColorMapper
 from bokeh.plotting import figure
 
 from app.state.view_state import ViewState
-from app.views.maps.curve_layers import CurveLayers
 from app.views.maps.hover import fate_hover
+from app.views.maps.map_curves import MapCurves
 from app.views.maps.map_ranges import MapRanges
 from engine import EscapeMap, Slice
 from plots.layers.picture import OtherView
@@ -18,7 +18,7 @@ from plots.pictures.image_columns import NO_LAYER, difference_column, map_column
 Columns = dict[str, list[Any]]
 """Columns of a data source of maps."""
 
-# Columns of the other map.
+# The columns of `map_columns` that drawing, hover text and comparison of the other map need.
 _MAP_COLUMNS = ("fate", "x", "y", "dw", "dh", "ends")
 
 
@@ -35,11 +35,11 @@ class ComparedMap:
 
     def __init__(self, ranges: MapRanges, state: ViewState) -> None:
         # Make the hover tool before the picture, because Bokeh warns if tools and pictures change together.
-        self.source = ColumnDataSource(_no_map(), name="compared_map")
+        self.source = ColumnDataSource(_blank_columns(), name="compared_map")
         self.hover = fate_hover(self.source, ranges.x, ranges.ordinate)
         self.other: OtherView | None = None
         """The view of the other map; None without a map."""
-        self._outlines = CurveLayers(state)
+        self._outlines = MapCurves(state)
 
     def draw(self, plot: figure, mapper: LinearColorMapper) -> None:
         """Add the map and its curve to a figure."""
@@ -57,7 +57,7 @@ class ComparedMap:
     def remove(self) -> None:
         """Remove the other map."""
         self.other = None
-        self.source.data = _no_map()
+        self.source.data = _blank_columns()
 
     def difference(self, columns: Columns, plane: Slice) -> Columns:
         """Return the column ``difference`` for the columns of a map of a slice; blank unless the other map has the same axes."""
@@ -65,5 +65,5 @@ class ComparedMap:
         return difference_column(columns, self.source.data) if is_compared else {"difference": NO_LAYER}
 
 
-def _no_map() -> Columns:
+def _blank_columns() -> Columns:
     return {"fate": NO_LAYER, "x": [0.0], "y": [0.0], "dw": [0.0], "dh": [0.0], "ends": [[]]}

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from bokeh.models import ColumnDataSource, CustomJSHover, HoverTool, Range1d
 
 from app.browser.javascript import callback_code
-from app.views.components.plots import HOVER_TEXTS
 from engine import Evidence, Fate
 from engine.propagation.fates import describe_evidence
 from plots.layers.table import LAYERS
 from plots.pictures.image_columns import FIRST_CLASS
 from plots.pictures.palette import CROSSING_CLASSES, OUTCOMES
 
+_MODULE = Path(__file__).with_name("hover_texts.js")
 _COLUMNS = "{maps: maps.data, compared: compared.data}"
-_DETAILS_CODE = callback_code(HOVER_TEXTS, f"pixelDetails(special_vars.image_index.flat_index, {_COLUMNS}, codes, words)")
-_FATE_CODE = callback_code(HOVER_TEXTS, "fateName(value, names, maps.data)")
-_COORDINATE_CODE = callback_code(HOVER_TEXTS, "coordinate(value, range)")
+_DETAILS_CODE = callback_code(_MODULE, f"pixelDetails(special_vars.image_index.flat_index, {_COLUMNS}, codes, words)")
+_FATE_CODE = callback_code(_MODULE, "fateName(value, names, maps.data)")
+_COORDINATE_CODE = callback_code(_MODULE, "coordinate(value, range)")
 
 # The formatter reads all columns, so the column that it is written for only needs finite numbers.
 _DETAILS_HTML = '<div style="white-space:pre-line">@crossing_class{custom}</div>'

@@ -11,13 +11,13 @@ from bokeh.events import DoubleTap, Event, PinchEnd, PointEvent, RangesUpdate, S
 from bokeh.models import ColumnDataSource, Image, LinearColorMapper, LogColorMapper
 from bokeh.plotting import figure
 
-from app.state.view import PICTURES
+from app.state.view import PICTURES, Start
 from app.state.view_state import ViewState
 from app.views.components.legends import picture_legend
 from app.views.components.plots import FigurePane, annotate_picture, label_axes, map_figure
 from app.views.maps.comparison import ComparedMap
-from app.views.maps.curve_layers import CurveLayers, trace_curves
 from app.views.maps.hover import pixel_hover
+from app.views.maps.map_curves import MapCurves, trace_curves
 from app.views.maps.map_ranges import MapRanges, TwoFingers
 from app.views.maps.map_toolbar import MapTools
 from app.views.maps.markers import Markers
@@ -30,7 +30,7 @@ from engine.slices.axes import highest_energy
 from plots.layers.map_images import LAYER_COLUMNS, result_columns
 from plots.layers.picture import ShownMap
 from plots.layers.table import LAYERS, map_legend
-from plots.layers.table import PICTURES as ENTRIES
+from plots.layers.table import PICTURES as PICTURE_ENTRIES
 from plots.pictures.image_columns import NO_LAYER
 from plots.pictures.palette import PALETTES
 from plots.pictures.time_scale import WITHOUT_ESCAPES, TimeScale, fitted_scale
@@ -38,10 +38,10 @@ from plots.pictures.time_scale import WITHOUT_ESCAPES, TimeScale, fitted_scale
 MAPS = tuple(name for name in PICTURES if name != "well")
 """Names of the maps of starts: all pictures but the well."""
 
-PICTURES_ALONE = ("well", "basins", "times", "crossings")
+PLAIN_PICTURES = ("well", "basins", "times", "crossings")
 """The pictures of a view without layers or comparison, in their order on the page."""
 
-PICTURES_COMPARED = ("basins", "compared", "well", "differences")
+COMPARISON_PICTURES = ("basins", "compared", "well", "differences")
 """The pictures of a view that is compared with another view."""
 
 # Smallest magnification that a note mentions. The window of a neighbouring energy is only slightly smaller than the interior.
@@ -60,17 +60,17 @@ class MapActions:
         Handles a double click at x and ordinate; `tap` has handled the first click.
     zoom
         Shows the window to which the user has moved the pictures; None is the whole interior.
-    rest
+    end_gesture
         Handles the end of a gesture, `GESTURE_PAUSE_MS` after the last drag or step of the wheel.
-    box
-        Counts the pixels in a box.
+    count_in
+        Counts the starts in a box.
     """
 
     tap: Callable[[float, float], None]
     dive: Callable[[float, float], None]
     zoom: Callable[[Window | None], None]
-    rest: Callable[[], None]
-    box: Callable[[Window], None]
+    end_gesture: Callable[[], None]
+    count_in: Callable[[Window], None]
 
 
 def prepare_curves(spec: MapSpec) -> None:
@@ -84,11 +84,11 @@ class MapsView:
 
     def __init__(self, state: ViewState, actions: MapActions, *, alone: bool = False) -> None:
         self._state, self._actions = state, actions
-        self.source = ColumnDataSource(_blank(), name="maps")
-        self.well, self._outlines = WellView(state), CurveLayers(state)
+        self.source = ColumnDataSource(_blank_columns(), name="maps")
+        self.well, self._outlines = WellView(state), MapCurves(state)
         self.overlays, self.marks = Overlays(self.source, state), Markers(state)
         self._time_mapper = LogColorMapper(nan_color="rgba(0,0,0,0)")
-        # Scale of the escape times of the map in view.
+        # Scale that fits the escape times of the map in view.
         self._fitted_times = WITHOUT_ESCAPES
         self._mappers = {name: LinearColorMapper() for name in MAPS}
         self._spec: MapSpec | None = None
@@ -98,13 +98,13 @@ class MapsView:
         self._computing: frozenset[str] = frozenset()
         # Codes of the fates in the frame.
         self._fates: frozenset[int] = frozenset()
-        self.ranges = MapRanges(actions.zoom, actions.rest)
+        self.ranges = MapRanges(actions.zoom, actions.end_gesture)
         ranges = self.ranges.x, self.ranges.ordinate
         self.compared = ComparedMap(self.ranges, state)
         self._hover = pixel_hover(self.source, self.compared.source, *ranges)
         self._fingers = TwoFingers(*ranges)
         self.tools = MapTools(state, self._hover, self.compared.hover)
-        self._last_tap: tuple[float, float] | None = None
+        self._last_tap: Start | None = None
         self.figures: dict[str, figure] = {}
         self._panes: dict[str, FigurePane] = {"well": self.well.pane}
         self.grid = PictureGrid(state, alone=alone)
@@ -116,13 +116,13 @@ class MapsView:
         """Show the pictures of the view and of its layers."""
         state = self._state
         layers = [layer for name, layer in LAYERS.items() if name in state.layers]
-        always = PICTURES_ALONE if state.compared is None else PICTURES_COMPARED
-        names = [*always, *(layer.picture.name for layer in layers if layer.picture is not None)]
+        always_shown = PLAIN_PICTURES if state.compared is None else COMPARISON_PICTURES
+        names = [*always_shown, *(layer.picture.name for layer in layers if layer.picture is not None)]
         for name in names:
             if name not in self._panes:
                 self._build(name)
         self.grid.show({name: self._panes[name] for name in names})
-        self.describe()
+        self._redraw()
 
     def show(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
         """Paint a frame, and go to the window of a new map."""
@@ -186,11 +186,11 @@ class MapsView:
         palette = PALETTES[name]
         self._time_mapper.palette = list(palette.escape_time)
         for picture, mapper in self._mappers.items():
-            colours = list(ENTRIES[picture].colours(palette))
+            colours = list(PICTURE_ENTRIES[picture].colours(palette))
             mapper.update(palette=colours, low=-0.5, high=len(colours) - 0.5)
-        self.describe()
+        self._redraw()
 
-    def snapped(self, x: float, ordinate: float) -> tuple[float, float]:
+    def snapped(self, x: float, ordinate: float) -> Start:
         """Return the start of the pixel at a point: the centre of the pixel. Outside the map, return the point itself."""
         pixel = self._spec.pixel_at(x, ordinate) if self._spec is not None else None
         if self._spec is None or pixel is None:
@@ -213,10 +213,10 @@ class MapsView:
     def _count_in_box(self, event: SelectionGeometry) -> None:
         edges = event.geometry
         if event.final and edges["x0"] < edges["x1"] and edges["y0"] < edges["y1"]:
-            self._actions.box(Window(edges["x0"], edges["x1"], edges["y0"], edges["y1"]))
+            self._actions.count_in(Window(edges["x0"], edges["x1"], edges["y0"], edges["y1"]))
 
-    def describe(self) -> None:
-        """Update curves, axes and legends."""
+    def _redraw(self) -> None:
+        """Draw the curves and write the legends again."""
         if self._spec is not None:
             self._show_curves(self._spec)
             self._show_legends()
@@ -242,7 +242,7 @@ class MapsView:
             else:
                 axes = other.axes if name == "compared" and other is not None else spec.plane.axis_symbols
                 legend = picture_legend(map_legend(name, shown_map))
-                annotate_picture(self.figures[name], ENTRIES[name].title, axes, legend, notes, self._under_way(name))
+                annotate_picture(self.figures[name], PICTURE_ENTRIES[name].title, axes, legend, notes, self._under_way(name))
 
     def _under_way(self, picture: str) -> str:
         """Return what is being computed for a picture: the picture itself, or layers over the picture; empty if nothing is."""
@@ -254,7 +254,7 @@ class MapsView:
 
     def _build(self, name: str) -> None:
         """Make a picture with its title and help text."""
-        plot = self.figures[name] = map_figure(name, ENTRIES[name].title, self.ranges.x, self.ranges.ordinate)
+        plot = self.figures[name] = map_figure(name, PICTURE_ENTRIES[name].title, self.ranges.x, self.ranges.ordinate)
         plot.toolbar = self.tools.toolbar
         self._paint(name)
         self._fingers.follow_on(plot)
@@ -271,7 +271,7 @@ class MapsView:
 
     def _paint(self, name: str) -> None:
         """Add the images and lines of a picture, from back to front."""
-        plot, picture = self.figures[name], ENTRIES[name]
+        plot, picture = self.figures[name], PICTURE_ENTRIES[name]
         if name == "compared":
             self.compared.draw(plot, self._mappers[name])
             self.marks.draw(plot, sections=False)
@@ -281,13 +281,14 @@ class MapsView:
         image = plot.add_glyph(self.source, Image(image=picture.column, dw="dw", dh="dh", color_mapper=self._mappers[name]))
         if picture.has_times:
             image = plot.add_glyph(self.source, Image(image="escape_time", dw="dw", dh="dh", color_mapper=self._time_mapper))
+        # The last image, which is in front, gets the hover text.
         self._hover.renderers = [*self._hover.renderers, image]
         self._outlines.draw(plot, full=False)
         self.overlays.draw(plot, name)
         self.marks.draw(plot, sections=name == "basins")
 
 
-def _blank() -> dict[str, list[Any]]:
+def _blank_columns() -> dict[str, list[Any]]:
     """Return the columns of a map of one undecided pixel."""
     codes = np.zeros((1, 1), np.uint8)
     images = ("fate", "crossing_class", "crossings", *LAYER_COLUMNS, "difference")

@@ -25,7 +25,7 @@ GESTURE_PAUSE_MS = 500
 REST_MS = 90
 """Time without change after which the ranges report their window, in milliseconds. Steps of the wheel are closer together."""
 
-_FOLLOW = callback_code(Path(__file__).with_name("two_fingers.js"), "followFingers(cb_obj, ranges, held)")
+_FOLLOW_CODE = callback_code(Path(__file__).with_name("two_fingers.js"), "followFingers(cb_obj, ranges, held)")
 
 Edges = tuple[float, float, float, float]
 """Ends of the ranges: x_low, x_high, ordinate_low, ordinate_high."""
@@ -54,38 +54,39 @@ class MapRanges:
         self._rest_pause = _Pause(REST_MS, self._report)
         self._gesture_pause = _Pause(GESTURE_PAUSE_MS, on_rest)
         self._is_following = False
-        self._numbers = count(1)
-        self._open_reports = 0
+        self._move_numbers = count(1)
+        # Number of reports whose window is neither shown nor refused yet.
+        self._open_report_count = 0
         # The server numbers its moves in the tags of x. The browser answers by copying the tags to the ordinate.
         self.answer = CustomJS(args={"x": self.x, "ordinate": self.ordinate}, code="ordinate.tags = x.tags")
         self.x.js_on_change("tags", self.answer)
         self.ordinate.on_change("tags", self._note_answer)
-        for edges in (self.x, self.ordinate):
-            edges.on_change("start", self._note_move)
-            edges.on_change("end", self._note_move)
+        for axis_range in (self.x, self.ordinate):
+            axis_range.on_change("start", self._note_move)
+            axis_range.on_change("end", self._note_move)
 
     def follow(self, window: Window) -> None:
         """Go to the window of a new map, unless the user is moving the ranges."""
         self._window = window
-        if self._rest_pause.is_waiting or self._open_reports:
+        if self._rest_pause.is_waiting or self._open_report_count:
             return
         # Setting a range would undo a simultaneous move in the browser, so rounding differences alone set nothing.
-        if is_near(self._edges, window):
+        if _is_near(self._edges, window):
             return
         self._is_following = True
-        self.x.update(start=window.x_low, end=window.x_high, tags=[next(self._numbers)])
+        self.x.update(start=window.x_low, end=window.x_high, tags=[next(self._move_numbers)])
         self.ordinate.update(start=window.ordinate_low, end=window.ordinate_high)
         self._is_following = False
 
     def go_to(self, window: Window) -> None:
         """Go to a window that was chosen elsewhere, and drop a move that is not reported yet."""
-        if not self._open_reports:
+        if not self._open_report_count:
             self._rest_pause.cancel()
         self.follow(window)
 
     def finish_report(self) -> None:
         """End a report after its window is shown or refused, and go to the window of the map."""
-        self._open_reports -= 1
+        self._open_report_count -= 1
         if self._window is not None:
             self.follow(self._window)
 
@@ -93,8 +94,8 @@ class MapRanges:
         """Set the map of the whole interior, which also determines the smallest window."""
         self._home_window = home.find_window()
         pixels = zip(finest_pixel(home, self._home_window), home.resolution, strict=True)
-        # Twice the smallest distance of pixels, because the edges are rounded too.
-        self.x.min_interval, self.ordinate.min_interval = (2.0 * finest * count for finest, count in pixels)
+        # Pixels of twice the smallest size, because the edges are rounded too.
+        self.x.min_interval, self.ordinate.min_interval = (2.0 * finest * number for finest, number in pixels)
 
     @property
     def magnification(self) -> float:
@@ -136,10 +137,10 @@ class MapRanges:
         edges = self._edges
         x_low, x_high, ordinate_low, ordinate_high = edges
         # The server and the browser may change a range at the same time.
-        if not (x_low < x_high and ordinate_low < ordinate_high) or self._window is None or is_near(edges, self._window):
+        if not (x_low < x_high and ordinate_low < ordinate_high) or self._window is None or _is_near(edges, self._window):
             return
-        self._open_reports += 1
-        self._on_zoom(None if self._home_window is not None and is_near(edges, self._home_window) else Window(*edges))
+        self._open_report_count += 1
+        self._on_zoom(None if self._home_window is not None and _is_near(edges, self._home_window) else Window(*edges))
 
     @property
     def _edges(self) -> Edges:
@@ -180,8 +181,8 @@ class _Pause:
             self._on_end()
 
 
-def is_near(edges: Edges, window: Window) -> bool:
-    """Whether the ends of the ranges are the edges of a window, up to rounding in the browser."""
+def _is_near(edges: Edges, window: Window) -> bool:
+    """Whether the ends of the ranges are the edges of a window. Rounding in the browser changes far less than 1e-6 of a side."""
     width, height = window.width, window.height
     distances = np.abs(np.subtract(edges, astuple(window)))
     return bool(np.all(distances <= 1e-6 * np.array([width, width, height, height])))
@@ -194,7 +195,7 @@ class TwoFingers:
     """
 
     def __init__(self, x: Range1d, y: Range1d) -> None:
-        self._follow = CustomJS(args={"ranges": [x, y], "held": []}, code=_FOLLOW)
+        self._follow = CustomJS(args={"ranges": [x, y], "held": []}, code=_FOLLOW_CODE)
 
     def follow_on(self, plot: figure) -> None:
         """Make a picture with these ranges follow the fingers."""

@@ -43,15 +43,15 @@ class MapTools:
         spans = [Span(dimension=dimension, line_alpha=0.35) for dimension in ("width", "height")]
         tools = [pan, wheel, CrosshairTool(overlay=spans), *hovers]
         self.toolbar = Toolbar(tools=tools, active_drag=pan, active_scroll=wheel)
-        self._drags: dict[Drag, Any] = {Drag.PAN: pan}
+        self._drag_tools: dict[Drag, Any] = {Drag.PAN: pan}
         state.param.watch(lambda event: self._begin_touch(), "touch")
 
     def set_drag(self, drag: Drag) -> None:
         """Choose the effect of dragging over a picture."""
-        if drag in _BOX_TOOLS and drag not in self._drags:
-            self._drags[drag] = _BOX_TOOLS[drag]()
-            self.toolbar.tools = [*self.toolbar.tools, self._drags[drag]]
-        self.toolbar.active_drag = self._drags.get(drag)
+        if drag in _BOX_TOOLS and drag not in self._drag_tools:
+            self._drag_tools[drag] = _BOX_TOOLS[drag]()
+            self.toolbar.tools = [*self.toolbar.tools, self._drag_tools[drag]]
+        self.toolbar.active_drag = self._drag_tools.get(drag)
 
     def _begin_touch(self) -> None:
         """Adapt to touch input: two fingers zoom."""

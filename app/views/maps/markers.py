@@ -31,7 +31,7 @@ class Markers:
     """
 
     def __init__(self, state: ViewState) -> None:
-        self._glyphs_of = {
+        self._glyphs_by_kind = {
             "starts": LaterGlyphs(self._add_starts),
             "sections": LaterGlyphs(self._add_sections),
             "box": LaterGlyphs(self._add_box),
@@ -45,7 +45,7 @@ class Markers:
     def draw(self, plot: figure, *, sections: bool) -> None:
         """Add a figure to mark. Only with `sections`, section points are drawn, because painting them takes time."""
         for kind in ("starts", "box", *(["sections"] if sections else [])):
-            self._glyphs_of[kind].expect(plot)
+            self._glyphs_by_kind[kind].expect(plot)
 
     def _add_sections(self, plot: figure) -> None:
         plot.add_glyph(self._sections, Scatter(size=3, fill_color=self._colour, line_color=None), level="annotation")
@@ -68,10 +68,10 @@ class Markers:
     def show_starts(self, starts: Sequence[tuple[float, float]]) -> None:
         """Mark each start with a numbered cross."""
         if starts:
-            self._glyphs_of["starts"].draw()
-        x, y = ([float(start[axis]) for start in starts] for axis in (0, 1))
-        numbers = list(range(len(starts)))
-        marks = {"x": x, "y": y, "slot": numbers, "text": [str(number + 1) for number in numbers]}
+            self._glyphs_by_kind["starts"].draw()
+        x, y = [float(x) for x, _ in starts], [float(ordinate) for _, ordinate in starts]
+        slots = list(range(len(starts)))
+        marks = {"x": x, "y": y, "slot": slots, "text": [str(slot + 1) for slot in slots]}
         if marks != dict(self._starts.data):
             self._starts.data = marks
 
@@ -79,18 +79,18 @@ class Markers:
         """Draw the section points of each orbit, given as arrays of shape (n, 2)."""
         drawn_sections = [points[:MOST_SECTION_POINTS] for points in sections]
         if any(len(points) for points in drawn_sections):
-            self._glyphs_of["sections"].draw()
+            self._glyphs_by_kind["sections"].draw()
         elif not len(self._sections.data["x"]):
             return
         points = np.concatenate([NO_POINTS, *drawn_sections]).astype(np.float32)
-        slot = np.repeat(np.arange(len(drawn_sections), dtype=np.uint8), [len(points) for points in drawn_sections])
-        self._sections.data = {"x": points[:, 0], "y": points[:, 1], "slot": slot}
+        slots = np.repeat(np.arange(len(drawn_sections), dtype=np.uint8), [len(points) for points in drawn_sections])
+        self._sections.data = {"x": points[:, 0], "y": points[:, 1], "slot": slots}
 
     def _show_box(self, box: Window | None) -> None:
         """Draw the box whose pixels are counted; None removes it."""
         boxes = [] if box is None else [box]
         if boxes:
-            self._glyphs_of["box"].draw()
+            self._glyphs_by_kind["box"].draw()
         self._box.data = {
             "left": [each.x_low for each in boxes],
             "right": [each.x_high for each in boxes],

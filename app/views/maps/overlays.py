@@ -1,4 +1,4 @@
-"""Marks of pixels, and curves, which layers draw over the pictures."""
+"""What layers draw over the pictures: marked pixels, and curves."""
 
 from __future__ import annotations
 
@@ -16,7 +16,8 @@ from plots.layers.layer import Layer, Stroke
 from plots.layers.table import LAYERS
 from plots.pictures.palette import LIGHT, Palette
 
-_LAYERS = {name: layer for name, layer in LAYERS.items() if layer.over is not None}
+# The layers that draw over pictures.
+_DRAWN_LAYERS = {name: layer for name, layer in LAYERS.items() if layer.over is not None}
 _CURVE_COLUMNS = ("xs", "ys", "colour", "width", "alpha", "halo_width", "halo_alpha")
 
 
@@ -33,23 +34,23 @@ class Overlays:
 
     def __init__(self, source: ColumnDataSource, state: ViewState) -> None:
         self._source, self._state = source, state
-        self.curves = {name: ColumnDataSource(_no_curves(), name=name) for name in _LAYERS}
-        self._glyphs_of = {name: LaterGlyphs(partial(self._add, layer)) for name, layer in _LAYERS.items()}
+        self.curves = {name: ColumnDataSource(_no_curves(), name=name) for name in _DRAWN_LAYERS}
+        self._glyphs_by_layer = {name: LaterGlyphs(partial(self._add_glyphs, layer)) for name, layer in _DRAWN_LAYERS.items()}
         self._strokes: dict[str, Sequence[Stroke]] = {}
         self._spec: MapSpec | None = None
         state.param.watch(lambda event: self._show_all_curves(), "palette")
 
     def draw(self, plot: figure, picture: str) -> None:
         """Add a figure of a picture, over which layers will be drawn."""
-        for layer in _LAYERS.values():
+        for layer in _DRAWN_LAYERS.values():
             if layer.over_picture(picture) is not None:
-                self._glyphs_of[layer.name].expect(plot)
+                self._glyphs_by_layer[layer.name].expect(plot)
 
     def begin(self, spec: MapSpec) -> None:
         """Remove the curves of another map."""
         if spec != self._spec:
             self._spec = spec
-            for name in _LAYERS:
+            for name in _DRAWN_LAYERS:
                 self.remove(name)
 
     def show(self, name: str, result: Any) -> None:
@@ -57,7 +58,7 @@ class Overlays:
         over = LAYERS[name].over
         if over is None:
             return
-        self._glyphs_of[name].draw()
+        self._glyphs_by_layer[name].draw()
         if over.strokes is not None:
             self._strokes[name] = over.strokes(result)
             self._show_curves(name)
@@ -74,24 +75,18 @@ class Overlays:
     def _show_curves(self, name: str) -> None:
         self.curves[name].data = _curve_columns(self._strokes[name], self._state.colours)
 
-    def _add(self, layer: Layer, plot: figure) -> None:
-        self._add_marks(plot, layer)
-        self._add_curves(plot, layer)
-
-    def _add_marks(self, plot: figure, layer: Layer) -> None:
-        if layer.pixels is None or layer.over is None or layer.over.pixel_colours is None:
-            return
-        colours = list(layer.over.pixel_colours)
-        mapper = LinearColorMapper(palette=colours, low=-0.5, high=len(colours) - 0.5)
-        plot.add_glyph(self._source, Image(image=layer.pixels.column, dw="dw", dh="dh", color_mapper=mapper))
-
-    def _add_curves(self, plot: figure, layer: Layer) -> None:
-        if layer.over is None or layer.over.strokes is None:
-            return
-        halo = {"line_color": LIGHT.halo, "line_width": "halo_width", "line_alpha": "halo_alpha"}
-        stroke = {"line_color": "colour", "line_width": "width", "line_alpha": "alpha"}
-        for style in (halo, stroke):
-            plot.add_glyph(self.curves[layer.name], MultiLine(**style))
+    def _add_glyphs(self, layer: Layer, plot: figure) -> None:
+        """Add the marked pixels and the curves of a layer to a figure."""
+        over = layer.over
+        if over is not None and over.pixel_colours is not None and layer.pixels is not None:
+            colours = list(over.pixel_colours)
+            mapper = LinearColorMapper(palette=colours, low=-0.5, high=len(colours) - 0.5)
+            plot.add_glyph(self._source, Image(image=layer.pixels.column, dw="dw", dh="dh", color_mapper=mapper))
+        if over is not None and over.strokes is not None:
+            halo = {"line_color": LIGHT.halo, "line_width": "halo_width", "line_alpha": "halo_alpha"}
+            stroke = {"line_color": "colour", "line_width": "width", "line_alpha": "alpha"}
+            for style in (halo, stroke):
+                plot.add_glyph(self.curves[layer.name], MultiLine(**style))
 
 
 def _curve_columns(strokes: Sequence[Stroke], palette: Palette) -> dict[str, list[Any]]:

@@ -15,7 +15,7 @@ from plots.layers.table import LAYER_OF, PICTURES
 SHORT_TITLES = {"well": "Well"} | {name: picture.short_title for name, picture in PICTURES.items() if name != "curves"}
 """Short titles of all pictures, in order."""
 
-FIRST = "basins"
+FIRST_PICTURE = "basins"
 """The picture that is largest, or on narrow screens the only picture, until another is chosen."""
 
 # Largest number of pictures of the same size. Among more pictures, one is twice as large as the others.
@@ -84,7 +84,7 @@ class PictureGrid:
     def _largest_picture(self) -> str:
         """The largest picture: the enlarged picture, or else the picture of the last layer that shows something."""
         layers = [name for name in self._panes if name in LAYER_OF and name not in self._empty_pictures]
-        return self._state.focus if self._is_enlarged else [FIRST, *layers][-1]
+        return self._state.focus if self._is_enlarged else [FIRST_PICTURE, *layers][-1]
 
     @property
     def _is_enlarged(self) -> bool:
@@ -96,11 +96,11 @@ class PictureGrid:
         largest = self._largest_picture
         is_enlarged = self._is_enlarged
         count = len(self._panes)
-        are_many = count > _MOST_EQUAL
-        other_kind = "small" if is_enlarged else "compact" if are_many else "equal"
+        is_many = count > _MOST_EQUAL
+        other_kind = "small" if is_enlarged else "compact" if is_many else "equal"
         with pn.io.hold():
             self._set_class("enlarged", is_enlarged)
-            self._set_class("many", are_many and not is_enlarged)
+            self._set_class("many", is_many and not is_enlarged)
             self._set_class("crowded", count > _MOST_HALF and not is_enlarged)
             self._set_class("gap", count in _WITH_GAP and not is_enlarged)
             for name, pane in self._panes.items():
@@ -117,7 +117,7 @@ class PictureGrid:
 
     def _set_class(self, name: str, on: bool) -> None:
         """Set or remove a CSS class of the grid."""
-        others = [each for each in self._column.css_classes if each != name]
-        classes = [*others, name] if on else others
+        other_classes = [each for each in self._column.css_classes if each != name]
+        classes = [*other_classes, name] if on else other_classes
         if classes != self._column.css_classes:
             self._column.css_classes = classes

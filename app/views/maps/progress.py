@@ -45,7 +45,7 @@ class ProgressView:
         self._state = state
         offers = {layer.title: partial(state.switch_layer, name, on=True) for name, layer in LAYERS.items()}
         self._actions: dict[str, Callable[[], None]] = {STOP: on_cancel, CONTINUE: on_resume, **offers}
-        # Time and undecided share at the beginning of the last stage of the integration.
+        # Time in seconds, and undecided share, when the last stage of the integration began; None before that stage.
         self._last_stage: tuple[float, float] | None = None
         self._frame: EscapeMap | None = None
         self._sentence = ""
@@ -73,7 +73,7 @@ class ProgressView:
 
     def show(self, frame: EscapeMap) -> None:
         """Show the shares of a frame, and the progress of the map or its result."""
-        sentence = _result(frame) if frame.complete else f"{_stage(frame)}{self._time_left(frame)}"
+        sentence = _describe_result(frame) if frame.complete else f"{_describe_stage(frame)}{self._time_left(frame)}"
         offer = next((layer.title for layer in LAYERS.values() if layer.is_offered(frame)), None)
         self._frame = frame
         self._set(running=not frame.complete, label=offer or STOP, sentence=sentence)
@@ -104,10 +104,10 @@ class ProgressView:
             return ""
         if self._last_stage is None:
             self._last_stage = now, frame.undecided
-        begin, undecided_at_begin = self._last_stage
+        begin_time, undecided_at_begin = self._last_stage
         if frame.undecided >= undecided_at_begin:
             return ""
-        seconds_left = (now - begin) * frame.undecided / (undecided_at_begin - frame.undecided)
+        seconds_left = (now - begin_time) * frame.undecided / (undecided_at_begin - frame.undecided)
         return f", about {math.ceil(seconds_left)} s left"
 
     def _set(self, *, running: bool, label: str, sentence: str) -> None:
@@ -136,14 +136,14 @@ def _shares(frame: EscapeMap, palette: Palette) -> str:
     return f"<div class='share-bar' aria-hidden='true'>{parts}{rest}</div><div class='legend'>{words}</div>"
 
 
-def _stage(frame: EscapeMap) -> str:
+def _describe_stage(frame: EscapeMap) -> str:
     """Describe the decided share of an unfinished frame, and the time reached."""
     picture = "" if frame.stride == 1 else "Coarse picture, "
     decided = f"{picture}{format_share(1.0 - frame.undecided)} decided"
     return f"{decided[0].upper()}{decided[1:]}, t = {format_whole(frame.horizon)} of {format_whole(frame.spec.t_max)}"
 
 
-def _result(frame: EscapeMap) -> str:
+def _describe_result(frame: EscapeMap) -> str:
     """Return the integration time of a complete map, a warning if needed, and details that open on demand."""
     details = (
         f"Shares of the interior starts, integrated until t = {format_whole(frame.spec.t_max)}{_share_on_evidence(frame)}. "
@@ -151,11 +151,11 @@ def _result(frame: EscapeMap) -> str:
     )
     return (
         f"✓ t = {format_whole(frame.spec.t_max)} <button type='button' class='term' popovertarget='map-details'>details</button>"
-        f"{_rounding(frame)}<div id='map-details' class='help-text' popover>{details}</div>"
+        f"{_rounding_warning(frame)}<div id='map-details' class='help-text' popover>{details}</div>"
     )
 
 
-def _rounding(frame: EscapeMap) -> str:
+def _rounding_warning(frame: EscapeMap) -> str:
     """Return a warning if double precision does not resolve the pixels of a deep zoom."""
     if not frame.is_rounded:
         return ""

@@ -10,9 +10,9 @@ from bokeh.plotting import figure
 
 from app.state.view_state import ViewState
 from app.views.components.legends import legend_items
-from app.views.components.orbit_lines import in_front, line_columns, line_style, lines, opacities, orbit_colours
+from app.views.components.orbit_lines import in_front, line_columns, line_source, line_style, opacities, orbit_colours
 from app.views.components.plots import FigurePane, LaterGlyphs, annotate_picture, map_figure, set_range
-from app.views.maps.curve_layers import CurveLayers
+from app.views.maps.map_curves import MapCurves
 from engine import MapSpec, Potential, Window
 from engine.slices.axes import highest_energy
 from engine.slices.planes import SPACE
@@ -37,11 +37,11 @@ class WellView:
         self._state = state
         self._ranges = Range1d(-1.0, 1.0), Range1d(-1.0, 1.0)
         self._line_style = line_style(orbit_colours(state))
-        self._paths, self._trails = lines("paths"), lines("trails")
+        self._paths, self._trails = line_source("paths"), line_source("trails")
         # Density images of long paths.
         self._shades = ColumnDataSource({name: [] for name in ("image", "x", "y", "dw", "dh", "alpha")}, name="shades")
         self._points = ColumnDataSource({"x": [], "y": [], "slot": []}, name="points")
-        self._outlines = CurveLayers(state)
+        self._outlines = MapCurves(state)
         self._spec: MapSpec | None = None
         self._orbits: list[tuple[int, OrbitCurves]] = []
         self._time: float | None = None
@@ -105,7 +105,7 @@ class WellView:
     def describe(self) -> None:
         """Write title, legend and names of the axes around the frame."""
         if self._outline_key is not None:
-            spec = self._outline_key[0]
+            spec, _ = self._outline_key
             annotate_picture(self.plot, TITLE, spec.plane.axis_symbols, legend_items(self._outlines.entries(spec)))
 
     def _outline(self) -> None:
@@ -119,12 +119,12 @@ class WellView:
         if chosen is not None and (spec.common_energy is None or spec.plane.parameter is not None):
             # On a slice of several energies or potentials, the chosen orbit determines the well.
             potential, energy = chosen.orbit.potential or potential, chosen.orbit.energy
-        key = well_spec(potential, energy), self._state.colours
-        if key == self._outline_key:
+        outlined_spec = well_spec(potential, energy)
+        if (outlined_spec, self._state.colours) == self._outline_key:
             return
-        self._outline_key = key
-        self._outlines.show(key[0])
-        self._go_to(key[0].find_window())
+        self._outline_key = outlined_spec, self._state.colours
+        self._outlines.show(outlined_spec)
+        self._go_to(outlined_spec.find_window())
         self.describe()
 
     def _go_to(self, window: Window) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import asdict, replace
+from dataclasses import asdict, astuple, replace
 from pathlib import Path
 from typing import Any
 
@@ -67,7 +67,7 @@ class EnsemblePlayer(JSComponent):
     counts = param.List(default=list(COUNTS), doc="numbers of orbits to choose from")
     radii = param.List(default=[SMALLEST_LOG_RADIUS, LARGEST_LOG_RADIUS], doc="log10 of the smallest and the largest radius")
     places = param.Dict(default={}, doc="phrase of each place of starts in the system")
-    explanations = param.Dict(default={str(where): sentence for where, sentence in EXPLANATIONS.items()}, doc="of places")
+    explanations = param.Dict(default={str(place): text for place, text in EXPLANATIONS.items()}, doc="texts about some places")
     where = param.String(doc="see `WatchedStarts`")
     count = param.Integer()
     seed = param.Integer()
@@ -82,7 +82,7 @@ class EnsemblePlayer(JSComponent):
         super().__init__(sizing_mode="stretch_width", margin=(0, 10), stylesheets=[_STYLE])
         self._state = state
         self._choose = locked(lambda starts: state.param.update(watched=starts))
-        self._flux = LatestRequest(jobs, self._show_flux, lambda sentence: None, locked)
+        self._flux_request = LatestRequest(jobs, self._show_flux, lambda sentence: None, locked)
         state.follow(lambda *values: self._show_choice(), "system", "watched", "starts", "chosen", "box")
         results.param.watch(lambda event: self._request_rate() if results.whole_map else None, "frame")
         state.follow(lambda *values: self._request_rate(), "system", "plane", "energy", "analysis")
@@ -92,9 +92,9 @@ class EnsemblePlayer(JSComponent):
         places = places_for(self._state.potential)
         if watched.where not in places:
             watched = replace(watched, where=StartsFrom.WELL)
-        edges = [] if box is None else list(vars(box).values())
-        shown = {"places": {str(where): words for where, words in places.items()}, **asdict(watched)}
-        self.param.update(**shown, point=[] if start is None else list(start), box=edges)
+        edges = [] if box is None else list(astuple(box))
+        choice = {"places": {str(where): words for where, words in places.items()}, **asdict(watched)}
+        self.param.update(**choice, point=[] if start is None else list(start), box=edges)
 
     def _handle_msg(self, message: Any) -> None:
         # A browser can send anything: unexpected messages are ignored.
@@ -112,9 +112,9 @@ class EnsemblePlayer(JSComponent):
         spec = state.map_spec()
         has_one_rate = spec.common_energy is not None and spec.plane.parameter is None
         if has_one_rate and is_ready_for_maps(state.potential):
-            self._flux.submit(Job(compute_flux, (spec.potential, spec.common_energy)))
+            self._flux_request.submit(Job(compute_flux, (spec.potential, spec.common_energy)))
 
     def _show_flux(self, flux: EscapeFlux) -> None:
         # Without this, the request would ignore the same job when the analysis is opened again.
-        self._flux.cancel()
+        self._flux_request.cancel()
         self.rate = flux.decay_rate

@@ -38,7 +38,7 @@ class OrbitActions:
 
     add: Callable[[float, float], None]
     find_divergent_start: Callable[[], None]
-    open_plane: Callable[[], None]
+    open_section: Callable[[], None]
     show_all_times: Callable[[], None]
     copy: Callable[[str], None]
 
@@ -57,7 +57,7 @@ class OrbitControls:
         self.divergent_start = button("Find divergent start", actions.find_divergent_start, margin=0)
         self.remove = button("Remove", lambda: state.remove_start(state.chosen), margin=0)
         self.clear = button("Clear all", lambda: state.param.update(starts=(), chosen=0), margin=0)
-        self.open_plane = button("", actions.open_plane, margin=0)
+        self.open_section = button("", actions.open_section, margin=0)
         self.interval = TextPane("", name="interval", margin=0, css_classes=["quiet"])
         all_times = button("Whole orbit", actions.show_all_times, margin=0)
         self._interval_row = flex_row(self.interval, all_times, justify="space-between", align="center")
@@ -74,14 +74,14 @@ class OrbitControls:
         state.follow(self._follow_plane, "plane")
         state.follow(lambda name: self._set_colours(PALETTES[name]), "palette")
 
-    def entry(self) -> list[pn.viewable.Viewable]:
+    def start_boxes(self) -> list[pn.viewable.Viewable]:
         """Return the boxes for a typed start, which open on demand."""
         return Fold("Type a start", lambda: [flex_row(self.x, self.ordinate, self.button, align="end")]).parts()
 
     def head(self, player: pn.viewable.Viewable) -> pn.viewable.Viewable:
         """Return the list of the orbits, the verdict on the chosen orbit, buttons, and the player."""
         orbits = flex_row(self.list, self.clear, justify="space-between", align="center")
-        buttons = flex_row(self.divergent_start, self.remove, self.open_plane, gap="6px")
+        buttons = flex_row(self.divergent_start, self.remove, self.open_section, gap="6px")
         orbits.margin = buttons.margin = (5, 10)
         return pn.Column(
             orbits, self.text, buttons, player,
@@ -96,13 +96,13 @@ class OrbitControls:
         """Label the boxes with the axes of the plane."""
         self.x.label, self.ordinate.label = plane.axis_symbols
         energy_or_parameter = [axis for axis in plane.axes if axis is Coordinate.H or axis is plane.parameter]
-        self.open_plane.visible = bool(energy_or_parameter)
+        self.open_section.visible = bool(energy_or_parameter)
         if energy_or_parameter:
-            self.open_plane.label = f"Open {SECTION.title} at this {' and '.join(axis.symbol for axis in energy_or_parameter)}"
+            self.open_section.label = f"Open {SECTION.title} at this {' and '.join(axis.symbol for axis in energy_or_parameter)}"
 
     def _set_colours(self, palette: Palette) -> None:
         """Set the colours of the orbits' numbers."""
-        self.list.styles = {f"--orbit-{place + 1}": colour for place, colour in enumerate(palette.orbits)}
+        self.list.styles = {f"--orbit-{index + 1}": colour for index, colour in enumerate(palette.orbits)}
 
     def show_interval(self, interval: tuple[float, float] | None, duration: float) -> None:
         """Show the interval of time in view; None stands for the whole duration."""
@@ -131,7 +131,7 @@ class OrbitControls:
     def show(self, orbits: Sequence[ChosenOrbit], chosen: int) -> None:
         """Show the list of the orbits, and verdict and values of the chosen orbit."""
         self._orbits_and_chosen = (tuple(orbits), chosen)
-        rows = [_row(orbits, place) for place in range(len(orbits))]
+        rows = [_list_label(orbits, index) for index in range(len(orbits))]
         self.list.param.update(rows=rows, chosen=chosen, visible=bool(orbits))
         if not orbits:
             return
@@ -139,7 +139,7 @@ class OrbitControls:
         self.x.value, self.ordinate.value = (f"{number!r}" for number in chosen_orbit.start)
         self.text.object = escape(chosen_orbit.headline())
         self.reason.object = escape(chosen_orbit.describe())
-        self.values.object = _values(chosen_orbit.orbit)
+        self.values.object = _value_table(chosen_orbit.orbit)
 
     def _rows(self) -> list[tuple[str, str, str]]:
         """Return the values of the chosen orbit at full precision, and value and verdict of each indicator."""
@@ -151,11 +151,11 @@ class OrbitControls:
         verdicts = [(one.name, repr(one.value), str(one.conclusion or "no verdict")) for one in self._verdicts]
         return [*number_rows("start", start), *number_rows("orbit", orbit.numbers()), *verdicts]
 
-    def _choose(self, place: int) -> None:
+    def _choose(self, index: int) -> None:
         # Orbits may have been removed in the meantime.
-        if place != self._orbits_and_chosen[1] and place < len(self._state.starts):
+        if index != self._orbits_and_chosen[1] and index < len(self._state.starts):
             with pn.io.hold():
-                self._state.chosen = place
+                self._state.chosen = index
 
     def _submit(self) -> None:
         try:
@@ -168,29 +168,29 @@ class OrbitControls:
             self.say("Type a number into both boxes first.")
 
 
-def _row(orbits: Sequence[ChosenOrbit], place: int) -> str:
+def _list_label(orbits: Sequence[ChosenOrbit], index: int) -> str:
     """Return the label of an orbit in the list. A start that looks like an earlier start is written as a difference."""
-    x, ordinate = orbits[place].start
+    x, ordinate = orbits[index].start
     text = f"{format_number(x)}, {format_number(ordinate)}"
-    for earlier_place, earlier in enumerate(orbits[:place]):
+    for earlier_index, earlier in enumerate(orbits[:index]):
         earlier_x, earlier_ordinate = earlier.start
         if text == f"{format_number(earlier_x)}, {format_number(earlier_ordinate)}":
             difference = f"({format_number(x - earlier_x, 2)}, {format_number(ordinate - earlier_ordinate, 2)})"
-            text = f"orbit {earlier_place + 1} + {difference}"
-    return f"{place + 1}: {text}: {_fate(orbits[place])}"
+            text = f"orbit {earlier_index + 1} + {difference}"
+    return f"{index + 1}: {text}: {_short_outcome(orbits[index])}"
 
 
 def _value(value: float) -> str:
     return format_number(value, 3) if math.isfinite(value) else ""
 
 
-def _fate(orbit: ChosenOrbit) -> str:
+def _short_outcome(orbit: ChosenOrbit) -> str:
     if orbit.verdict is not None:
         return orbit.verdict.summarize()
     return "none" if orbit.problem else "…"
 
 
-def _values(orbit: Orbit | None) -> str:
+def _value_table(orbit: Orbit | None) -> str:
     if orbit is None:
         return ""
     rows = {

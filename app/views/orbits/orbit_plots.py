@@ -31,8 +31,8 @@ from app.views.components.orbit_lines import (
     band_style,
     in_front,
     line_columns,
+    line_source,
     line_style,
-    lines,
     opacities,
     orbit_colours,
 )
@@ -45,7 +45,7 @@ from plots.pictures.orbit_quantities import ORBIT_QUANTITIES, OrbitQuantity
 from plots.pictures.palette import MARK_EDGE, THRESHOLD
 
 # The history from which times are read: all histories have the same times.
-_FIRST = ORBIT_QUANTITIES[0].name
+_FIRST_HISTORY = ORBIT_QUANTITIES[0].name
 
 
 class OrbitPlots:
@@ -65,8 +65,8 @@ class OrbitPlots:
         self._x_range = Range1d(0.1, 1e4)
         self._y_ranges = {quantity.name: Range1d(quantity.least or 0.0, 1.0) for quantity in ORBIT_QUANTITIES}
         self._mapper = orbit_colours(state)
-        self._histories = {name: lines(f"{name}_histories") for name in self._y_ranges}
-        self._bands = {name: lines(f"{name}_bands") for name in self._y_ranges}
+        self._histories = {name: line_source(f"{name}_histories") for name in self._y_ranges}
+        self._bands = {name: line_source(f"{name}_bands") for name in self._y_ranges}
         self._plots: dict[str, figure] = {}
         self._time_mark = Span(location=0.0, dimension="height", line_color=MARK_EDGE, line_dash="dotted", visible=False)
         self._orbits: list[tuple[int, OrbitCurves]] = []
@@ -90,7 +90,7 @@ class OrbitPlots:
             histories = [curves.histories[name] for _, curves in self._orbits]
             self._histories[name].data = line_columns(self._orbits, [history.line for history in histories], alphas)
             self._bands[name].data = band_columns(self._orbits, [history.outline for history in histories], alphas)
-        self._scale(interval)
+        self._set_ranges(interval)
 
     def set_time(self, t: float | None) -> None:
         """Mark a time on all histories; None removes the mark."""
@@ -100,9 +100,11 @@ class OrbitPlots:
         name, scale = quantity.name, "log" if quantity.logarithmic else "linear"
         time_axis: dict[str, Any] = {"x_axis_type": "log", "x_range": self._x_range}
         value_axis: dict[str, Any] = {"y_axis_type": scale, "y_range": self._y_ranges[name]}
-        plot = history_figure(name, quantity.title, tools=[_brush()], **time_axis, **value_axis)
+        # With renderers, the tool would change the look of the curves.
+        brush = BoxSelectTool(dimensions="width", renderers=[])
+        plot = history_figure(name, quantity.title, tools=[brush], **time_axis, **value_axis)
         # With touch input, a drag over a history scrolls the page.
-        plot.toolbar.active_drag = None if self._state.touch else plot.toolbar.tools[0]
+        plot.toolbar.active_drag = None if self._state.touch else brush
         plot.add_glyph(self._bands[name], Patches(**band_style(self._mapper)))
         plot.add_glyph(self._histories[name], MultiLine(**line_style(self._mapper)))
         plot.add_layout(self._time_mark)
@@ -112,7 +114,7 @@ class OrbitPlots:
             style = {"line_color": THRESHOLD, "line_dash": "dashed", "line_width": 1.5}
             plot.add_layout(Span(location=quantity.threshold, dimension="width", **style))
         self._plots[name] = plot
-        self._scale_time(quantity)
+        self._set_time_scale(quantity)
         return plot
 
     def _select_interval(self, event: SelectionGeometry) -> None:
@@ -120,21 +122,21 @@ class OrbitPlots:
         if event.final and begin < end:
             self._on_brush((max(begin, 0.0), end))
 
-    def _scale(self, interval: tuple[float, float] | None) -> None:
+    def _set_ranges(self, interval: tuple[float, float] | None) -> None:
         """Set the ranges of the axes. The axis of time covers the interval; without an interval, the longest orbit."""
-        drawn = [curves for _, curves in self._orbits if curves.histories[_FIRST].line[0].size]
+        drawn = [curves for _, curves in self._orbits if curves.histories[_FIRST_HISTORY].line[0].size]
         if not drawn:
             return
-        earliest = min(float(curves.histories[_FIRST].line[0][0]) for curves in drawn)
+        earliest = min(float(curves.histories[_FIRST_HISTORY].line[0][0]) for curves in drawn)
         begin, end = interval or (earliest, max(float(curves.orbit.t[-1]) for curves in drawn))
         if end > earliest:
             set_range(self._x_range, max(begin, earliest), end)
         for quantity in ORBIT_QUANTITIES:
             histories = [curves.histories[quantity.name] for curves in drawn]
             set_range(self._y_ranges[quantity.name], *quantity.limits(histories))
-            self._scale_time(quantity)
+            self._set_time_scale(quantity)
 
-    def _scale_time(self, quantity: OrbitQuantity) -> None:
+    def _set_time_scale(self, quantity: OrbitQuantity) -> None:
         """Give the figure of a quantity, if it is made, a linear or a logarithmic axis of time."""
         plot = self._plots.get(quantity.name)
         is_log = has_log_time(self._x_range.end, logarithmic=quantity.logarithmic)
@@ -150,8 +152,3 @@ def prepare() -> None:
     potential = CASES["III"]
     state = start_states(potential, SECTION, 0.2, np.zeros(1), np.full(1, 0.1))[0]
     compute_orbit_curves(potential, integrate_orbit(potential, state, 5000.0))
-
-
-def _brush() -> BoxSelectTool:
-    """Return a tool to draw an interval of time. With renderers, it would change the look of the curves."""
-    return BoxSelectTool(dimensions="width", renderers=[])

@@ -1,4 +1,4 @@
-"""The distance between the chosen orbit and the previously chosen orbit."""
+"""The distance between the chosen orbit and the previously chosen orbit, or else a neighbour in the list."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from engine.results import Separation
 from plots.pictures.palette import PALETTES
 
 TITLE = "Distance of two orbits"
-LEAST = 1e-17
+SMALLEST_DISTANCE = 1e-17
 """Smallest distance on the logarithmic axis (dimensionless)."""
 
 
@@ -22,7 +22,7 @@ class SeparationPlot:
 
     def __init__(self, state: ViewState) -> None:
         self._x_range = Range1d(0.0, 10.0)
-        self._y_range = Range1d(LEAST, 10.0)
+        self._y_range = Range1d(SMALLEST_DISTANCE, 10.0)
         self._source = ColumnDataSource({"t": [], "distance": []}, name="separation_source")
         self._pair = TextPane("", name="pair", margin=(0, 10), css_classes=["quiet"])
         self._view = pn.Column(margin=0, sizing_mode="stretch_width", visible=False)
@@ -41,7 +41,7 @@ class SeparationPlot:
         self._view.visible = pair is not None and separation is not None
         if pair is None or separation is None:
             return
-        distance = np.maximum(separation.distance, LEAST)
+        distance = np.maximum(separation.distance, SMALLEST_DISTANCE)
         self._source.data = {"t": separation.t, "distance": distance}
         set_range(self._x_range, 0.0, float(separation.t[-1]))
         set_decades(self._y_range, float(distance.min()), 10.0)

@@ -46,17 +46,16 @@ class LayerSwitches:
 
     def _make(self, layer: Layer) -> Switches:
         """Make the switch of a layer."""
+        is_on = lambda layers: layer.name in layers  # noqa: E731
         turn = lambda on: self._state.switch_layer(layer.name, on=on)  # noqa: E731
-        return switch(
-            "Layer", layer.title, self._state, "layers", lambda layers: layer.name in layers, turn, margin=(0, 10, 4, 10)
-        )
+        return switch("Layer", layer.title, self._state, "layers", is_on, turn, margin=(0, 10, 4, 10))
 
     def _choice(self, setting: Setting) -> SegmentedControl:
         """Return the radio buttons of a setting, which the first call makes."""
         if setting.name not in self._choices:
             # The first label also has the word of the setting.
-            (first_label, first_value), *others = ((name.capitalize(), value) for name, value in setting.choices.items())
-            labels = {f"{setting.word} {first_label}": first_value, **dict(others)}
+            (first_label, first_value), *other_options = ((name.capitalize(), value) for name, value in setting.choices.items())
+            labels = {f"{setting.word} {first_label}": first_value, **dict(other_options)}
             choice = self._choices[setting.name] = SegmentedControl(label=setting.title, options=labels, margin=(6, 10))
             self._state.follow(lambda settings: choice.param.update(value=settings[setting.name]), "settings")
             choice.param.watch(lambda event: self._write_setting(setting, event.new), "value")
@@ -86,16 +85,16 @@ class ComparisonSwitch:
         self.switch = switch(
             "Comparison", "Compare with this view", state, "compared", lambda view: view is not None, turn, margin=(0, 10, 4, 10)
         )
-        self.view = TextPane("", sizing_mode="stretch_width", margin=(0, 10), css_classes=["quiet"])
+        self.title = TextPane("", sizing_mode="stretch_width", margin=(0, 10), css_classes=["quiet"])
         self.swap = button("Swap the views", swap_views, kind="light", margin=0)
         state.follow(self._show, "compared")
 
     def parts(self) -> list[pn.viewable.Viewable]:
         """Return the switch. While it is on, also return the title of the other view and the button."""
-        return [self.switch, *([self.view, self.swap] if self._state.compared is not None else [])]
+        return [self.switch, *([self.title, self.swap] if self._state.compared is not None else [])]
 
     def _show(self, compared: View | None) -> None:
-        self.view.object = escape(compared.title) if compared is not None else ""
+        self.title.object = escape(compared.title) if compared is not None else ""
 
 
 def analysis_tabs(state: ViewState) -> SegmentedControl:

@@ -1,25 +1,25 @@
 // @ts-check
 /** Events and services of the browser: history, width, keys pressed anywhere on the page, touch and the clipboard. */
 
-/** Elements that use letters. */
-const TYPING = `textarea, select, [contenteditable]:not([contenteditable=false]), [role=textbox], [role=searchbox],
+/** Elements that use letters, so that the page does not. */
+const TEXT_TARGETS = `textarea, select, [contenteditable]:not([contenteditable=false]), [role=textbox], [role=searchbox],
   [role=combobox], [role=listbox], [role=menu], [role=menubar], [role=spinbutton], [role=grid], [role=tree],
   [role=alertdialog], [role=dialog]:not([aria-modal=false]),
   input:not([type=range], [type=checkbox], [type=radio], [type=button])`
 /** Elements that use arrow keys. */
-const MOVING = `[type=range], [type=radio], [role=slider], [role=radio], [role=radiogroup], [role=tab], [role=tablist],
+const ARROW_TARGETS = `[type=range], [type=radio], [role=slider], [role=radio], [role=radiogroup], [role=tab], [role=tablist],
   [role=toolbar], [role=group]`
 /** Elements that the Enter key presses. */
-const PRESSED = "button, a[href], summary, input, [role=button]"
+const ENTER_TARGETS = "button, a[href], summary, input, [role=button]"
 /** Smallest time between two messages of a key that is held down, in ms. */
-const REST_MS = 100
+const KEY_INTERVAL_MS = 100
 /** Number of tries to find an opened drawer, which reaches the page after a few messages. */
 const DRAWER_TRIES = 20
 /** Time between two tries, in ms. */
-const WAIT_MS = 50
+const DRAWER_INTERVAL_MS = 50
 
 // The target of an event is only the outermost shadow host. Its path contains all elements.
-/** @type {(event: Event, selector: string) => boolean} */
+/** Whether an element that matches contains the target. @type {(event: Event, selector: string) => boolean} */
 const comesFrom = (event, selector) => event.composedPath().some(node => node instanceof Element && node.matches(selector))
 
 /** @param {any} node */
@@ -32,11 +32,11 @@ function pageKey(event, keys) {
   if (isNamed && event.shiftKey) return null
   const key = event.key === "=" ? "+" : isNamed ? event.key : event.key.toLowerCase()
   const closesDrawer = key === "Escape" && comesFrom(event, ".drawer")
-  if (!keys.includes(key) || (comesFrom(event, TYPING) && !closesDrawer)) return null
+  if (!keys.includes(key) || (comesFrom(event, TEXT_TARGETS) && !closesDrawer)) return null
   // The browser itself closes an open help text.
   if (key === "Escape" && event.composedPath().some(opensHelpText)) return null
-  if (key === "Enter" && comesFrom(event, PRESSED)) return null
-  return key.startsWith("Arrow") && comesFrom(event, MOVING) ? null : key
+  if (key === "Enter" && comesFrom(event, ENTER_TARGETS)) return null
+  return key.startsWith("Arrow") && comesFrom(event, ARROW_TARGETS) ? null : key
 }
 
 // Over http, except on localhost, navigator.clipboard is missing. The browser may also refuse its use.
@@ -99,12 +99,12 @@ function focusDrawer(tries) {
   // The drawer may have focused a control already.
   if (control) {
     if (!findElement(document, ".drawer")?.matches(":focus-within")) control.focus({preventScroll: true})
-  } else if (tries > 0) setTimeout(() => focusDrawer(tries - 1), WAIT_MS)
+  } else if (tries > 0) setTimeout(() => focusDrawer(tries - 1), DRAWER_INTERVAL_MS)
 }
 
 /** @param {{model: any, el: HTMLElement}} component */
 export function render({model, el}) {
-  let lastKeyTime = -REST_MS
+  let lastKeyTime = -KEY_INTERVAL_MS
   /** Where the focus was when a drawer was opened. @type {HTMLElement | null} */
   let opener = null
   const sendKey = (/** @type {KeyboardEvent} */ event) => {
@@ -112,7 +112,7 @@ export function render({model, el}) {
     if (key === null) return
     if (key !== "Escape") event.preventDefault()
     // A key that is held down repeats faster than pictures are painted.
-    if (event.repeat && event.timeStamp - lastKeyTime < REST_MS) return
+    if (event.repeat && event.timeStamp - lastKeyTime < KEY_INTERVAL_MS) return
     lastKeyTime = event.timeStamp
     model.send_msg({key})
   }
@@ -152,12 +152,12 @@ export function render({model, el}) {
   }
   document.addEventListener("click", enlarge)
   // The browser would scroll the page when two fingers move the same way on a map.
-  const holdPage = (/** @type {TouchEvent} */ event) => {
+  const preventScroll = (/** @type {TouchEvent} */ event) => {
     if (event.touches.length > 1 && comesFrom(event, ".map")) event.preventDefault()
   }
-  document.addEventListener("touchstart", holdPage, {passive: false})
+  document.addEventListener("touchstart", preventScroll, {passive: false})
   model.on("lifecycle:remove", () => {
-    document.removeEventListener("touchstart", holdPage)
+    document.removeEventListener("touchstart", preventScroll)
     document.removeEventListener("click", enlarge)
     window.removeEventListener("popstate", sendEntry)
     window.removeEventListener("resize", sendIfNarrow)

@@ -62,7 +62,7 @@ class BrowserEvents(JSComponent):
         Handles whether a text could be copied.
     """
 
-    keys = param.List(default=list(KEYS))
+    keys = param.List(default=list(KEYS), doc="names of the keys that the page uses")
     address = param.Dict(default={}, doc="link of the view, its entry in the history, steps followed; number: see `command`")
     command = param.Dict(default={}, doc="name, such as back or copy; text to copy; number: makes equal commands differ")
 

@@ -23,7 +23,7 @@ from engine.foundations.wording import format_number
 from engine.systems.catalogue.entry import EnergyRange
 from plots.pictures.palette import PALETTES
 
-LOCK = "Lock colour scale"
+LOCK_SCALE = "Lock colour scale"
 """Label of the switch for the scale of escape times."""
 
 AXES = "Axes …"
@@ -114,9 +114,9 @@ class Controls:
         self.facts = TextPane(margin=(6, 10), sizing_mode="stretch_width", css_classes=["facts"])
         self.layers = LayerSwitches(state)
         self.comparison = ComparisonSwitch(state, swap_views)
-        layers = Fold("Layers", lambda: [*self.layers.parts(), *self.comparison.parts()], is_open=True)
-        state.param.watch(lambda *events: layers.rebuild(), ["layers", "compared"])
-        self._folds = [Fold("Quality and colours", self._build_quality), layers]
+        layer_fold = Fold("Layers", lambda: [*self.layers.parts(), *self.comparison.parts()], is_open=True)
+        state.param.watch(lambda *events: layer_fold.rebuild(), ["layers", "compared"])
+        self._folds = [Fold("Quality and colours", self._build_quality), layer_fold]
         engine.param.watch(lambda event: self.play.param.update(label=STOP if event.new else PLAY), "playing")
         self._follow_system()
         self._connect()
@@ -134,13 +134,12 @@ class Controls:
 
     def _build_quality(self) -> list[pn.viewable.Viewable]:
         """Make the lists of t_max, resolution and colours, and the switch for the scale of escape times."""
+        is_locked = lambda times: times is not None  # noqa: E731
         return [
             self._make_list("t_max", "t_max", allowed_t_max()),
             self._make_list("resolution", "Resolution", allowed_resolutions()),
             self._make_list("palette", "Colours", {palette.name: key for key, palette in PALETTES.items()}),
-            switch(
-                "Escape times", LOCK, self.state, "lock_times", lambda times: times is not None, self._lock_times, margin=(0, 10)
-            ),
+            switch("Escape times", LOCK_SCALE, self.state, "lock_times", is_locked, self._lock_times, margin=(0, 10)),
         ]
 
     def _make_list(self, name: str, label: str, options: dict[str, Any]) -> pn.viewable.Viewable:
@@ -201,17 +200,17 @@ class Controls:
         self._follow_plane()
         self._follow_energy()
 
-    def _describe(self, plane: str) -> None:
+    def _describe(self, slice_title: str) -> None:
         """Write the formula, the outcomes, and the title of the slice (HTML); the title is empty if a button has it."""
         reviewed = self.state.reviewed
         formula, _, _ = reviewed.formula.partition(";")
         mass, rotation = reviewed.potential.mass, reviewed.potential.rotation
-        frame = f"rotates at Ω = {format_number(rotation, 6)}; " if rotation else ""
+        rotation_text = f"rotates at Ω = {format_number(rotation, 6)}; " if rotation else ""
         masses = [] if mass == 1.0 else [f"Masses {format_number(mass)}: H = (px² + py²)/{format_number(2.0 * mass)} + V"]
-        facts = "<br>".join(["", *masses, *([f"Slice {plane}"] if plane else [])])
+        facts = "<br>".join(["", *masses, *([f"Slice {slice_title}"] if slice_title else [])])
         self.facts.object = (
             f"<div title='H = (px² + py²)/2m + V(x, y)'><b>{escape_text(reviewed.system.title)}</b>: "
-            f"<span class='quiet'>{frame}{escape_text(describe_outcomes(reviewed.potential))}</span><br>"
+            f"<span class='quiet'>{rotation_text}{escape_text(describe_outcomes(reviewed.potential))}</span><br>"
             f"{escape_text(breakable(f'V = {formula}'))}<span class='quiet'>{facts}</span></div>"
         )
 
@@ -231,11 +230,11 @@ class Controls:
         self.play.disabled = is_energy_axis
 
 
-def _ticks(escape: float, energies: EnergyRange) -> str:
+def _ticks(escape_energy: float, energies: EnergyRange) -> str:
     """Return HTML of ticks below the slider, at the marked energies, with a label at the escape energy."""
-    shares = [(energy - energies.low) / (energies.high - energies.low) for energy in (escape, *energies.marked)]
+    shares = [(energy - energies.low) / (energies.high - energies.low) for energy in (escape_energy, *energies.marked)]
     ticks = "".join(f"<i style='{_TICK.format(share=share)}'></i>" for share in shares if 0.0 <= share <= 1.0)
-    text = f"<span style='{_TICK_LABEL.format(share=shares[0])}'>escape energy {format_number(escape)}</span>"
+    text = f"<span style='{_TICK_LABEL.format(share=shares[0])}'>escape energy {format_number(escape_energy)}</span>"
     label = text if 0.0 <= shares[0] <= 1.0 else ""
     style = f"position:relative;height:22px;margin:0 {_THUMB};font-size:12px;color:var(--ui-quiet)"
     return f"<div style='{style}'>{ticks}{label}</div>"

@@ -26,7 +26,17 @@ MAPS, ORBITS, CURVES, SCRIPT = "Maps (NetCDF)", "Orbits (CSV)", "Curves (CSV)", 
 
 
 class Downloads:
-    """Buttons that copy links, and buttons that make files."""
+    """Buttons that copy links, and buttons that make files.
+
+    Parameters
+    ----------
+    state, results
+        State and results of the session.
+    copy_link, copy_embed_code
+        Copy the address of the page, and the HTML of a frame with one picture.
+    on_copied
+        Handles whether the browser has copied an image.
+    """
 
     def __init__(
         self,
@@ -48,8 +58,8 @@ class Downloads:
     def build(self) -> list[pn.viewable.Viewable]:
         """Return the parts of a column: the buttons under their titles."""
         hint = TextPane(f"<span class='quiet'>{NOT_ALLOWED}</span>", visible=self.embed.disabled)
-        titles = [TextPane(f"<h3>{title}</h3>", margin=(6, 10, 0, 10)) for title in ("Figure", "Data")]
-        return [self.link, self.embed, hint, titles[0], *self.figure.build(), titles[1], *self.data.values(), self.saver]
+        figure_title, data_title = (TextPane(f"<h3>{title}</h3>", margin=(6, 10, 0, 10)) for title in ("Figure", "Data"))
+        return [self.link, self.embed, hint, figure_title, *self.figure.build(), data_title, *self.data.values(), self.saver]
 
     async def save(self, file: File) -> None:
         """Make a file in a thread, because making it would delay the event loop, and send the file to the browser."""
@@ -64,34 +74,34 @@ class Downloads:
     def _enable(self) -> None:
         """Enable the buttons whose files the results allow."""
         choices = file_choices(self._results, self._state)
-        for label, save in self.data.items():
-            save.disabled = label not in choices
+        for label, save_button in self.data.items():
+            save_button.disabled = label not in choices
 
     def _figure_name(self, ending: str) -> str:
         return _file_name(self._results, self._state, ending)
 
 
-def file_choices(shown: ShownResults, state: ViewState) -> dict[str, File]:
+def file_choices(results: ShownResults, state: ViewState) -> dict[str, File]:
     """Return the files of data that the results allow, by label. Later changes of the page do not change the files."""
     choices: dict[str, File] = {}
-    name = partial(_file_name, shown, state)
-    system, frame, curves = state.system, shown.whole_map, shown.curves
+    name = partial(_file_name, results, state)
+    system, frame, curves = state.system, results.whole_map, results.curves
     if frame is not None:
-        jobs = [state.orbit_job(one.start) for one in shown.orbits]
+        jobs = [state.orbit_job(one.start) for one in results.orbits]
         states = [job.arguments[1] for job in jobs if job is not None]
-        choices[MAPS] = name(".nc"), partial(netcdf_bytes, frame, shown.analyses)
+        choices[MAPS] = name(".nc"), partial(netcdf_bytes, frame, results.analyses)
         choices[SCRIPT] = name(".py"), lambda: python_lines(frame.spec, system, states).encode()
-    orbits = [one.orbit for one in shown.orbits if one.orbit is not None]
+    orbits = [one.orbit for one in results.orbits if one.orbit is not None]
     if orbits:
-        verdicts = [one.verdict for one in shown.orbits if one.verdict is not None]
+        verdicts = [one.verdict for one in results.orbits if one.verdict is not None]
         choices[ORBITS] = name("-orbits.csv"), lambda: orbits_csv(orbits, verdicts=verdicts).encode()
     if curves is not None:
         choices[CURVES] = f"escapes-{system.case}-curves.csv", lambda: curves_csv(curves).encode()
     return choices
 
 
-def _file_name(shown: ShownResults, state: ViewState, ending: str) -> str:
+def _file_name(results: ShownResults, state: ViewState, ending: str) -> str:
     """Return the name of a file about the map, or about the system while the map is computed."""
-    frame = shown.whole_map
+    frame = results.whole_map
     stem = f"escapes-{state.system.case}" if frame is None else file_stem(frame.spec, state.system.case)
     return f"{stem}{ending}"

@@ -47,12 +47,12 @@ class BrowserEngine(JSComponent):
     def __init__(self, state: ViewState, results: ShownResults, jobs: JobSubmitter, locked: Locked) -> None:
         super().__init__(width=0, height=0, margin=0, styles={"position": "absolute"}, css_classes=["engine"])
         self._state = state
-        self._numbers = count()
-        self._end = locked(self._on_end)
-        self._systems = LatestRequest(jobs, self._show_system, lambda sentence: None, locked)
+        self._command_numbers = count()
+        self._take_energy = locked(self._end_animation)
+        self._system_request = LatestRequest(jobs, self._show_system, lambda sentence: None, locked)
         results.param.watch(lambda event: self._request_system(event.new), "frame")
-        shown = ["system", "plane", "energy", "resolution", "window", "palette"]
-        state.param.watch(lambda *events: self.show_view(), shown)
+        shown_fields = ["system", "plane", "energy", "resolution", "window", "palette"]
+        state.param.watch(lambda *events: self.show_view(), shown_fields)
 
     def show_view(self) -> None:
         """Send the view to the browser."""
@@ -73,15 +73,15 @@ class BrowserEngine(JSComponent):
             self._command("stop")
 
     def _command(self, name: str, **details: float) -> None:
-        self.command = {"name": name, **details, "number": next(self._numbers)}
+        self.command = {"name": name, **details, "number": next(self._command_numbers)}
 
     def _handle_msg(self, message: Any) -> None:
         # A browser can send anything: unexpected messages are ignored.
         match message:
             case {"energy": float() | int() as energy} if self.playing and isfinite(energy):
-                self._end(float(energy))
+                self._take_energy(float(energy))
 
-    def _on_end(self, energy: float) -> None:
+    def _end_animation(self, energy: float) -> None:
         self.playing = False
         self._state.energy = round(energy, self._state.energies.decimals)
 
@@ -90,14 +90,14 @@ class BrowserEngine(JSComponent):
         state = self._state
         if frame is not None and frame.spec.potential == state.potential:
             arguments = state.potential, state.energies.low, state.energies.high
-            self._systems.submit(Job(make_browser_system, arguments, queue=Queue.LONG_CALL))
+            self._system_request.submit(Job(make_browser_system, arguments, queue=Queue.LONG_CALL))
 
     def _show_system(self, system: BrowserSystem) -> None:
         self.system = system.to_dict()
 
 
 def describe_view(state: ViewState) -> dict[str, Any]:
-    """Return the view in the form of `ServerView` in app/browser/modules/gestures/preview.js."""
+    """Return the view of a state in the form of `ServerView` in app/browser/modules/gestures/preview.js."""
     outcomes = state.potential.outcomes_at(state.energy)
     return {
         "system": system_key(state.potential),

@@ -31,6 +31,9 @@ from plots.printed.figure_style import FigureFormat, FigureStyle
 Make = Callable[[FigureFormat, FigureStyle], bytes]
 """Makes the content of a figure's file. This takes seconds."""
 
+Send = Callable[[str, bytes | None], None]
+"""Sends the name and the content of a file to the browser. The content is None if there is an error."""
+
 # Titles of the figures that are not single maps.
 ALL_MAPS, WELL, ORBITS, STATISTICS, CURVES = "All maps", "The well in (x, y)", "Orbits", "Statistics", "Curves against energy"
 FIGURES = (ALL_MAPS, *(title for name, title in TITLES.items() if name != "curves"), WELL, ORBITS, STATISTICS, CURVES)
@@ -40,9 +43,6 @@ FIGURES = (ALL_MAPS, *(title for name, title in TITLES.items() if name != "curve
 _TITLES = "Titles"
 # Label and step of the boxes for the numbers of the style.
 _NUMBERS = {"width": ("Width, cm", 0.5), "dpi": ("Pixels/inch", 50.0), "font_size": ("Letters, pt", 0.5)}
-Send = Callable[[str, bytes | None], None]
-"""Sends the name and the content of a file to the browser. The content is None if there is an error."""
-
 # Message while a figure is made.
 _MAKING = "The figure is made …"
 
@@ -56,10 +56,10 @@ class FigureForm:
         State and results of the session.
     saver
         Sends files to the browser.
-    name
+    file_name
         Returns the name of a file, given the end of the name.
     on_copied
-        Takes whether the browser has copied the image.
+        Handles whether the browser has copied the image.
     """
 
     def __init__(
@@ -67,10 +67,10 @@ class FigureForm:
         state: ViewState,
         results: ShownResults,
         saver: FileSaver,
-        name: Callable[[str], str],
+        file_name: Callable[[str], str],
         on_copied: Callable[[bool], None],
     ) -> None:
-        self._state, self._results, self._saver, self._name = state, results, saver, name
+        self._state, self._results, self._saver, self._file_name = state, results, saver, file_name
         self._style: dict[str, float] = {name: getattr(FigureStyle(), name) for name in _NUMBERS}
         self.what = pn.widgets.Select(label="What to draw", options=[ALL_MAPS], sizing_mode="stretch_width", margin=(0, 10))
         formats = {format.name: format for format in FigureFormat}
@@ -87,7 +87,7 @@ class FigureForm:
         """Make the parts of a column."""
         boxes = [
             NumberBox(
-                partial(self.type, name), self._style[name], label=label, step=step, min_width=60, margin=(0, 14, 0, 0),
+                partial(self.set_number, name), self._style[name], label=label, step=step, min_width=60, margin=(0, 14, 0, 0),
                 sizing_mode="stretch_width",
             )
             for name, (label, step) in _NUMBERS.items()
@@ -103,10 +103,10 @@ class FigureForm:
 
     def _enable(self) -> None:
         """Enable the buttons if the results allow the chosen figure; otherwise say why they are disabled."""
-        name = self.what.value
-        disabled = name not in figure_choices(self._results, self._state)
+        title = self.what.value
+        disabled = title not in figure_choices(self._results, self._state)
         if disabled or self.save.disabled:
-            self._say(f"{name}: this is not computed yet." if disabled else "")
+            self._show_text(f"{title}: this is not computed yet." if disabled else "")
         self.save.disabled = self.copy.disabled = disabled
 
     def style(self) -> FigureStyle | None:
@@ -114,7 +114,7 @@ class FigureForm:
         try:
             return FigureStyle(**self._style, titles=bool(self.titles.value))
         except ValueError as error:
-            self._say(str(error))
+            self._show_text(str(error))
             return None
 
     def figure(self) -> tuple[str, Make] | None:
@@ -124,9 +124,9 @@ class FigureForm:
         if make is None:
             return None
         ending = "" if title == ALL_MAPS else "-" + re.sub(r"\W+", "-", title.lower()).strip("-")
-        return self._name(ending), make
+        return self._file_name(ending), make
 
-    def type(self, name: str, number: float) -> None:
+    def set_number(self, name: str, number: float) -> None:
         """Set one of the numbers of the style."""
         self._style[name] = number
 
@@ -148,17 +148,17 @@ class FigureForm:
 
     async def make(self, make: Callable[[], bytes], send: Callable[[bytes | None], None]) -> None:
         """Make a file in a thread, to keep the event loop free, and send it. After an error, show the error and send None."""
-        self._say(_MAKING)
+        self._show_text(_MAKING)
         try:
             content = await asyncio.to_thread(make)
         except ValueError as error:
-            self._say(str(error))
+            self._show_text(str(error))
             send(None)
         else:
-            self._say("")
+            self._show_text("")
             send(content)
 
-    def _say(self, sentence: str) -> None:
+    def _show_text(self, sentence: str) -> None:
         self.text.object = escape(sentence)
 
 

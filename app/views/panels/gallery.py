@@ -56,8 +56,8 @@ p {
 class GalleryCards(JSComponent):
     """Shows cards in the browser, and sends the key of the chosen card."""
 
-    cards = param.List(default=[])
-    groups = param.List(default=[])
+    cards = param.List(default=[], doc="data of each card, see `_card`")
+    groups = param.List(default=[], doc="titles of the groups, in order")
     hint = param.String(default="", doc="text in place of a caption; empty for cards without captions below them")
 
     _esm = Path(__file__).with_suffix(".js")
@@ -71,11 +71,11 @@ class Gallery:
         self._presets = {preset.key: preset for preset in PRESETS}
         self._invitation: GalleryCards | None = None
         self._state = state
-        state.param.watch(lambda event: self._invite(), "starts")
+        state.param.watch(lambda event: self._show_invitation(), "starts")
 
     def build(self) -> list[pn.viewable.Viewable]:
         """Make the cards of all presets."""
-        return [self._make([_card(preset) for preset in PRESETS], groups=list(GROUPS), hint=HINT)]
+        return [self._make_cards([_card(preset) for preset in PRESETS], groups=list(GROUPS), hint=HINT)]
 
     def invitation(self) -> pn.viewable.Viewable:
         """Return the invitation: some of the cards in one group, for a page without orbits."""
@@ -85,21 +85,21 @@ class Gallery:
                 for preset in PRESETS
                 if preset.invitation
             ]
-            self._invitation = self._make(cards, groups=[INVITATION], hint="", margin=(0, 10))
-            self._invite()
+            self._invitation = self._make_cards(cards, groups=[INVITATION], hint="", margin=(0, 10))
+            self._show_invitation()
         return self._invitation
 
-    def _invite(self) -> None:
+    def _show_invitation(self) -> None:
         """Show the invitation while there are no starts."""
         if self._invitation is not None:
             self._invitation.visible = self._state.starts == ()
 
-    def _make(self, cards: list[dict[str, str]], **options: Any) -> GalleryCards:
+    def _make_cards(self, cards: list[dict[str, str]], **options: Any) -> GalleryCards:
         gallery_cards = GalleryCards(cards=cards, sizing_mode="stretch_width", stylesheets=[_STYLE], **({"margin": 0} | options))
-        gallery_cards.on_msg(lambda event: self._receive(event.data))
+        gallery_cards.on_msg(lambda event: self._choose(event.data))
         return gallery_cards
 
-    def _receive(self, message: Any) -> None:
+    def _choose(self, message: Any) -> None:
         # A browser can send anything: unexpected messages are ignored.
         if isinstance(message, str) and message in self._presets:
             self._on_preset(self._presets[message])

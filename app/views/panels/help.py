@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import astuple
 from html import escape
 
 import panel as pn
@@ -50,26 +51,24 @@ class AccessibleTable:
         results.param.watch(lambda *events: self._write(), ["frame", "orbits"])
 
     def _write(self) -> None:
-        if self.fold.is_open:
-            self._fill()
-
-    def _fill(self) -> None:
-        cells = (*self._view(), *self._map(), *self._chosen())
-        rows = "".join(f"<tr><th scope=row>{escape(name)}</th><td>{escape(value)}</td></tr>" for name, value in cells)
+        if not self.fold.is_open:
+            return
+        named_values = (*self._view_values(), *self._map_values(), *self._orbit_texts())
+        rows = "".join(f"<tr><th scope=row>{escape(name)}</th><td>{escape(value)}</td></tr>" for name, value in named_values)
         head = "<tr><th scope=col>quantity</th><th scope=col>value</th></tr>"
         self.text.object = f"<table><caption>What is shown</caption>{head}{rows}</table>"
 
-    def _view(self) -> list[tuple[str, str]]:
+    def _view_values(self) -> list[tuple[str, str]]:
         state, reviewed = self._state, self._state.reviewed
         rows = [("system", reviewed.system.title), ("potential V(x, y)", reviewed.formula)]
         rows += [("plane", state.plane.title), ("t_max", format_whole(state.t_max))]
         rows += [("resolution", f"{state.resolution} × {state.resolution} starts")]
         if state.window is not None:
-            w = state.window
-            rows += [("window", f"x from {w.x_low!r} to {w.x_high!r}, ordinate from {w.ordinate_low!r} to {w.ordinate_high!r}")]
+            x_low, x_high, ordinate_low, ordinate_high = astuple(state.window)
+            rows += [("window", f"x from {x_low!r} to {x_high!r}, ordinate from {ordinate_low!r} to {ordinate_high!r}")]
         return [*rows, ("energy h", f"{state.energy!r}")]
 
-    def _map(self) -> list[tuple[str, str]]:
+    def _map_values(self) -> list[tuple[str, str]]:
         frame = self._results.whole_map
         if frame is None:
             return []
@@ -79,7 +78,7 @@ class AccessibleTable:
         rows += [(UNRESOLVED, format_share(shares[Fate.FAILED], 2))] if statistics.failed else []
         return [*rows, ("bounded", format_share(shares[Fate.BOUNDED], 2)), *escape_facts(statistics).items()]
 
-    def _chosen(self) -> list[tuple[str, str]]:
+    def _orbit_texts(self) -> list[tuple[str, str]]:
         return [
             (f"orbit {place + 1}, from {format_number(one.start[0], 6)}, {format_number(one.start[1], 6)}", one.describe())
             for place, one in enumerate(self._results.orbits)

@@ -55,9 +55,9 @@ class SlicePanel:
         self.ranges = pn.Column(sizing_mode="stretch_width", margin=0)
         self.held = pn.Column(sizing_mode="stretch_width", margin=0)
         self.message = StatusPane("", sizing_mode="stretch_width", margin=(8, 0))
-        for place, axis in enumerate(self.axes):
-            axis.param.watch(partial(self._take_axis, place), "value")
-        self.mode.param.watch(lambda event: self._take(mode=_MODES[event.new]) if event.new else None, "value")
+        for index, axis in enumerate(self.axes):
+            axis.param.watch(partial(self._take_axis, index), "value")
+        self.mode.param.watch(lambda event: self._take_mode(_MODES[event.new]) if event.new else None, "value")
         state.follow(self.show, "plane", "system")
 
     def build(self) -> list[pn.viewable.Viewable]:
@@ -102,31 +102,31 @@ class SlicePanel:
 
     def _is_legal(self, mode: _Mode) -> bool:
         try:
-            self._change(mode=mode)
+            self._changed_slice(mode=mode)
         except ValueError:
             return False
         return True
 
-    def _take_axis(self, place: int, event: Any) -> None:
+    def _take_axis(self, index: int, event: Any) -> None:
         plane, system = self._state.plane, self._state.system
-        if self._is_following or event.new is None or event.new == plane.axes[place].key:
+        if self._is_following or event.new is None or event.new == plane.axes[index].key:
             return
         if event.new in system.parameter_names:
             axis: Any = ParameterAxis(event.new, *default_range(system, event.new), system)
         else:
             axis = Coordinate(event.new)
-        axes = (axis, plane.ordinate) if place == 0 else (plane.abscissa, axis)
-        if event.new == plane.axes[1 - place].key:
-            # A choice of the other axis exchanges the axes.
+        axes = (axis, plane.ordinate) if index == 0 else (plane.abscissa, axis)
+        if event.new == plane.axes[1 - index].key:
+            # A choice of the present other axis exchanges the axes.
             axes = plane.ordinate, plane.abscissa
         self._submit(lambda: _with_axes(plane, axes))
 
-    def _take(self, mode: _Mode) -> None:
+    def _take_mode(self, mode: _Mode) -> None:
         if not self._is_following:
-            self._submit(lambda: self._change(mode=mode))
+            self._submit(lambda: self._changed_slice(mode=mode))
 
     def _take_held(self, coordinate: Coordinate, value: float) -> None:
-        self._submit(lambda: self._change(fixed={**dict(self._state.plane.fixed), coordinate: value}))
+        self._submit(lambda: self._changed_slice(fixed={**dict(self._state.plane.fixed), coordinate: value}))
 
     def _take_range(self, low: float | None, high: float | None) -> None:
         axis = self._state.plane.parameter
@@ -143,7 +143,7 @@ class SlicePanel:
 
         self._submit(change_range)
 
-    def _change(self, mode: _Mode | None = None, fixed: dict[Coordinate, float] | None = None) -> Slice:
+    def _changed_slice(self, mode: _Mode | None = None, fixed: dict[Coordinate, float] | None = None) -> Slice:
         """Return the slice of the state with another mode or other held values."""
         plane = self._state.plane
         held = dict(plane.fixed) if fixed is None else fixed
@@ -171,12 +171,8 @@ class SlicePanel:
 
     def _follow_axes(self) -> None:
         """Show the axes of the state in place of a refused choice."""
-        self._is_following = True
-        try:
-            for axis_list, axis in zip(self.axes, self._state.plane.axes, strict=True):
-                axis_list.value = axis.key
-        finally:
-            self._is_following = False
+        for axis_list, axis in zip(self.axes, self._state.plane.axes, strict=True):
+            axis_list.value = axis.key
 
 
 def _make_list(label: str) -> pn.widgets.Select:

@@ -30,12 +30,12 @@ class CompiledOperations:
 
     Attributes
     ----------
-    most
-        Limit on the number of operations that count; None for no limit.
+    limit
+        Largest number of operations that count; None for no limit.
     """
 
     def __init__(self) -> None:
-        self.most: int | None = None
+        self.limit: int | None = None
         # The operations and the account of each code.
         self._entries: dict[str, tuple[int, Hashable]] = {}
         self._reserved: set[str] = set()
@@ -43,7 +43,7 @@ class CompiledOperations:
 
     @property
     def used(self) -> int:
-        """Number of operations that count so far."""
+        """Number of operations of the codes so far, without reserved codes."""
         with self._lock:
             return sum(count for count, _ in self._counted_codes())
 
@@ -55,7 +55,7 @@ class CompiledOperations:
 
     def is_nearly_full(self) -> bool:
         """Return whether less than the share of one account is left."""
-        return self.most is not None and self.most - self.used < self.most // SHARES
+        return self.limit is not None and self.limit - self.used < self.limit // SHARES
 
     def reserve(self, codes: Iterable[str]) -> None:
         """Exempt these codes, named by their digests, from the limit."""
@@ -66,23 +66,24 @@ class CompiledOperations:
         """Count the operations of a code before it is compiled; raise `CompiledCodeLimitError` beyond a limit."""
         account = _account.get()
         with self._lock:
-            if self.most is not None and code not in self._reserved:
-                self._check(count, account, self.most)
+            if self.limit is not None and code not in self._reserved:
+                self._check(count, account, self.limit)
             self._entries[code] = count, account
 
-    def _check(self, count: int, account: Hashable, most: int) -> None:
+    def _check(self, count: int, account: Hashable, limit: int) -> None:
+        """Raise `CompiledCodeLimitError` if a code of `count` operations exceeds a limit."""
         if count > LARGEST_CODE:
             raise CompiledCodeLimitError(
                 f"the integrator of this potential has {count} operations, and at most {LARGEST_CODE} are compiled here; "
                 "choose a potential with fewer terms"
             )
-        if sum(used for used, _ in self._counted_codes()) + count > most:
+        if sum(used for used, _ in self._counted_codes()) + count > limit:
             raise CompiledCodeLimitError(
                 "the integrators of as many different potentials are compiled as this program may keep until its next start; "
                 f"{_SAME_POWERS}"
             )
         own_count = sum(used for used, owner in self._counted_codes() if owner == account)
-        if account is not None and own_count + count > most // SHARES:
+        if account is not None and own_count + count > limit // SHARES:
             raise CompiledCodeLimitError(
                 f"your address has compiled the integrators of as many different potentials as it may; {_SAME_POWERS}"
             )

@@ -37,7 +37,7 @@ def _caller(name: str) -> Any:
 
     @intrinsic
     def call(typing_context: Any, address: Any, *arguments: Any) -> Any:
-        """Return the typed call; None, a compilation error, if the arguments cannot be converted to the function's types."""
+        """Return the typed call; None, which Numba reports as an error, if the arguments cannot be converted."""
         argument_types = tuple(map(types.unliteral, arguments))
         if len(argument_types) != len(callee.args) or any(
             typing_context.can_convert(source, target) is None for source, target in zip(argument_types, callee.args, strict=True)

@@ -34,7 +34,7 @@ SETTINGS = {
 }
 """Environment of the process that calls `lower_kernels`, which Numba reads when it is imported."""
 
-_SIZE, _DOUBLE, _LONG = ir.IntType(32), ir.DoubleType(), ir.IntType(64)
+_INT32, _DOUBLE, _INT64 = ir.IntType(32), ir.DoubleType(), ir.IntType(64)
 
 HEAP_CELL = 16
 """Address of the cell that contains the start of the free memory. The caller of a kernel restores the value of the cell."""
@@ -64,7 +64,7 @@ _RUNTIME_NAMES = "|".join(re.findall(r"@(NRT_\w+)", _RUNTIME))
 
 
 def lower_kernels(kernels: Mapping[Any, Signature]) -> bytes:
-    """Return a WebAssembly module of kernels for given types of arguments; its functions have the names of the kernels.
+    """Return a WebAssembly module of kernels, each compiled for its signature; its functions have the names of the kernels.
 
     Each array is passed as its address and its shape, a tuple as its elements, and an integer or a boolean as 32 bits. The module
     imports ``env.__linear_memory``, ``env.__stack_pointer`` and ``env.__indirect_function_table``, and functions such as
@@ -79,7 +79,7 @@ def lower_kernels(kernels: Mapping[Any, Signature]) -> bytes:
         symbol = compiled.overloads[signature.args].fndesc.llvm_func_name
         module.link_in(_parse(_without_runtime(compiled.inspect_llvm(signature.args)), machine))
         module.link_in(_parse(str(_wrapper(names[kernel], symbol, signature)), machine))
-    _hide(module, exported=set(names.values()))
+    _make_internal(module, exported=set(names.values()))
     return compile_module(module, machine, level=3)
 
 
@@ -96,8 +96,8 @@ def _without_runtime(text: str) -> str:
     return re.sub(definition, r"declare \1", text, flags=re.MULTILINE | re.DOTALL)
 
 
-def _hide(module: Any, exported: set[str]) -> None:
-    """Make all functions internal except the exported ones, so that unused functions are removed."""
+def _make_internal(module: Any, exported: set[str]) -> None:
+    """Make all functions except the exported ones, and all variables, internal, so that unused ones are removed."""
     for function in module.functions:
         if not function.is_declaration:
             function.linkage = "external" if function.name in exported else "internal"
@@ -110,8 +110,8 @@ def _wrapper(name: str, symbol: str, signature: Signature) -> ir.Module:
     """Return a module with a function that takes numbers and calls a kernel."""
     context = cpu_target.target_context
     module = ir.Module(name)
-    argument_types = [kind for argument in signature.args for kind in _passed_types(argument)]
-    # No element for a kernel without a result, otherwise one.
+    argument_types = [passed for argument in signature.args for passed in _passed_types(argument)]
+    # The list has one element, or none if the kernel has no result.
     result_types = _passed_types(signature.return_type)
     function = ir.Function(module, ir.FunctionType(result_types[0] if result_types else ir.VoidType(), argument_types), name)
     builder = ir.IRBuilder(function.append_basic_block())
@@ -122,47 +122,48 @@ def _wrapper(name: str, symbol: str, signature: Signature) -> ir.Module:
     if not result_types:
         builder.ret_void()
     else:
-        builder.ret(value if result_types == [_DOUBLE] else _as_size(builder, value))
+        builder.ret(value if result_types == [_DOUBLE] else _to_int32(builder, value))
     return module
 
 
-def _as_size(builder: ir.IRBuilder, value: ir.Value) -> ir.Value:
+def _to_int32(builder: ir.IRBuilder, value: ir.Value) -> ir.Value:
     """Return an integer or a boolean in 32 bits."""
-    return builder.trunc(value, _SIZE) if value.type.width > _SIZE.width else builder.zext(value, _SIZE)
+    return builder.trunc(value, _INT32) if value.type.width > _INT32.width else builder.zext(value, _INT32)
 
 
-def _passed_types(kind: Any) -> list[ir.Type]:
+def _passed_types(numba_type: Any) -> list[ir.Type]:
     """Return the types of the numbers that stand for an argument or a result of a Numba type."""
-    if isinstance(kind, types.NamedTuple):
-        return [passed for element in kind.types for passed in _passed_types(element)]
-    if isinstance(kind, types.Array):
-        return [_SIZE] * (1 + kind.ndim)
-    if kind == types.none:
+    if isinstance(numba_type, types.NamedTuple):
+        return [passed for element in numba_type.types for passed in _passed_types(element)]
+    if isinstance(numba_type, types.Array):
+        return [_INT32] * (1 + numba_type.ndim)
+    if numba_type == types.none:
         return []
-    return [_DOUBLE if kind == types.float64 else _SIZE]
+    return [_DOUBLE if numba_type == types.float64 else _INT32]
 
 
-def _read_argument(context: Any, builder: ir.IRBuilder, kind: Any, values: Any) -> ir.Value:
+def _read_argument(context: Any, builder: ir.IRBuilder, numba_type: Any, values: Any) -> ir.Value:
     """Return the next argument of a kernel in Numba's representation, from an iterator of the passed numbers."""
-    if isinstance(kind, types.NamedTuple):
-        return context.make_tuple(builder, kind, [_read_argument(context, builder, element, values) for element in kind.types])
-    if isinstance(kind, types.Array):
-        return _make_array(context, builder, kind, next(values), [next(values) for _ in range(kind.ndim)])
-    if kind == types.float64:
+    if isinstance(numba_type, types.NamedTuple):
+        elements = [_read_argument(context, builder, element, values) for element in numba_type.types]
+        return context.make_tuple(builder, numba_type, elements)
+    if isinstance(numba_type, types.Array):
+        return _make_array(context, builder, numba_type, next(values), [next(values) for _ in range(numba_type.ndim)])
+    if numba_type == types.float64:
         return next(values)
-    if kind == types.boolean:
-        return builder.icmp_signed("!=", next(values), _SIZE(0))
-    return builder.sext(next(values), _LONG)
+    if numba_type == types.boolean:
+        return builder.icmp_signed("!=", next(values), _INT32(0))
+    return builder.sext(next(values), _INT64)
 
 
-def _make_array(context: Any, builder: ir.IRBuilder, kind: Any, address: ir.Value, shape: list[ir.Value]) -> ir.Value:
+def _make_array(context: Any, builder: ir.IRBuilder, array_type: Any, address: ir.Value, shape: list[ir.Value]) -> ir.Value:
     """Return Numba's representation of a contiguous array that owns no memory."""
-    lengths = [builder.zext(length, _LONG) for length in shape]
-    size = kind.dtype.bitwidth // 8
-    strides = [_LONG(size)]
+    lengths = [builder.zext(length, _INT64) for length in shape]
+    item_size = array_type.dtype.bitwidth // 8
+    strides = [_INT64(item_size)]
     for length in reversed(lengths[1:]):
         strides.insert(0, builder.mul(strides[0], length))
-    array = context.make_array(kind)(context, builder)
+    array = context.make_array(array_type)(context, builder)
     data = builder.inttoptr(address, array.data.type)
-    populate_array(array, data, lengths, strides, size, meminfo=None)  # type: ignore[no-untyped-call]
+    populate_array(array, data, lengths, strides, item_size, meminfo=None)  # type: ignore[no-untyped-call]
     return array._getvalue()

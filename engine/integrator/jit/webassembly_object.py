@@ -8,7 +8,7 @@ from typing import Any
 import llvmlite.binding as llvm  # type: ignore[import-untyped]
 
 TARGET = "wasm32-unknown-unknown"
-"""LLVM's name of the machine."""
+"""LLVM's name of 32-bit WebAssembly."""
 
 # Features of WebAssembly that the code uses.
 _FEATURES = "+simd128,+bulk-memory"
@@ -21,7 +21,7 @@ _FUNCTION, _TABLE, _MEMORY, _GLOBAL = range(4)
 
 
 def target_machine() -> Any:
-    """Return the machine of LLVM for `TARGET`."""
+    """Return LLVM's code generator for `TARGET`."""
     llvm.initialize_all_targets()
     llvm.initialize_all_asmprinters()
     return llvm.Target.from_triple(TARGET).create_target_machine(opt=3, features=_FEATURES, reloc="static")
@@ -45,12 +45,12 @@ def compile_module(source: Any, machine: Any, level: int) -> bytes:
 
 
 def _with_exports(compiled: bytes, indices: dict[str, int]) -> bytes:
-    """Add exports of some functions, by name with their indices, to an object file, and remove the sections for a linker."""
+    """Add exports of functions, {name: index among the defined functions}, to an object file, and remove sections for linkers."""
     sections = list(_sections(compiled))
     # Imported functions are numbered before the functions of the module.
-    imported_count = sum(_count_imported_functions(compiled, begin) for number, begin, _ in sections if number == _IMPORT)
-    exports = b"".join(_name(name) + bytes([_FUNCTION]) + _number(imported_count + index) for name, index in indices.items())
-    export_section = _section(_EXPORT, _number(len(indices)) + exports)
+    offset = sum(_count_imported_functions(compiled, begin) for number, begin, _ in sections if number == _IMPORT)
+    exports = b"".join(_encode_name(name) + bytes([_FUNCTION]) + _leb128(offset + index) for name, index in indices.items())
+    export_section = _encode_section(_EXPORT, _leb128(len(indices)) + exports)
     # The section of exports precedes the section of code.
     contents = [
         (export_section if number == _CODE else b"") + compiled[begin:end] for number, begin, end in sections if number != _CUSTOM
@@ -62,7 +62,7 @@ def _sections(module: bytes) -> Iterator[tuple[int, int, int]]:
     """Yield (number, begin, end) of each section of a module, with its header."""
     begin = _HEADER_BYTES
     while begin < len(module):
-        size, content_begin = _read_number(module, begin + 1)
+        size, content_begin = _read_leb128(module, begin + 1)
         end = content_begin + size
         yield module[begin], begin, end
         begin = end
@@ -70,12 +70,13 @@ def _sections(module: bytes) -> Iterator[tuple[int, int, int]]:
 
 def _count_imported_functions(module: bytes, begin: int) -> int:
     """Return the number of functions in the import section, which begins at a position in the module."""
-    _, position = _read_number(module, begin + 1)
-    import_count, position = _read_number(module, position)
+    _, position = _read_leb128(module, begin + 1)
+    import_count, position = _read_leb128(module, position)
     function_count = 0
     for _ in range(import_count):
-        for _ in ("module", "name"):
-            length, position = _read_number(module, position)
+        # An import begins with the names of its module and of the object.
+        for _ in range(2):
+            length, position = _read_leb128(module, position)
             position += length
         kind = module[position]
         function_count += kind == _FUNCTION
@@ -86,7 +87,7 @@ def _count_imported_functions(module: bytes, begin: int) -> int:
 def _skip_type(module: bytes, kind: int, position: int) -> int:
     """Return the position at which the type of an import ends."""
     if kind == _FUNCTION:
-        return _read_number(module, position)[1]
+        return _read_leb128(module, position)[1]
     if kind == _GLOBAL:
         # One byte for the type, and one that tells whether the value can change.
         return position + 2
@@ -96,19 +97,21 @@ def _skip_type(module: bytes, kind: int, position: int) -> int:
     # A table or a memory has limits: a flag, the minimum and, according to the flag, the maximum.
     has_maximum, position = module[position] & 1, position + 1
     for _ in range(1 + has_maximum):
-        _, position = _read_number(module, position)
+        _, position = _read_leb128(module, position)
     return position
 
 
-def _section(number: int, content: bytes) -> bytes:
-    return bytes([number]) + _number(len(content)) + content
+def _encode_section(number: int, content: bytes) -> bytes:
+    """Encode a section of a module: its number, its size in bytes and its content."""
+    return bytes([number]) + _leb128(len(content)) + content
 
 
-def _name(name: str) -> bytes:
-    return _number(len(name)) + name.encode()
+def _encode_name(name: str) -> bytes:
+    """Encode a text as its size in bytes and its characters."""
+    return _leb128(len(name)) + name.encode()
 
 
-def _number(value: int) -> bytes:
+def _leb128(value: int) -> bytes:
     """Encode a number in the format LEB128: seven bits per byte, the lowest first."""
     digits = bytearray()
     while value > 0x7F:
@@ -117,7 +120,7 @@ def _number(value: int) -> bytes:
     return bytes([*digits, value])
 
 
-def _read_number(data: bytes, begin: int) -> tuple[int, int]:
+def _read_leb128(data: bytes, begin: int) -> tuple[int, int]:
     """Decode a number in the format LEB128; return the number and the position at which it ends."""
     value = length = 0
     while True:

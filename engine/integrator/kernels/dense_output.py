@@ -29,9 +29,9 @@ def trace_orbit(
 ) -> Iterator[tuple[np.ndarray, float]]:
     """Propagate one orbit until it escapes or to `t_max`, and yield its steps in pieces of at most `_CHUNK` steps.
 
-    orbits: arrays of length 1, changed in place. Yields (m, 5) x, y, px, py, t at the start of each step of a piece, and the time
-    at which the piece ends. Even a bounded orbit can end before `t_max`, if it is at rest on the saddle of a closed channel and
-    rounding carries it over the saddle. Raises CancelledError when cancelled.
+    orbits: arrays of length 1, changed in place. Each piece is (m, 5) x, y, px, py, t at the start of its steps, and the time at
+    which it ends. Even a bounded orbit can end before `t_max`, if it is at rest on the saddle of a closed channel and rounding
+    carries it over the saddle. Raises CancelledError when cancelled.
     """
     while orbits.pending[0]:
         execution.raise_if_cancelled()
@@ -46,14 +46,17 @@ def trace_pieces(
     kernels: ModuleType,
     state: np.ndarray,
     t_end: float,
-    channels: int,
+    outcome_count: int,
     execution: Execution = DEFAULT_EXECUTION,
 ) -> Iterator[tuple[np.ndarray, float]]:
-    """Apply `trace_orbit` to a state from t = 0 to `t_end`, without exits."""
+    """Apply `trace_orbit` to a state (4,) from t = 0 to `t_end`, without exits.
+
+    The kernels read a gate for each of the `outcome_count` outcomes of the potential.
+    """
     # No step passes these gates: 0 x + 0 y = ∞.
-    gates = np.full((channels, 3), np.inf)
+    gates = np.full((outcome_count, 3), np.inf)
     gates[:, :2] = 0.0
-    exits = Exits(gates, np.zeros((1, channels, CURVE_COLUMNS)), np.zeros(1, np.int64))
+    exits = Exits(gates, np.zeros((1, outcome_count, CURVE_COLUMNS)), np.zeros(1, np.int64))
     fate = np.full(1, NOT_COMPUTED, np.int8)
     crossings, last_crossings = np.zeros((2, 1), np.int64)
     orbits = Orbits(state[None].copy(), np.zeros(1), crossings, last_crossings, fate, np.ones(1, np.uint8), np.zeros((1, 2)))
@@ -64,11 +67,11 @@ def trace_steps(
     kernels: ModuleType,
     state: np.ndarray,
     t_end: float,
-    channels: int,
+    outcome_count: int,
     execution: Execution = DEFAULT_EXECUTION,
 ) -> np.ndarray:
-    """Return x, y, px, py, t at the start of every step up to `t_end`, of shape (m, 5), without exits."""
-    return np.concatenate([steps for steps, _ in trace_pieces(kernels, state, t_end, channels, execution)])
+    """Return x, y, px, py, t at the start of every step up to `t_end`, of shape (m, 5), see `trace_pieces`."""
+    return np.concatenate([steps for steps, _ in trace_pieces(kernels, state, t_end, outcome_count, execution)])
 
 
 def sample_path(
@@ -96,7 +99,7 @@ def advance_states(kernels: ModuleType, states: np.ndarray, durations: np.ndarra
 
 
 def _evaluate(jets: np.ndarray, row: np.ndarray, tau: np.ndarray) -> np.ndarray:
-    """Apply `evaluate_series`, and return the states (4, n)."""
+    """Return the states (4, n) that `evaluate_series` computes."""
     states = np.empty((4, row.size))
     evaluate_series(jets, row, tau, states)
     return states
@@ -104,7 +107,7 @@ def _evaluate(jets: np.ndarray, row: np.ndarray, tau: np.ndarray) -> np.ndarray:
 
 @kernel
 def evaluate_series(jets, row, tau, states):
-    """Set `states` (4, n) to x, y, px, py at times tau (n,) after the start of the steps `row` (n,)."""
+    """Set `states` (4, n) to x, y, px, py at times tau (n,) after the start of the steps `row` (n,) of jets (2, ORDER + 1, m)."""
     order = jets.shape[1] - 1
     for n in range(row.size):
         for axis in range(2):
@@ -126,11 +129,11 @@ def find_crossings(kernels: ModuleType, path: np.ndarray, times: np.ndarray) -> 
     first_samples = np.flatnonzero(rises | turns)
     jets = np.empty((2, ORDER + 1, first_samples.size))
     kernels.jets(first_samples.size, *(np.ascontiguousarray(row[first_samples]) for row in path), *jets)
-    return _crossings(jets, times[first_samples + 1] - times[first_samples])
+    return _locate_crossings(jets, times[first_samples + 1] - times[first_samples])
 
 
 @kernel
-def _crossings(jets, durations):
+def _locate_crossings(jets, durations):
     """Return x and px (m, 2) at upward crossings within `durations` (n,) of the starts of n series."""
     x_jet, y_jet = jets[0], jets[1]
     # Two crossings in one interval are rare, and three do not occur.
@@ -159,8 +162,8 @@ def sample_deviations(
         execution.raise_if_cancelled()
         end = min(begin + _CHUNK, times.size - 1)
         matrices = transition_matrices(kernels, path[:, begin:end], np.diff(times[begin : end + 1]))
-        # `_apply` changes its other arguments in place.
-        _apply(matrices, w, sali[begin + 1 : end + 1], stretch[begin + 1 : end + 1])
+        # The kernel changes its other arguments in place.
+        _apply_matrices(matrices, w, sali[begin + 1 : end + 1], stretch[begin + 1 : end + 1])
     return sali, 0.5 * np.cumsum(np.log(stretch))
 
 
@@ -179,7 +182,7 @@ def transition_matrices(kernels: ModuleType, path: np.ndarray, durations: np.nda
 
 
 @kernel
-def _apply(matrices, w, sali, stretch):
+def _apply_matrices(matrices, w, sali, stretch):
     """Apply the matrices (4, 4, n) in turn to the vectors w (2, 4), in place, and normalise the vectors after each matrix.
 
     sali (n,) is set to SALI after each matrix, and stretch (n,) to the squared growth of the first vector by each matrix.

@@ -35,7 +35,7 @@ class Ensemble(NamedTuple):
         (n,) int8: number of the exit through which the current step, or an earlier step, leaves the interior; 0 for none.
     escape_time
         (n,) time of the escape, or infinite.
-    last
+    last_time
         (n,) time until which the orbit is followed, or infinite.
     section
         (2, n) x and px of the last upward crossing of y = 0.
@@ -46,13 +46,13 @@ class Ensemble(NamedTuple):
     jets: np.ndarray
     leaving: np.ndarray
     escape_time: np.ndarray
-    last: np.ndarray
+    last_time: np.ndarray
     section: np.ndarray
 
 
 @kernel
 def advance_ensemble(step, jets, coefficients, tolerance, time, beyond, gates, curves, ensemble):
-    """Advance each orbit, in place, until its step contains `time`, or until the last time at which the orbit is followed.
+    """Advance each orbit, in place, until its step contains `time`, or the last time at which the orbit is followed.
 
     beyond: time for which orbits are followed beyond an exit, except into a body; gates (exits, 3) and curves (exits, columns):
     see `engine.integrator.kernels.propagate.Exits`.
@@ -102,7 +102,7 @@ def place_ensemble(time, ensemble, places, channels):
             channels[orbit] = ensemble.leaving[orbit]
         tau = time - ensemble.begin[orbit]
         # After an orbit has failed, the size of its last step is NaN.
-        is_far = time > ensemble.last[orbit] or not tau <= ensemble.ends[SIZE_ROW, orbit]
+        is_far = time > ensemble.last_time[orbit] or not tau <= ensemble.ends[SIZE_ROW, orbit]
         for axis in range(2):
             places[axis, orbit] = np.nan if is_far else series_value(ensemble.jets[axis], orbit, tau)
 
@@ -114,7 +114,7 @@ def begin_ensemble(starts, ensemble, places, channels):
     ensemble.begin[:] = 0.0
     ensemble.leaving[:] = 0
     ensemble.escape_time[:] = np.inf
-    ensemble.last[:] = np.inf
+    ensemble.last_time[:] = np.inf
     ensemble.section[:] = np.nan
     channels[:] = 0
     for orbit in range(starts.shape[0]):
@@ -169,7 +169,7 @@ def _variance(values, channels):
 def _is_late(ensemble, orbit, time):
     """Return whether the step of a followed orbit ends before a time; False for a failed orbit, whose time is NaN."""
     end = ensemble.ends[TIME_ROW, orbit]
-    return end < time and end < ensemble.last[orbit]
+    return end < time and end < ensemble.last_time[orbit]
 
 
 @subroutine
@@ -193,7 +193,7 @@ def _keep_step(now, new, flags, x_jet, y_jet, i, beyond, gates, curves, ensemble
     if channel > 0:
         ensemble.escape_time[orbit] = now[TIME_ROW, i] + find_exit_time(x_jet, y_jet, i, size, curves[channel - 1])
         follow_time = 0.0 if ends_inside(curves[channel - 1]) else beyond
-        ensemble.last[orbit] = ensemble.escape_time[orbit] + follow_time
+        ensemble.last_time[orbit] = ensemble.escape_time[orbit] + follow_time
     if now[1, i] < 0.0 and new[1, i] >= 0.0:
         tau = find_zero(y_jet, i, 0.0, size)
         ensemble.section[0, orbit] = series_value(x_jet, i, tau)

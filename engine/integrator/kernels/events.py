@@ -36,7 +36,10 @@ _ROOT_ACCURACY = 1e-15
 
 @subroutine
 def crossed_exit(x0, y0, x1, y1, curves, gates):
-    """Return the number of the exit that an orbit crosses outward in a step from (x0, y0) to (x1, y1); 0 for none."""
+    """Return the number of the exit that an orbit crosses outward in a step from (x0, y0) to (x1, y1); 0 for none.
+
+    curves (exits, columns), gates (exits, 3): see `engine.integrator.kernels.propagate.Exits`.
+    """
     for k in range(curves.shape[0]):
         curve = curves[k]
         if not is_circle(curve) and gates[k, 0] * x1 + gates[k, 1] * y1 <= gates[k, 2]:
@@ -60,7 +63,7 @@ def crossed_exit(x0, y0, x1, y1, curves, gates):
 
 @subroutine
 def series_value(jet, i, tau):
-    """Return a series at time tau after the start of its step."""
+    """Return the value of a series, column i of `jet` (order + 1, n), at time tau after the start of its step."""
     value = jet[jet.shape[0] - 1, i]
     for k in range(jet.shape[0] - 2, -1, -1):
         value = value * tau + jet[k, i]
@@ -69,7 +72,7 @@ def series_value(jet, i, tau):
 
 @subroutine
 def series_slope(jet, i, tau):
-    """Return the time derivative of a series at time tau after the start of its step."""
+    """Return the time derivative of a series, column i of `jet` (order + 1, n), at time tau after the start of its step."""
     order = jet.shape[0] - 1
     slope = order * jet[order, i]
     for k in range(order - 1, 0, -1):
@@ -113,7 +116,7 @@ def find_zero(jet, i, low, high):
 
 @subroutine
 def crossing_between(jet, i, direction, low, y_low, slope_low, high, y_high, slope_high):
-    """Return times before and after the crossing of y = 0, in a direction, in a part of a step; equal times for none.
+    """Return times before and after the crossing of y = 0, in a direction, in a part of a step; equal times if there is none.
 
     jet: series of y; direction: 1 for crossings from y < 0 to y ≥ 0, −1 for crossings from y > 0 to y ≤ 0; low, high: the ends of
     the part; y_…, slope_…: y and ẏ at these ends, times `direction`. A crossing may be one of a pair in opposite directions.

@@ -104,6 +104,7 @@ def find_section_points(fixed_step, jets, coefficients, h, steps, state, points,
 
 @subroutine
 def _count_below(values, limit):
+    """Return how many of the values (n,) are below a limit."""
     count = 0
     for value in values:
         if value < limit:
@@ -123,7 +124,7 @@ def _locate_crossings(jets, coefficients, h, n, start, step_lane, points, found)
 
 @kernel
 def fixed_step_sali(tangent, fixed_step, coefficients, h, steps, state, first, second, sali):
-    """Lower SALI to its smallest value after every 8th of `steps` and the last.
+    """Take `steps` steps, and lower `sali` to the smallest SALI found after every 8th step and after the last step.
 
     SALI is min(‖w1 − w2‖, ‖w1 + w2‖) of two unit vectors, eq. 9 of Zotos (2014).
 

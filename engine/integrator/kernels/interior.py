@@ -36,16 +36,16 @@ _SHORTEST_STEP = 1e-6
 # Largest number of steps of a path.
 _MOST_STEPS = 10_000
 # Growth of the longest step with |x| + |y|, in units of the longest step near the origin.
-_FAR_SHARE = 0.25
+_STEP_GROWTH = 0.25
 # Cosine and sine of the angle between a path and the gradient; the path thus leaves lines of symmetry, which can end at saddles.
 _COS, _SIN = np.cos(0.1), np.sin(0.1)
 # Smallest decrease of V in a step, relative to the decrease along the gradient.
-_DECREASE = 0.25
+_LEAST_DECREASE = 0.25
 # Smallest difference between the energy and V on a line to the origin, so that the line does not pass over a saddle of the same
 # energy; points may lie above the energy by as much.
 _ENERGY_MARGIN = 1e-12
-# Smallest slope of a point that is not critical.
-_NO_SLOPE = 1e-9
+# Smallest slope of V at a point that is not critical.
+_LEAST_SLOPE = 1e-9
 # Number of parts of a line to the origin.
 _PIECES = 32
 # Number of points on the edge of a body at the origin.
@@ -54,7 +54,7 @@ _EDGE_POINTS = 64
 
 @subroutine
 def _polynomial_slopes(polynomial, x, y):
-    """Return V, V_x and V_y of a polynomial; row 2 of `work` becomes the series of V(t x, t y) in t."""
+    """Return V, V_x and V_y of a polynomial; row 2 of its `work` is set to the series of V(t x, t y) in t."""
     powers, coefficients, _, work = polynomial
     x_power = 1.0
     y_power = 1.0
@@ -153,7 +153,11 @@ def _crosses_exits(x0, y0, x1, y1, curves):
 
 @subroutine
 def _is_outside(slopes, is_below, potential, x, y, energy, curves, bottom):
-    """Return whether a point is outside; slopes, is_below: two of the functions above; potential: their first argument."""
+    """Return whether a point is outside.
+
+    slopes, is_below: the two functions above for polynomials or for expressions; potential: their first argument; curves (exits,
+    columns); bottom: the lowest V on a path that ends inside.
+    """
     level = energy - _ENERGY_MARGIN
     # Whether the path so far crosses the exits an odd number of times.
     is_odd = False
@@ -163,17 +167,17 @@ def _is_outside(slopes, is_below, potential, x, y, energy, curves, bottom):
         slope = np.sqrt(slope_x * slope_x + slope_y * slope_y)
         if value < bottom:
             break
-        if slope < _NO_SLOPE and value >= level:
+        if slope < _LEAST_SLOPE and value >= level:
             # A saddle of this energy belongs to the well.
             return False
         if is_below(potential, x, y, level):
             return is_odd ^ _crosses_exits(x, y, 0.0, 0.0, curves)
         direction_x = -(_COS * slope_x - _SIN * slope_y) / slope
         direction_y = -(_SIN * slope_x + _COS * slope_y) / slope
-        step = min(2.0 * step, _LONGEST_STEP * max(1.0, _FAR_SHARE * (abs(x) + abs(y))))
+        step = min(2.0 * step, _LONGEST_STEP * max(1.0, _STEP_GROWTH * (abs(x) + abs(y))))
         while step > _SHORTEST_STEP:
             next_value, _, _ = slopes(potential, x + step * direction_x, y + step * direction_y)
-            if next_value < value - _DECREASE * step * slope:
+            if next_value < value - _LEAST_DECREASE * step * slope:
                 break
             step *= 0.5
         if step <= _SHORTEST_STEP:

@@ -33,7 +33,7 @@ _ACCURACY = 1e-13
 _MOST_HALVINGS = 40
 
 
-class _StepBuffer(NamedTuple):
+class _PassageBuffer(NamedTuple):
     """Steps whose passages have not been located yet.
 
     start (6, lanes): x, y, px, py, t and step size; orbit (lanes,): the orbit of the step; channel (lanes,): the exit through
@@ -47,7 +47,7 @@ class _StepBuffer(NamedTuple):
 
 @subroutine
 def fill_lanes(orbits):
-    """Return the arrays for steps of orbits (rows, lanes), one per lane: now, new, flag, crossed, and the orbit of each lane."""
+    """Return the arguments of `step` for orbits (rows, lanes): now, new, flag and crossed, and the orbit number of each lane."""
     lanes = orbits.shape[1]
     now = np.zeros((ROWS, LANES))
     # The elements are copied one by one, because for `now[:4] = orbits` Numba also compiles an error message, which takes 2 s.
@@ -71,7 +71,7 @@ def find_section_passages(step, jets, coefficients, tolerance, horizon, gates, c
     lanes = state.shape[1]
     most_passages = passages.shape[1]
     now, new, flag, crossed, lane_orbit = fill_lanes(state)
-    buffer = _StepBuffer(np.zeros((6, lanes)), np.zeros(lanes, np.int64), np.zeros(lanes, np.int64))
+    buffer = _PassageBuffer(np.zeros((6, lanes)), np.zeros(lanes, np.int64), np.zeros(lanes, np.int64))
     buffered = 0
     active = lanes
     while active > 0:
@@ -166,7 +166,7 @@ def integrate_speed(step, jets, coefficients, tolerance, duration, power, budget
 
 @subroutine
 def _time_inside(now, new, i, flags, duration, x_jet, y_jet, curves, gates):
-    """Return how long, within its step and until the time `duration`, the orbit of lane i is inside, and whether it ends."""
+    """Return how long the orbit of lane i is inside, within its step and until the time `duration`, and whether it ends there."""
     is_late = flags & OVERSHOOT != 0
     time_inside = min(new[SIZE_ROW, i], duration - now[TIME_ROW, i])
     channel = 0

@@ -61,7 +61,7 @@ def shoot(
 
     Returns u̇ and the time at the turning point, and the number of steps. u̇ < 0 means a start too close to the well, u̇ > 0 a
     start too far out, and u̇ = 0 the Lyapunov orbit. If an orbit moves farther than `reach` along the channel before it turns,
-    returns −1 or 1 in place of u̇, and NaN. Without a start, returns NaN.
+    u̇ is −1 or 1, and the time is NaN. Without a start or a turning point, both are NaN, and the number of steps is 0.
 
     steps (m, 5): set to x, y, px, py, t at the start of each step.
     """

@@ -38,7 +38,7 @@ NO_TRACE = np.empty((0, 5))
 """The argument `trace` of `propagate` for orbits whose steps are not recorded."""
 
 GOES_ON = -1
-"""Value of the channel in the buffer of steps for an orbit that does not end in the step."""
+"""Channel, in the buffer of steps, of an orbit that does not end in the step."""
 
 
 class Exits(NamedTuple):
@@ -114,6 +114,7 @@ def fill_vectors(count):
 
 @subroutine
 def _make_buffer(lanes):
+    """Return an empty buffer for as many steps as there are lanes."""
     h, orbit, channel = np.zeros(lanes), np.zeros(lanes, np.int64), np.zeros(lanes, np.int64)
     return _StepBuffer(np.zeros((4, lanes)), h, orbit, channel, np.zeros((ORDER + 1, lanes)), np.zeros((ORDER + 1, lanes)))
 
@@ -122,9 +123,9 @@ def _make_buffer(lanes):
 def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget, least, exits, orbits, trace):
     """Propagate the orbits numbered `todo` until they escape, pass `horizon`, or `budget` steps of lanes are taken.
 
-    The kernel also ends when fewer than `least` orbits are active, because they would not fill the lanes. With `final`, the
-    horizon is t_max: events of the last, partial step are located, and an orbit still inside becomes BOUNDED. Without `final`, an
-    orbit still inside stays NOT_COMPUTED. Returns the total number of steps of all orbits.
+    The kernel also ends when no orbits wait and fewer than `least` are active, because they would not fill the lanes. With
+    `final`, the horizon is t_max: events of the last, partial step are located, and an orbit still inside becomes BOUNDED.
+    Without `final`, such an orbit stays NOT_COMPUTED. Returns the total number of steps of all orbits.
 
     exits: `Exits`; orbits: `Orbits`, changed in place; trace (m, 5): set to x, y, px, py, t at the start of each step of the
     first lane, until `trace` is full; `NO_TRACE` for more than one orbit.
@@ -260,6 +261,7 @@ def _store_orbit(lanes, i, crossed, orbits, orbit):
 
 @subroutine
 def _move_lane(lanes, source, target, lane_orbit, crossed):
+    """Copy the orbit of lane `source` of the (ROWS, LANES) array `lanes` to lane `target`."""
     for c in range(ROWS):
         lanes[c, target] = lanes[c, source]
     lane_orbit[target] = lane_orbit[source]

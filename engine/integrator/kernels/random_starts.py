@@ -20,15 +20,15 @@ _WORD = 0xFFFFFFFF
 # Number of parts of an exit, for each of which the flux is computed.
 _PARTS = 200
 # Distance of entering orbits from the exit, as a share of its half width; on the exit, rounding would decide which are inside.
-_SHIFT = 1e-7
-# Distance of orbits from the edge of the tube nearby, measured at the exit, as a share of the half width of the exit.
-_FROM_EDGE = 3e-3
+_INWARD_SHIFT = 1e-7
+# Distance of orbits from the edge of their tube, measured at the exit, as a share of the half width of the exit.
+_EDGE_DISTANCE = 3e-3
 
 
 @subroutine
 def _draw_number(seed):
-    """Return a random number from 0 to 1; seed (1,) is changed."""
-    # The numbers are those of mulberry32; 4294967296 is 2^32.
+    """Return a random number of 32 bits, at least 0 and below 1; seed (1,) is changed."""
+    # 4294967296 is 2^32.
     seed[0] = (seed[0] + 0x6D2B79F5) & _WORD
     state = seed[0]
     mixed = ((state ^ (state >> 15)) * (state | 1)) & _WORD
@@ -79,12 +79,12 @@ def draw_at_exits(potential_value, coefficients, curves, energy, of_tubes, seed,
     for i in range(states.shape[0]):
         index = _find_above(flux, total * _draw_number(seed))
         s = _middle(index % _PARTS) + (2.0 * _draw_number(seed) - 1.0) / _PARTS
-        share, shift = 2.0 * _draw_number(seed) - 1.0, _SHIFT
+        share, shift = 2.0 * _draw_number(seed) - 1.0, _INWARD_SHIFT
         if of_tubes:
             side = 1.0 if share < 0.0 else -1.0
             is_inside = _draw_number(seed) < 0.5
-            share = side * (np.sqrt(1.0 - _FROM_EDGE * _FROM_EDGE) if is_inside else 1.0)
-            shift = _SHIFT if is_inside else _FROM_EDGE
+            share = side * (np.sqrt(1.0 - _EDGE_DISTANCE * _EDGE_DISTANCE) if is_inside else 1.0)
+            shift = _INWARD_SHIFT if is_inside else _EDGE_DISTANCE
         _launch(potential_value, coefficients, energy, curves[index // _PARTS], s, share, shift, states[i])
     return states.shape[0]
 

@@ -20,15 +20,15 @@ X, Y = (1, 0), (0, 1)
 # Largest relative difference of coefficients that count as equal. A coefficient such as ε/3 has a few rounding errors.
 _ROUNDING = 1e-15
 # Number of cached results of `_cheapest`, of 1 kB each; a potential of degree 8 needs about 4 000.
-_CHEAPEST_PRODUCTS = 4096
+_CACHED_RESULTS = 4096
 
 
 @dataclass(frozen=True)
 class Product:
     """One Cauchy product: the series of `monomial` from the series of two known factors.
 
-    Of a square, half the series is computed, which saves a multiplication in every other coefficient. Therefore the series of a
-    monomial has a scale factor, see `find_scales`.
+    If both factors are the same, half the series is computed, which saves a multiplication in every other coefficient. The series
+    of a monomial therefore has a scale factor, see `find_scales`.
     """
 
     monomial: Monomial
@@ -40,10 +40,11 @@ def plan_products(needed: AbstractSet[Monomial]) -> list[Product]:
     """Return a short list of Cauchy products that yields every needed monomial.
 
     The search is greedy, monomial by monomial. It is repeated with each divisor of a needed monomial formed first, and the
-    cheapest plan wins.
+    cheapest plan is returned.
     """
+    in_order = sorted(needed, key=_by_degree)
     divisors = {(a, b) for i, j in needed for a in range(i + 1) for b in range(j + 1) if a + b > 1}
-    plans = [_greedy_plan([*first, *sorted(needed, key=_by_degree)]) for first in ([], *([m] for m in sorted(divisors)))]
+    plans = [_greedy_plan(in_order), *(_greedy_plan([divisor, *in_order]) for divisor in sorted(divisors))]
     return min(plans, key=lambda plan: sum(map(_cost, plan)))
 
 
@@ -57,7 +58,7 @@ def _cost(product: Product) -> float:
 
 
 def _greedy_plan(monomials: list[Monomial]) -> list[Product]:
-    """Return the products that yield the monomials, with the cheapest way to form each in turn."""
+    """Return the products that yield the monomials, each formed in turn in the cheapest way."""
     known = {X, Y, (0, 0)}
     plan: list[Product] = []
     for monomial in monomials:
@@ -67,12 +68,12 @@ def _greedy_plan(monomials: list[Monomial]) -> list[Product]:
     return plan
 
 
-@functools.lru_cache(maxsize=_CHEAPEST_PRODUCTS)
+@functools.lru_cache(maxsize=_CACHED_RESULTS)
 def _cheapest(monomial: Monomial, known: frozenset[Monomial]) -> tuple[float, list[Product]]:
     """Return the cost and the products of the cheapest way to form a monomial, given known monomials."""
     if monomial in known:
         return 0.0, []
-    best: tuple[float, list[Product]] = (float("inf"), [])
+    cheapest: tuple[float, list[Product]] = (float("inf"), [])
     for left in ((a, b) for a in range(monomial[0] + 1) for b in range(monomial[1] + 1)):
         right = (monomial[0] - left[0], monomial[1] - left[1])
         if left < right or sum(right) == 0:
@@ -81,9 +82,9 @@ def _cheapest(monomial: Monomial, known: frozenset[Monomial]) -> tuple[float, li
         cost_right, plan_right = _cheapest(right, known | {p.monomial for p in plan_left})
         product = Product(monomial, left, right)
         cost = cost_left + cost_right + _cost(product)
-        if cost < best[0]:
-            best = cost, [*plan_left, *plan_right, product]
-    return best
+        if cost < cheapest[0]:
+            cheapest = cost, [*plan_left, *plan_right, product]
+    return cheapest
 
 
 def find_scales(plan: Sequence[Product]) -> dict[Monomial, float]:

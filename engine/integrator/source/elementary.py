@@ -28,7 +28,7 @@ _EXPONENT = 1 << 52
 _ONE_BITS = 1023 << 52
 _ROOT_HALF_BITS = 0x3FE6A09E667F3BCD
 
-# Largest argument of exp. This argument replaces larger ones, because no orbit meets such a force.
+# Largest argument of exp. This argument replaces larger ones, because no orbit reaches such a force.
 _LARGEST_EXPONENT = 700.0
 # Smallest normal double, for log.
 _SMALLEST_NORMAL = 2.0**-1022
@@ -38,8 +38,8 @@ _LARGEST_ANGLE = 1e6
 _HIGH_BITS = 30
 
 
-def _parts(value: Fraction, count: int) -> list[float]:
-    """Split a number into doubles. All but the last have few bits, so that their products with integers are exact."""
+def _split(value: Fraction, count: int) -> list[float]:
+    """Split a number into `count` doubles. All but the last have few bits, so that their products with integers are exact."""
     parts = []
     for _ in range(count - 1):
         _, exponent = math.frexp(float(value))
@@ -49,7 +49,7 @@ def _parts(value: Fraction, count: int) -> list[float]:
     return [*parts, float(value)]
 
 
-_LN_2_PARTS, _HALF_PI_PARTS = _parts(_LN_2, 2), _parts(_PI / 2, 3)
+_LN_2_PARTS, _HALF_PI_PARTS = _split(_LN_2, 2), _split(_PI / 2, 3)
 
 # Coefficients of polynomials, the highest first.
 
@@ -100,7 +100,7 @@ def cos_of(u: Value) -> Value:
 
 
 def _sine_of_sum(u: Value, quarters: int) -> Value:
-    """Return sin(u + quarters π/2)."""
+    """Return sin(u + quarters π/2); NaN for |u| > 1e6."""
     n, bits = _nearest_integer(u * (2.0 / math.pi))
     r = _reduce(u, n, _HALF_PI_PARTS)
     square = r * r

@@ -24,7 +24,7 @@ Entry = tuple[str, int]
 class ExpressionStructure:
     """The graphs of V (`value`), gradient (`motion`), gradient and Hessian (`variations`), and V and gradient (`slopes`).
 
-    `zero` tells which second derivatives are zero.
+    `is_zero` tells which second derivatives, in the order of `_HESSIAN`, are zero everywhere.
     """
 
     setting: Setting
@@ -32,9 +32,9 @@ class ExpressionStructure:
     motion: Graph
     variations: Graph
     slopes: Graph
-    zero: tuple[bool, ...]
+    is_zero: tuple[bool, ...]
 
-    can_hide: ClassVar[bool] = True
+    can_hide_crossings: ClassVar[bool] = True
     """Whether the signs of y at the ends of a step can miss two crossings: yes, no bound on the frequency of y is known."""
     has_many_scales: ClassVar[bool] = True
     """Whether frequencies can differ strongly from place to place: yes, near singularities."""
@@ -47,17 +47,17 @@ class ExpressionStructure:
         return min(self.setting.sides, default=0) < 0
 
     def orbit(self, program: StraightLine, remainders: Mapping[str, Value] = NO_REMAINDERS) -> tuple[Series, Series]:
-        """Return the series of x and y, by the recurrence of the gradient."""
+        """Append the recurrence of the gradient to a program, and return the series of x and y."""
         recurrence = GraphSeries(program, "motion", self.motion, self.setting.rotates, remainders)
         for k in range(ORDER - 1):
             recurrence.advance(k)
         return recurrence.x, recurrence.y
 
     def hessian(self, program: StraightLine) -> Hessian:
-        """Return each second derivative of −V, by the recurrence of the gradient and the Hessian."""
+        """Append the recurrence of the gradient and the Hessian to a program, and return the second derivatives of −V."""
         recurrence = GraphSeries(program, "variations", self.variations, self.setting.rotates)
 
-        def entry(index: int) -> Callable[[int], Value]:
+        def coefficients(index: int) -> Callable[[int], Value]:
             def coefficient(k: int) -> Value:
                 recurrence.advance_to(k)
                 return -1.0 * recurrence.series[index][k]
@@ -65,14 +65,14 @@ class ExpressionStructure:
             return coefficient
 
         indices = self.variations.results[2:]
-        return {axes: (entry(index), not zero) for axes, index, zero in zip(_HESSIAN, indices, self.zero, strict=True)}
+        return {axes: (coefficients(index), not zero) for axes, index, zero in zip(_HESSIAN, indices, self.is_zero, strict=True)}
 
     def point_functions(self) -> PointFunctions:
         """Return the functions V, and V with its gradient."""
         names = ("value", "slope_x", "slope_y")
         return {
-            "potential_value": lambda program: {"value": _values(program, "value", self.value)[0]},
-            "potential_slopes": lambda program: dict(zip(names, _values(program, "slopes", self.slopes), strict=True)),
+            "potential_value": lambda program: {"value": _graph_values(program, "value", self.value)[0]},
+            "potential_slopes": lambda program: dict(zip(names, _graph_values(program, "slopes", self.slopes), strict=True)),
         }
 
     def tabulate(self, expression: Any, entries: Sequence[Entry]) -> list[float]:
@@ -83,8 +83,8 @@ class ExpressionStructure:
 
 def structure_of_expression(expression: Expression, setting: Setting) -> ExpressionStructure:
     """Return the structure of a potential that is an expression."""
-    zero = tuple(as_number(curvature) == 0.0 for curvature in curvatures(expression))
-    return ExpressionStructure(setting, zero=zero, **{name: graph for name, (graph, _) in _graphs(expression).items()})
+    is_zero = tuple(as_number(curvature) == 0.0 for curvature in curvatures(expression))
+    return ExpressionStructure(setting, is_zero=is_zero, **{name: graph for name, (graph, _) in _graphs(expression).items()})
 
 
 def _graphs(expression: Expression) -> dict[str, tuple[Graph, tuple[float, ...]]]:
@@ -98,7 +98,7 @@ def _graphs(expression: Expression) -> dict[str, tuple[Graph, tuple[float, ...]]
     }
 
 
-def _values(program: StraightLine, name: str, graph: Graph) -> list[Value]:
+def _graph_values(program: StraightLine, name: str, graph: Graph) -> list[Value]:
     """Return the values of the expressions of a graph at the inputs x and y."""
     values: dict[int, Value] = {}
     for index, node in enumerate(graph.nodes):

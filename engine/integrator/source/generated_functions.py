@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from engine.integrator.source.straight_line import TABLE, StraightLine, Value
 
-ADDED = ("crossed", "sums")
+ACCUMULATED = ("crossed", "sums")
 """Names of the arrays to which kernels add results; in other arrays, results replace the previous numbers."""
 
 
@@ -32,8 +32,8 @@ class GeneratedFunction(NamedTuple):
 
     Attributes
     ----------
-    name, program, kernel
-        Name, program and source of the kernel.
+    name, program, source
+        Name, program and Python source of the kernel.
     arguments
         Names of the arguments of the kernel.
     reads
@@ -44,7 +44,7 @@ class GeneratedFunction(NamedTuple):
 
     name: str
     program: StraightLine
-    kernel: str
+    source: str
     arguments: tuple[str, ...]
     reads: Mapping[str, Place] = MappingProxyType({})
     writes: tuple[Place, ...] = ()
@@ -63,7 +63,7 @@ def lane_loop(
     reads, constants: places of the inputs, by name; writes: values of the program, or source, by place; rows: lengths of the rows
     of arrays with a fixed length. Constants are read before the loop. In the loop, the compiler would check each for overlap
     with every array that the loop writes, and beyond about 100 checks it vectorises nothing. Rows of a fixed length need no
-    checks. For separate arrays, the checks would take as long as 16 lanes.
+    checks. For separate arrays, the checks would take as long as the steps of 16 lanes.
     """
     program.results = [value.index for value in writes.values() if isinstance(value, Value)]
     sources = {place: f"r{value.index}" if isinstance(value, Value) else value for place, value in writes.items()}
@@ -77,7 +77,7 @@ def lane_loop(
         "    for i in range(n):",
         *(f"        {variable} = {place}" for variable, place in reads.items()),
         f"        ({''.join(f'r{index}, ' for index in program.results)}) = {program.name}({', '.join(program.parameters)})",
-        *(f"        {place} {'+=' if place.array in ADDED else '='} {source}" for place, source in sources.items()),
+        *(f"        {place} {'+=' if place.array in ACCUMULATED else '='} {source}" for place, source in sources.items()),
     ]
     result_places = tuple(place for place, value in writes.items() if isinstance(value, Value))
     names = ("coefficients", "n", *arguments.split(", "))

@@ -56,16 +56,16 @@ class GraphSeries:
         # Sums of series, see `_common_product`.
         self._common_sums: dict[tuple[int, int], list[Value]] = {}
         # Number of known coefficients of each node.
-        self._orders = 0
+        self._known_count = 0
 
     def advance_to(self, k: int) -> None:
-        """Find coefficients k of all nodes, unless they are known."""
-        if k >= self._orders:
+        """Append coefficients k of all nodes, unless they are known."""
+        if k >= self._known_count:
             self.advance(k)
 
     def advance(self, k: int) -> None:
-        """Find coefficients k of all nodes, and with them coefficient k + 2 of x and y."""
-        self._orders = k + 1
+        """Append coefficients k of all nodes, and with them coefficient k + 2 of x and y."""
+        self._known_count = k + 1
         for index, (node, planned) in enumerate(zip(self.graph.nodes, self._plan.nodes, strict=True)):
             if node.kind in ("x", "y"):
                 continue

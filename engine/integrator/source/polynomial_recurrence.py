@@ -40,9 +40,9 @@ from engine.integrator.source.series import (
 from engine.integrator.source.straight_line import StraightLine, Value
 
 # Number of cached plans, two for each structure.
-_PLANS = 64
+_CACHED_PLANS = 64
 
-# Radius of a circle that contains all steps of orbits inside the exits of a well of size 1.
+# Radius of a circle that contains all steps of orbits inside the exits, in units of the well.
 _REACH = 3.0
 
 Terms = tuple[tuple[int, int, float], ...]
@@ -68,13 +68,13 @@ _Difference = tuple[Product, Product] | None
 class PolynomialStructure:
     """The facts about a polynomial V on which generated code depends.
 
-    `can_hide` tells whether the signs of y at the ends of a step can miss two crossings of y = 0 in the step. `difference` is the
-    result of `_find_difference` for the gradient alone, and `tangent_difference` that for the gradient and the Hessian.
+    `can_hide_crossings` tells whether the signs of y at the ends of a step can miss two crossings of y = 0 in the step.
+    `difference` is the result of `_find_difference` for the gradient, and `tangent_difference` that for gradient and Hessian.
     """
 
     monomials: tuple[Monomial, ...]
     setting: Setting
-    can_hide: bool
+    can_hide_crossings: bool
     difference: _Difference
     tangent_difference: _Difference
 
@@ -86,22 +86,22 @@ class PolynomialStructure:
     """Whether steps carry the rounding errors of x and y along: no, a polynomial is smooth everywhere."""
 
     def orbit(self, program: StraightLine, _remainders: Mapping[str, Value] = NO_REMAINDERS) -> tuple[Series, Series]:
-        """Return the series of x and y, from the products for the equations of motion only."""
+        """Append the recurrence of the equations of motion to a program, and return the series of x and y."""
         products = _plan(self.monomials, _GRADIENT)
         series = _recurrence(program, self.monomials, products, self.difference, self.setting.rotates)
         return series[X], series[Y]
 
     def hessian(self, program: StraightLine) -> Hessian:
-        """Return each second derivative, from the products for the equations of motion and the variational equations."""
+        """Append the recurrence of the variational equations to a program, and return the second derivatives of −V."""
         products = _plan(self.monomials, _GRADIENT_AND_HESSIAN)
         scales = find_scales(products)
         series = _recurrence(program, self.monomials, products, self.tangent_difference, self.setting.rotates)
 
-        def entry(axes: tuple[int, int]) -> Callable[[int], Value]:
+        def coefficients(axes: tuple[int, int]) -> Callable[[int], Value]:
             derived = _formed_derivative(self.monomials, axes, self.tangent_difference)
             return lambda k: _linear_combination(program, derived, series, scales, k, 1)
 
-        return {axes: (entry(axes), bool(_derivative(self.monomials, axes))) for axes in _HESSIAN}
+        return {axes: (coefficients(axes), bool(_derivative(self.monomials, axes))) for axes in _HESSIAN}
 
     def point_functions(self) -> PointFunctions:
         """Return the function V alone."""
@@ -127,7 +127,7 @@ def _derivative(monomials: Iterable[Monomial], axes: Sequence[int]) -> _Derivati
     return {(i, j): ((i + axes.count(0), j + axes.count(1)), factor) for (i, j), factor in factors.items()}
 
 
-@functools.lru_cache(maxsize=_PLANS)
+@functools.lru_cache(maxsize=_CACHED_PLANS)
 def _plan(monomials: tuple[Monomial, ...], derivatives: tuple[tuple[int, ...], ...]) -> tuple[Product, ...]:
     """Return the products from which the series of some derivatives of V are formed."""
     return tuple(plan_products(frozenset(monomial for axes in derivatives for monomial in _derivative(monomials, axes))))
@@ -143,9 +143,9 @@ def _find_difference(polynomial: Polynomial, derivatives: tuple[tuple[int, ...],
 
 
 def _formed_derivative(monomials: Iterable[Monomial], axes: Sequence[int], difference: _Difference) -> _Derivative:
-    """Write a derivative of V as a sum over computed series.
+    """Return the monomials of a derivative of V whose series are computed.
 
-    The series of a difference is that of its first square; the second square is left out.
+    The series of the difference of two squares is computed in place of that of the first square; the second square is left out.
     """
     omitted = difference[1].monomial if difference is not None else None
     return {monomial: origin for monomial, origin in _derivative(monomials, axes).items() if monomial != omitted}
@@ -209,8 +209,8 @@ def structure_of_polynomial(terms: Terms, setting: Setting) -> PolynomialStructu
     """Return the structure of a potential that is a polynomial."""
     polynomial = _sort_terms(terms)
     differences = (_find_difference(polynomial, derivatives) for derivatives in (_GRADIENT, _GRADIENT_AND_HESSIAN))
-    can_hide = setting.rotates or _crossings_can_hide(polynomial)
-    return PolynomialStructure(tuple(polynomial), setting, can_hide, *differences)
+    can_hide_crossings = setting.rotates or _crossings_can_hide(polynomial)
+    return PolynomialStructure(tuple(polynomial), setting, can_hide_crossings, *differences)
 
 
 def _crossings_can_hide(terms: Polynomial) -> bool:

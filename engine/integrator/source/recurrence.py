@@ -16,8 +16,8 @@ For each potential there are four functions with a loop over lanes `i`, and one 
 ``potential_value``  V at one point; for expressions, ``potential_slopes`` also gives V and its gradient.
 
 The code depends only on the structure of V: the graph of an expression, or the exponents of a polynomial and a few facts about
-its coefficients that save work (`find_difference`, `PolynomialStructure.can_hide`). The numbers are passed at run time in a
-table, the first argument of every function. Potentials of the same structure therefore share compiled code.
+its coefficients that save work (`find_difference`, `PolynomialStructure.can_hide_crossings`). The numbers are passed at run
+time in a table, the first argument of every function. Potentials of the same structure therefore share compiled code.
 """
 
 from __future__ import annotations
@@ -57,9 +57,9 @@ _EARLIER_WEIGHT = 0.3
 _USUAL_STEP = 0.35
 # Factor of the norm in potentials with bodies: a power of 10 with which energies are conserved to 1e-11. The factor is above 1
 # because coefficients near singularities decrease more slowly than elsewhere.
-_CAUTION = 10.0
+_BODY_FACTOR = 10.0
 # Speed that is added to the speed that limits a step, so that no step is longer than 16.
-_LEAST_SPEED = 1.0 / 16.0
+_ADDED_SPEED = 1.0 / 16.0
 # Number of orders of the last coefficients in the norm.
 _ORDERS_OF_NORM = 3
 
@@ -79,8 +79,8 @@ SIZE_ROW = 5
 REMAINDER_ROW = 6
 """The first of the two rows with the remainders of x and y."""
 
-# Number of cached structures, of 3 MB each with eight terms of degree 8.
-_STRUCTURES = 32
+# Number of structures whose code is cached, of 3 MB each with eight terms of degree 8.
+_CACHED_STRUCTURES = 32
 
 Definition = Terms | Expression
 """A potential: ((i, j, c), …) of V = Σ c x^i y^j in any order, or an expression."""
@@ -111,7 +111,7 @@ class GeneratedCode:
     @functools.cached_property
     def digest(self) -> str:
         """A hash of all programs and kernels as text."""
-        text = "\n\n".join(f"{function.program}\n\n{function.kernel}" for function in self.functions)
+        text = "\n\n".join(f"{function.program}\n\n{function.source}" for function in self.functions)
         return hashlib.sha256(text.encode()).hexdigest()
 
     @property
@@ -149,8 +149,8 @@ def _step_size(program: StraightLine, x: Series, y: Series, structure: Structure
         scaled_norm = _EARLIER_WEIGHT * third_last + unit * (second_last + unit * last)
         speed, force = abs(x[1]) + abs(y[1]), abs(x[2]) + abs(y[2])
         relative_norm = program.apply("/", scaled_norm, speed + unit * force)
-        h = _root_of_tolerance(program, _CAUTION * relative_norm if structure.carries_remainders else relative_norm)
-        longest = 1.0 / (speed + program.apply("sqrt", force) + _LEAST_SPEED)
+        h = _root_of_tolerance(program, _BODY_FACTOR * relative_norm if structure.carries_remainders else relative_norm)
+        longest = 1.0 / (speed + program.apply("sqrt", force) + _ADDED_SPEED)
     h = where(h < longest, h, longest)
     return where(norm < structure.largest_norm, h, math.nan)
 
@@ -201,13 +201,14 @@ def _start_in(lanes: str) -> dict[str, Place]:
 
 
 def _step(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
+    """Return the function ``step``, with arrays `now` and `new` as described by `ROWS`, and flags of `step_flags`."""
     program = StraightLine("_step", table)
     remainders = {axis: program.input(f"{axis}_remainder") for axis in "xy"} if structure.carries_remainders else {}
     x, y = structure.orbit(program, remainders)
     h = _step_size(program, x, y, structure)
     x_end, px_end, x_remainder = _end_of_step(x, h, remainders.get("x"))
     y_end, py_end, y_remainder = _end_of_step(y, h, remainders.get("y"))
-    hidden = flag_hidden_crossings(y, y_end, h) if structure.can_hide else program.constant(0)
+    hidden = flag_hidden_crossings(y, y_end, h) if structure.can_hide_crossings else program.constant(0)
     gates, gate = flag_gates(structure.setting, program, (x, y), (x_end, y_end), h)
     t_end = program.input("t0") + h
     end = x_end, y_end, px_end, py_end
@@ -226,6 +227,7 @@ def _step(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
 
 
 def _fixed_step(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
+    """Return the function ``fixed_step``, which changes `state` in place and adds weighted x² and y² at its start to `sums`."""
     program = StraightLine("_fixed_step", table)
     x, y = structure.orbit(program)
     h = program.input("h")
@@ -241,6 +243,7 @@ def _fixed_step(structure: Structure, table: dict[Any, int]) -> GeneratedFunctio
 
 
 def _jets(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
+    """Return the function ``jets``, which writes the coefficients of x and y."""
     program = StraightLine("_jets", table)
     orbit = zip("xy", structure.orbit(program), strict=True)
     writes = {Place(f"{name}_jet", k): series[k] for name, series in orbit for k in range(ORDER + 1)}
@@ -248,11 +251,11 @@ def _jets(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
 
 
 # A deviation vector: the inputs of the recurrence, with the arrays of its components.
-_VECTOR = {"u0": "wx", "v0": "wy", "u1": "wpx", "v1": "wpy"}
+_DEVIATION = {"u0": "wx", "v0": "wy", "u1": "wpx", "v1": "wpy"}
 
 
 def _tangent(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
-    """Return the function for the variational equations ẅ = −(Hessian of V on the orbit) w, w = (δx, δy); Zotos (2014), eq. 4."""
+    """Return the function ``tangent`` for ẅ = −(Hessian of V on the orbit) w with w = (δx, δy), see eq. 4 of Zotos (2014)."""
     program = StraightLine("_tangent", table)
     hessian = structure.hessian(program)
     # The series of the second derivatives of −V.
@@ -268,13 +271,13 @@ def _tangent(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
             add_coriolis(program, u, v)
     h = program.input("h")
     (u_end, pu_end), (v_end, pv_end) = _horner(u, h), _horner(v, h)
-    reads = {**_START, **{name: Place(array) for name, array in _VECTOR.items()}, "h": Place("duration")}
-    writes = dict(zip(map(Place, _VECTOR.values()), (u_end, v_end, pu_end, pv_end), strict=True))
+    reads = {**_START, **{name: Place(array) for name, array in _DEVIATION.items()}, "h": Place("duration")}
+    writes = dict(zip(map(Place, _DEVIATION.values()), (u_end, v_end, pu_end, pv_end), strict=True))
     return lane_loop(program, "duration, x, y, px, py, wx, wy, wpx, wpy", reads, writes)
 
 
 def generate_code(definition: Definition, setting: Setting) -> GeneratedCode:
-    """Return the generated functions for a potential, the same object for all potentials of the same structure."""
+    """Return the generated functions for a potential, cached for all potentials of the same structure."""
     return generate(find_structure(definition, setting))
 
 
@@ -290,17 +293,18 @@ def find_structure(definition: Definition, setting: Setting) -> Structure:
     return structure_of_polynomial(definition, setting)
 
 
-@functools.lru_cache(maxsize=_STRUCTURES)
+@functools.lru_cache(maxsize=_CACHED_STRUCTURES)
 def generate(structure: Structure) -> GeneratedCode:
     """Return the generated functions for all potentials of a structure; large formulas take seconds."""
     return _write_code(structure)
 
 
 def _write_code(structure: Structure) -> GeneratedCode:
+    """Return the generated functions, written anew."""
     # All programs share the table, which each of them extends.
     table: dict[Any, int] = {}
     functions = [
-        *(generate(structure, table) for generate in (_step, _fixed_step, _jets, _tangent)),
+        *(write(structure, table) for write in (_step, _fixed_step, _jets, _tangent)),
         *(point_function(name, append, table) for name, append in structure.point_functions().items()),
     ]
     return GeneratedCode(tuple(functions), tuple(table), structure)

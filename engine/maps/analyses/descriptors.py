@@ -24,7 +24,7 @@ from engine.systems.potential import Potential
 DEFAULT_DURATION = 10.0
 """Default τ in time units of the well: about one and a half periods of the motion in the well."""
 
-# Number of parts into which the pixels are divided. The parts are computed one after the other.
+# Number of parts into which the pixels are divided. The parts are computed one after the other, with a frame after each.
 _PARTS = 16
 
 
@@ -175,8 +175,8 @@ def _checked_direction(direction: TimeDirection | str) -> TimeDirection:
     return TimeDirection(direction)
 
 
-def _specs(spec: MapSpec, direction: TimeDirection) -> list[MapSpec]:
-    """Return one request for each direction of time, in units of the well."""
+def _find_specs(spec: MapSpec, direction: TimeDirection) -> list[MapSpec]:
+    """Return a request for each direction of time of the integral, in units of the well."""
     reversed_spec = replace(spec, backward=not spec.backward)
     specs = {
         TimeDirection.FORWARD: [spec],
@@ -191,7 +191,7 @@ class _DescriptorRun:
 
     def __init__(self, escape_map: EscapeMap, duration: float, power: float, direction: TimeDirection) -> None:
         self._given_spec, self._duration, self._power, self._direction = escape_map.spec, duration, power, direction
-        self._map, self._specs = escape_map.in_well_units(), _specs(escape_map.spec, direction)
+        self._map, self._specs = escape_map.in_well_units(), _find_specs(escape_map.spec, direction)
         self._mirror = MirrorPixels(self._map.spec, self._map.x, self._map.ordinate)
         self._pixels = self._mirror.find_first_images(np.flatnonzero(self._map.interior))
         self._values = np.full(self._map.fate.shape, np.nan)
@@ -202,9 +202,9 @@ class _DescriptorRun:
         if not self._pixels.size:
             return
         for part in np.array_split(self._pixels, min(_PARTS, self._pixels.size)):
-            yield partial(self._compute, part, execution)
+            yield partial(self._compute_part, part, execution)
 
-    def _compute(self, part: np.ndarray, execution: Execution) -> None:
+    def _compute_part(self, part: np.ndarray, execution: Execution) -> None:
         """Compute the integrals of some pixels over all directions of time."""
         values = sum(self._integrate(spec, part, execution) for spec in self._specs)
         if not execution.is_cancelled:

@@ -82,10 +82,10 @@ def compute_regularity(
 ) -> RegularityMap:
     """Judge the bounded orbits of a complete map as regular or chaotic.
 
-    An orbit is regular if the map has evidence of its torus, or if its Birkhoff averages show a torus, over windows before t_max
-    or over both halves of the orbit. An orbit is chaotic if its SALI falls to 1e-7 by t_max (Zotos 2014, eq. 9). Any other orbit
-    shows no sign of chaos until t_max; Zotos (2014) calls it regular. An orbit that is bounded on the map only because of
-    rounding can run to infinity in this second integration. Such an orbit is judged by its smallest SALI until then.
+    An orbit is regular if the map has evidence of its torus, or if its Birkhoff averages show a torus, over windows that begin
+    before t_max/2 or over both halves of the orbit. An orbit is chaotic if its SALI falls to 1e-7 by t_max (Zotos 2014, eq. 9).
+    Any other orbit shows no sign of chaos until t_max; Zotos (2014) calls it regular. An orbit that is bounded on the map only
+    because of rounding can run to infinity in this second integration. Such an orbit is judged by its smallest SALI until then.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ class _RegularityClassification:
         codes = np.where(self._map.fate == Fate.BOUNDED, Regularity.NOT_JUDGED, Regularity.NOT_APPLICABLE)
         codes[self._map.evidence == Evidence.QUASI_PERIODIC] = Regularity.REGULAR
         self._codes = PixelCodes(self._map, codes, Regularity.NOT_JUDGED)
-        # The pixels still to be judged, and their orbits with deviation vectors.
+        # The pixels still to be judged, (n,), and their orbits, (n, 13), see `attach_deviations`.
         self._pixels = self._codes.pixels
         self._orbits = attach_deviations(self._spec.start_states(*self._map.coordinates(self._pixels)))
         self._sali = np.full(codes.size, np.nan)
@@ -132,6 +132,7 @@ class _RegularityClassification:
 
     def stages(self, execution: Execution, _on_change: OnChange) -> Iterator[Stage]:
         """Yield the stages, see `Staged`. Each stage integrates orbits and judges them by one criterion."""
+        # The longest window is not used.
         for time, window in zip(_SALI_TIMES, WINDOWS, strict=False):
             if 2.0 * time > self._spec.t_max:
                 break
@@ -151,6 +152,7 @@ class _RegularityClassification:
         if execution.is_cancelled:
             return
         self._orbits, self._time = orbits, time
+        # The last column is the smallest SALI so far.
         self._judge(is_chaotic(orbits[:, -1]), Regularity.CHAOTIC)
 
     def _find_tori(self, window: float, execution: Execution) -> None:
@@ -169,7 +171,7 @@ class _RegularityClassification:
         self._judge(np.ones(self._pixels.size, bool), Regularity.NO_SIGN_OF_CHAOS)
 
     def _judge(self, mask: np.ndarray, character: Regularity) -> None:
-        """Assign a code to the orbits in a mask, and drop these orbits."""
+        """Assign a code to the orbits selected by a mask (n,), record their SALI, and remove them from the remaining orbits."""
         self._codes.assign(self._pixels[mask], character)
         self._sali[self._pixels[mask]] = self._orbits[mask, -1]
         self._pixels, self._orbits = self._pixels[~mask], self._orbits[~mask]

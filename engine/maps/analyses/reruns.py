@@ -74,9 +74,9 @@ def _same_starts(_spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> tuple[t
 
 @dataclass(frozen=True)
 class Perturbation:
-    """Parameters of the reruns: the starts and the tolerance of each rerun, and the largest change of escape times."""
+    """Parameters of the reruns: their starts, see `shifted_starts`, their tolerances, and the largest change of escape times."""
 
-    starts: Callable[[MapSpec, np.ndarray, np.ndarray], tuple[tuple[np.ndarray, np.ndarray], ...]]
+    find_starts: Callable[[MapSpec, np.ndarray, np.ndarray], tuple[tuple[np.ndarray, np.ndarray], ...]]
     tolerances: tuple[float, ...]
     largest_delay: float
 

@@ -20,12 +20,13 @@ _SAMPLED_SIDE = 16
 
 
 def with_rounded_share(escape_map: EscapeMap, execution: Execution) -> EscapeMap:
-    """Add to a map in units of the well `rounded_share`, if the map is complete and a deep zoom of one potential.
+    """Return a map in units of the well with `EscapeMap.rounded_share`, which is estimated for complete deep zooms only.
 
-    About `_SAMPLED_SIDE`² pixels, evenly spaced, are integrated again from the same starts with `SECOND_TOLERANCE`, so that only
-    the errors of the integration differ. If the fate or the crossings of a pixel change, one of the two outcomes is wrong. The
-    share of changes among the sampled interior pixels is therefore at most the sum of the shares of wrong pixels in both
-    integrations, and at least the difference of these shares. It is NaN without interior pixels.
+    The estimate is the share of the interior pixels whose fate or crossings change with the errors of double precision. It is
+    based on about `_SAMPLED_SIDE`² pixels, evenly spaced. Those that are bounded without evidence, or have another outcome than
+    one of their neighbours in this sample, are integrated again from the same starts with `SECOND_TOLERANCE`, so that only the
+    errors of the integration differ. The others count as unchanged. If an outcome changes, one of the two outcomes is wrong. The
+    share of changes is therefore at most the sum of the shares of wrong pixels in both integrations.
     """
     spacings = (np.ptp(axis) / max(axis.size - 1, 1) for axis in (escape_map.x, escape_map.ordinate))
     # The spacing of a single row or column is 0.

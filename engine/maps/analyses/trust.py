@@ -177,7 +177,7 @@ def find_unlike_neighbours(fate: np.ndarray, crossings: np.ndarray) -> np.ndarra
     return has_unlike_neighbour & interior
 
 
-def _find_without_evidence(escape_map: EscapeMap) -> np.ndarray:
+def _is_bounded_without_evidence(escape_map: EscapeMap) -> np.ndarray:
     """Return whether each pixel is bounded, above the escape energy, without evidence, of shape (rows, columns)."""
     spec = escape_map.spec
     energy = spec.energies(*np.meshgrid(escape_map.x, escape_map.ordinate))
@@ -191,10 +191,10 @@ class TrustTest:
         self._given_spec, scaled_map = escape_map.spec, escape_map.in_well_units()
         self.spec = scaled_map.spec
         codes = np.where(scaled_map.fate >= Fate.BOUNDED, Trust.LIKE_NEIGHBOURS, Trust.NOT_APPLICABLE)
-        without_evidence = _find_without_evidence(scaled_map)
+        without_evidence = _is_bounded_without_evidence(scaled_map)
         codes[without_evidence | has_unlike_neighbour] = Trust.NOT_TESTED
         self._codes = PixelCodes(scaled_map, codes, Trust.NOT_TESTED)
-        # Whether each tested pixel is bounded without evidence, so that its reruns must stay together.
+        # Whether each tested pixel is bounded without evidence. It is doubtful if its reruns separate.
         self._without_evidence = without_evidence.ravel()[self._codes.pixels]
         # Whether the reruns of each tested pixel have separated.
         self._chaotic = np.zeros(self._codes.pixels.size, bool)
@@ -216,7 +216,7 @@ class TrustTest:
         # Orbits below every saddle are bounded without integration.
         closed = np.flatnonzero(potential.well.is_closed_at(energies[curve_row]))
         reruns = []
-        for start, tolerance in zip(perturbation.starts(spec, x, ordinate), perturbation.tolerances, strict=True):
+        for start, tolerance in zip(perturbation.find_starts(spec, x, ordinate), perturbation.tolerances, strict=True):
             batch = OrbitBatch.from_starts(spec.start_states(*start), curve_row)
             batch.mark_outside(potential, self._undecided, curves)
             batch.mark_bounded(closed[batch.fate[closed] == Fate.NOT_COMPUTED], Evidence.CLOSED)
@@ -225,14 +225,14 @@ class TrustTest:
 
     def stages(self, execution: Execution, on_change: OnChange) -> Iterator[Stage]:
         """Yield the stages, see `Staged`. Each stage integrates undecided reruns to a horizon, or looks for evidence there."""
-        reached = 0.0
+        reached_time = 0.0
         for horizon in rising_horizons(_FIRST_HORIZON, _HORIZON_FACTOR, self.spec.t_max):
             if not self._undecided.size:
                 return
-            if looks_for_tori(self.spec) and reached == FIRST_TEST_TIME:
-                yield partial(self._find_evidence, reached, execution, partial(on_change, False))
+            if looks_for_tori(self.spec) and reached_time == FIRST_TEST_TIME:
+                yield partial(self._find_evidence, reached_time, execution, partial(on_change, False))
             yield partial(self._propagate, horizon, execution)
-            reached = horizon
+            reached_time = horizon
 
     def _propagate(self, horizon: float, execution: Execution) -> None:
         """Integrate the reruns of all undecided pixels to the horizon."""
@@ -255,12 +255,13 @@ class TrustTest:
         tested = self._undecided[self._without_evidence[self._undecided]]
         kernels = self.spec.potential.well.kernels
         batches = [rerun.batch for rerun in self._reruns]
+        # A single rerun is compared with itself, and therefore finds no chaos.
         states = np.array([advance_states(kernels, batch.state[tested], time - batch.t[tested]) for batch in batches])
         self._chaotic[tested] = np.linalg.norm(states[0] - states[-1], axis=1) > CHAOTIC_DISTANCE
         self._compared_time = time
 
-    def _find_evidence(self, reached: float, execution: Execution, on_round: Callable[[], None]) -> None:
-        """Mark reruns of pixels that are bounded on the map as bounded if their states at t = `reached` give evidence.
+    def _find_evidence(self, time: float, execution: Execution, on_round: Callable[[], None]) -> None:
+        """Mark reruns of pixels that are bounded on the map as bounded if their states at t = `time` give evidence.
 
         Evidence for the first rerun holds for both reruns, because on a regular orbit their difference is far below the digits
         that are compared.
@@ -271,7 +272,7 @@ class TrustTest:
             return
         grid_indices = np.full((tested.size, 2), _COARSEST_LATTICE_INDEX)
         search = BoundedOrbitSearch(
-            self.spec.potential, self.spec.common_energy, first.batch.state[tested], grid_indices, self.spec.t_max - reached,
+            self.spec.potential, self.spec.common_energy, first.batch.state[tested], grid_indices, self.spec.t_max - time,
             execution=execution,
         )  # fmt: skip
 
@@ -285,7 +286,7 @@ class TrustTest:
         search.run(mark_bounded)
 
     def _update_codes(self) -> None:
-        """Record which pixels are decided."""
+        """Assign the codes of decided pixels, and find the undecided pixels."""
         is_decided = np.all([rerun.is_decided() for rerun in self._reruns], axis=0)
         has_changed = np.any([rerun.has_changed() for rerun in self._reruns], axis=0) | self._chaotic
         if self._compared_time < self.spec.t_max:

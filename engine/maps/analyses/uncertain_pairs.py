@@ -36,17 +36,17 @@ _MIN_ZOOM_SEPARATION = 1e-13
 _MAX_SEPARATIONS = 100
 # Largest initial number of pairs at each separation.
 _MAX_PAIRS = 100_000
-# Number of uncertain pairs wanted at each separation. They determine a share to 7 %. The law fitted to the initial pairs predicts
-# how many pairs this takes.
-_WANTED_UNCERTAIN = 200
+# Desired number of uncertain pairs at each separation. They determine a share to 7 %. The law fitted to the initial pairs
+# predicts how many pairs this takes.
+_TARGET_UNCERTAIN_PAIRS = 200
 # Largest ratio of the final to the initial number of pairs. The total integration time also limits the number of pairs.
 _MAX_GROWTH = 2000
 # Cost of a pair in addition to its integration, as an integration time in units of the well.
 _PAIR_COST = 20.0
 # Number of pairs drawn and integrated together.
-_CHUNK = 2**17
+_PAIRS_PER_CHUNK = 2**17
 # Times at which the integration stops, to regroup the few remaining orbits, in units of the well.
-_STAGES = (30.0, 300.0)
+_REGROUP_TIMES = (30.0, 300.0)
 # Smallest share of interior points among the points drawn in the window. Drawing stops if there are fewer.
 _MIN_YIELD = 1e-3
 
@@ -71,9 +71,9 @@ def compute_uncertainty_exponent(
     the energy of a row of pixels, and the second start is displaced along x. Pairs with a forbidden or outside start are drawn
     again.
 
-    Orbits are integrated to t_max, at most 1e4 time units of the well. To be inside at that time is a fate like a channel. In the
-    result, `one_inside` and `both_inside` count the pairs that this choice can affect. The number of pairs in which both orbits
-    escape is ``pairs − one_inside − both_inside``; ``uncertain − one_inside`` of these pairs are uncertain.
+    Orbits are integrated to t_max, at most 1e4 time units of the well. Orbits still inside at that time have a fate of their own.
+    In the result, `one_inside` and `both_inside` count the pairs that this choice can affect. The number of pairs in which both
+    orbits escape is ``pairs − one_inside − both_inside``; ``uncertain − one_inside`` of these pairs are uncertain.
 
     Separations with few uncertain pairs get more pairs, as many as the law fitted to the first pairs suggests, within a fixed
     total integration time.
@@ -180,7 +180,7 @@ class _PairSampler:
             # One separation does not determine a law. The law of a smooth boundary, f ~ ε, gives the largest number of pairs.
             share = self.uncertain.max() / self.pairs.max() * self.separations / self.separations[0]
         most_pairs = _MAX_GROWTH * self.pairs
-        counts = np.clip(_WANTED_UNCERTAIN / share, self.pairs, most_pairs) - self.pairs
+        counts = np.clip(_TARGET_UNCERTAIN_PAIRS / share, self.pairs, most_pairs) - self.pairs
         # More pairs are useless if even the largest number does not make the separation count.
         counts[share * most_pairs < MIN_EXPECTED_PAIRS] = 0.0
         cost = _PAIR_COST + self.integrated_time / self.pairs.sum()
@@ -190,12 +190,12 @@ class _PairSampler:
     def sample(self, counts: np.ndarray, execution: Execution) -> None:
         """Draw and integrate `counts` (m,) more pairs at each separation, and count their outcomes."""
         indices = np.repeat(np.arange(counts.size), counts)
-        chunks = np.split(indices, range(_CHUNK, indices.size, _CHUNK)) if indices.size else []
+        chunks = np.split(indices, range(_PAIRS_PER_CHUNK, indices.size, _PAIRS_PER_CHUNK)) if indices.size else []
         for number, chunk in enumerate(chunks):
-            batch, index = self._draw_chunk(np.bincount(chunk, minlength=counts.size))
+            batch, separation_indices = self._draw_chunk(np.bincount(chunk, minlength=counts.size))
             self._integrate(batch, execution.part(number, len(chunks)))
             self.integrated_time += float(batch.t.sum())
-            self._count_outcomes(index, *batch.fate.reshape(2, -1))
+            self._count_outcomes(separation_indices, *batch.fate.reshape(2, -1))
 
     def _draw_chunk(self, counts: np.ndarray) -> tuple[OrbitBatch, np.ndarray]:
         """Return the orbits of `counts` (m,) pairs, all first before all second starts, and the separation index of each pair."""
@@ -214,15 +214,15 @@ class _PairSampler:
             return float(np.mean(np.where(batch.fate == Fate.NOT_COMPUTED, batch.t / self.horizon, 1.0)))
 
         all_orbits = np.arange(batch.fate.size)
-        for horizon in (*(stage for stage in _STAGES if stage < self.horizon), self.horizon):
+        for horizon in (*(time for time in _REGROUP_TIMES if time < self.horizon), self.horizon):
             propagate_batch(
                 self.spec.potential, self.curves, batch, all_orbits, horizon,
                 final=horizon == self.horizon, execution=execution, on_tiles=lambda: execution.report(progress),
             )  # fmt: skip
             execution.raise_if_cancelled()
 
-    def _count_outcomes(self, index: np.ndarray, first_fate: np.ndarray, second_fate: np.ndarray) -> None:
-        """Count pairs, given their separation index and the fates of their first and second orbits, (n,) each."""
+    def _count_outcomes(self, separation_indices: np.ndarray, first_fate: np.ndarray, second_fate: np.ndarray) -> None:
+        """Count pairs, given the indices of their separations and the fates of their first and second orbits, (n,) each."""
         inside_count = (first_fate == Fate.BOUNDED).astype(int) + (second_fate == Fate.BOUNDED)
         is_decided = (first_fate >= Fate.BOUNDED) & (second_fate >= Fate.BOUNDED)
         for counts, mask in (
@@ -232,13 +232,13 @@ class _PairSampler:
             (self.both_inside, is_decided & (inside_count == 2)),
         ):
             # This changes the array of the attribute in place.
-            counts += np.bincount(index[mask], minlength=counts.size)
+            counts += np.bincount(separation_indices[mask], minlength=counts.size)
 
     def _draw_pairs(self, index: int, count: int) -> tuple[np.ndarray, np.ndarray]:
         """Return the states, (2, n, 4), and energy rows, (n,), of at most `count` pairs at one separation."""
         states, rows = np.zeros((2, 0, 4)), np.zeros(0, np.int64)
         drawn_count = 0
-        # The 10 keeps chance from ending the search at its first draws.
+        # Without the 10, a few unlucky first draws would end the search.
         while rows.size < count and drawn_count * _MIN_YIELD < rows.size + 10:
             self.execution.raise_if_cancelled()
             candidate_count = 2 * (count - rows.size) + 100
@@ -258,16 +258,15 @@ class _PairSampler:
     def _draw_points(self, index: int, pair_count: int) -> tuple[np.ndarray, np.ndarray]:
         """Return x and ordinate of all first, then all second starts, (2, 2n), and the energy rows of the n pairs, (n,)."""
         window, random, axis = self.spec.find_window(), self.random[index], self.spec.plane.energy_axis
-        edges = window.ranges
         rows = np.zeros(pair_count, np.int64)
         if axis is None:
-            points = np.array([random.uniform(*range_, pair_count) for range_ in edges])
+            points = np.array([random.uniform(low, high, pair_count) for low, high in window.ranges])
             angle = random.uniform(0.0, 2.0 * np.pi, pair_count)
             shift = self.separations[index] * np.array([np.cos(angle), np.sin(angle)])
             return np.concatenate([points, points + shift], axis=1), rows
         # Along an axis h, points have the energies of pixels, and only the other axis is displaced.
         points, shift = np.zeros((2, pair_count)), np.zeros((2, pair_count))
-        points[1 - axis] = random.uniform(*edges[1 - axis], pair_count)
+        points[1 - axis] = random.uniform(*window.ranges[1 - axis], pair_count)
         rows = random.integers(0, self.row_energy.size, pair_count)
         points[axis] = self.row_energy[rows]
         # The cosine of 0 or π is a random sign.

@@ -48,7 +48,7 @@ class CatalogueEntry:
     formula
         V as text, in the notation of `engine.systems.formulas.formula_parser.parse_formula`, without the centrifugal term.
     description
-        One sentence.
+        One sentence on the physics and the exits.
     reference
         Source in the literature.
     parameters

@@ -1,4 +1,4 @@
-"""A mapping by name. Its error for an unknown name suggests similar names."""
+"""A mapping from names to values, whose error for an unknown name suggests similar names."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from engine.foundations.validation import short_repr
 
 # Smallest similarity, from 0 to 1, of a name that an error suggests.
-_LEAST_LIKENESS = 0.6
+_SMALLEST_SIMILARITY = 0.6
 
 
 class UnknownNameError(KeyError, ValueError):
@@ -29,7 +29,7 @@ class ByName[Value](Mapping[str, Value]):
     names
         The names.
     make
-        Returns the value of a name. It is called at each look-up.
+        Function that returns the value of a name. It is called at each look-up.
     titles
         Titles by name. For an unknown name that resembles a title, the error suggests the name with this title.
     """
@@ -64,7 +64,7 @@ class ByName[Value](Mapping[str, Value]):
         """Return up to three names with similar spelling, the most similar first."""
         # Names by the plain spelling of the name and of its title.
         spellings = {_plain(text): known for known in self._names for text in (known, self._titles.get(known, known))}
-        matches = difflib.get_close_matches(_plain(name), spellings, n=3, cutoff=_LEAST_LIKENESS)
+        matches = difflib.get_close_matches(_plain(name), spellings, n=3, cutoff=_SMALLEST_SIMILARITY)
         return list(dict.fromkeys(spellings[match] for match in matches))
 
 

@@ -21,9 +21,9 @@ def _paper_entry(name: str, formula: str, description: str) -> CatalogueEntry:
     return CatalogueEntry(name, f"Case {name}", formula, description, reference, energies=PAPER_ENERGIES[name])
 
 
-def _family_entry(n: int, count: str, polynomial: str, escape_energy: str) -> CatalogueEntry:
+def _family_entry(n: int, count_word: str, polynomial: str, escape_energy: str) -> CatalogueEntry:
     """Return the entry of V = r²/2 − (1/n) rⁿ cos nθ, given rⁿ cos nθ, the real part of (x + iy)ⁿ, as a polynomial."""
-    description = f"{count} equal channels at θ = 2πk/{n}, open above {escape_energy}."
+    description = f"{count_word} equal channels at θ = 2πk/{n}, open above {escape_energy}."
     reference = "V = r²/2 − (1/n) rⁿ cos nθ, a family of potentials of this project"
     return CatalogueEntry(f"C{n}", f"C{n} family", f"r²/2 − ({polynomial})/{n}", description, reference)
 
@@ -70,9 +70,9 @@ _ENTRIES = (
     ),
 )
 
-_BY_NAME = {entry.name: entry for entry in (*_ENTRIES, *ROTATING_ENTRIES)}
+_ENTRIES_BY_NAME = {entry.name: entry for entry in (*_ENTRIES, *ROTATING_ENTRIES)}
 
 CATALOGUE: Mapping[str, CatalogueEntry] = ByName(
-    "potential", _BY_NAME, _BY_NAME.__getitem__, {name: entry.title for name, entry in _BY_NAME.items()}
+    "potential", _ENTRIES_BY_NAME, _ENTRIES_BY_NAME.__getitem__, {name: entry.title for name, entry in _ENTRIES_BY_NAME.items()}
 )
 """The potentials included in the engine with their descriptions, by name. The three cases of Zotos (2014) come first."""

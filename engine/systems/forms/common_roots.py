@@ -21,10 +21,10 @@ from engine.systems.forms.form import UndecidedError
 
 # Arbitrary factors k, tried in turn. Two common roots have the same s only if the line through them has the slope −1/k.
 _SHEARS = (fmpq(37, 101), fmpq(-67, 89), fmpq(113, 71))
-# Numbers of bits of the intervals, tried in turn.
+# Working precisions of FLINT, in bits, tried in turn.
 _PRECISIONS = (128, 256, 512, 1024)
-# Relative distance of x from s − k y up to which the intervals of both are compared.
-_NEAR = 1e-9
+# Relative tolerance within which x is searched near s − k y, by bisection of doubles, before the intervals are compared.
+_SEARCH_TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True)
@@ -41,23 +41,31 @@ def find_common_roots(p: fmpq_mpoly, q: fmpq_mpoly) -> list[CommonRoot]:
 
     During the search, the precision of `flint.ctx` is changed for all threads.
 
+    Parameters
+    ----------
+    p, q
+        Polynomials in x and y, of `RING`.
+
     Raises
     ------
     UndecidedError
-        If the intervals are not short enough to tell the roots apart at the highest precision.
+        If the roots cannot be told apart: the intervals are too long at the highest precision, or no k is suitable.
     """
     if p.is_constant() or q.is_constant():
         return []
-    along_x, along_y = (_univariate(p.resultant(q, name), axis) for axis, name in enumerate(("y", "x")))
+    x_resultant = _univariate(p.resultant(q, "y"), 0)
+    y_resultant = _univariate(p.resultant(q, "x"), 1)
     for shear in _SHEARS:
         sheared = [_shear(each, shear) for each in (p, q)]
         if any(each.degrees()[1] < each.total_degree() for each in sheared):
-            # The leading coefficient in y vanishes, so the resultant would also have roots at infinity.
+            # The coefficient of the highest power of y can depend on s. Where it vanishes in both polynomials, the resultant
+            # vanishes without a common root.
             continue
-        along_s = _univariate(sheared[0].resultant(sheared[1], "y"), 0)
+        s_resultant = _univariate(sheared[0].resultant(sheared[1], "y"), 0)
         for precision in _PRECISIONS:
             with ctx.workprec(precision):
-                roots = _pair_coordinates(_real_roots(along_x), _real_roots(along_y), _real_roots(along_s), shear)
+                x_roots, y_roots, s_roots = map(_real_roots, (x_resultant, y_resultant, s_resultant))
+                roots = _pair_coordinates(x_roots, y_roots, s_roots, shear)
             if roots is not None:
                 return roots
     raise UndecidedError(
@@ -66,7 +74,7 @@ def find_common_roots(p: fmpq_mpoly, q: fmpq_mpoly) -> list[CommonRoot]:
 
 
 def _univariate(polynomial: fmpq_mpoly, axis: int) -> fmpq_poly:
-    """Convert a polynomial that contains only one coordinate."""
+    """Convert a polynomial that contains only x (axis 0) or only y (axis 1)."""
     coefficients = {powers[axis]: c for powers, c in polynomial.to_dict().items()}
     return fmpq_poly([coefficients.get(n, 0) for n in range(max(coefficients, default=0) + 1)])
 
@@ -79,26 +87,27 @@ def _shear(polynomial: fmpq_mpoly, shear: fmpq) -> fmpq_mpoly:
 
 def _real_roots(polynomial: fmpq_poly) -> list[tuple[arb, int]]:
     """Return the real roots with their multiplicities, in increasing order."""
+    # The numerator has integer coefficients, and the same roots. FLINT returns real roots with an imaginary part of exactly 0.
     # FLINT's stubs do not declare the multiplicities.
     roots: list[Any] = polynomial.numer().complex_roots() if polynomial.degree() > 0 else []
     return sorted(((root.real, multiplicity) for root, multiplicity in roots if root.imag == 0), key=lambda each: each[0].mid())
 
 
 def _pair_coordinates(
-    along_x: list[tuple[arb, int]], along_y: list[tuple[arb, int]], along_s: list[tuple[arb, int]], shear: fmpq
+    x_roots: list[tuple[arb, int]], y_roots: list[tuple[arb, int]], s_roots: list[tuple[arb, int]], shear: fmpq
 ) -> list[CommonRoot] | None:
     """Return the only pair (x, y) with x + k y = s for each s; None if an s has no pair or several."""
-    x_values = [float(x) for x, _ in along_x]
+    x_values = [float(x) for x, _ in x_roots]
     k = arb(shear)
     roots = []
-    for s, multiplicity in along_s:
+    for s, multiplicity in s_roots:
         pairs = []
-        for y, _ in along_y:
+        for y, _ in y_roots:
             expected_x = s - k * y
-            distance = _NEAR * (abs(float(s)) + abs(float(k * y)))
+            distance = _SEARCH_TOLERANCE * (abs(float(s)) + abs(float(k * y)))
             first = bisect_left(x_values, float(expected_x) - distance)
-            last = bisect_right(x_values, float(expected_x) + distance)
-            pairs += [(x, y) for x, _ in along_x[first:last] if x.overlaps(expected_x)]
+            stop = bisect_right(x_values, float(expected_x) + distance)
+            pairs += [(x, y) for x, _ in x_roots[first:stop] if x.overlaps(expected_x)]
         if len(pairs) != 1:
             return None
         roots.append(CommonRoot(*pairs[0], multiplicity))

@@ -22,13 +22,13 @@ from engine.systems.forms.form import NotIsolatedError
 
 # Largest denominator of the fractions that are recognised, such as 1/3.
 _LARGEST_DENOMINATOR = 1000
-# An arbitrary point. On each curve of zeros, the nearest point to the arbitrary point is searched.
-_ARBITRARY = fmpq(577, 1009), fmpq(-733, 1013)
-# Number of bits of the intervals in which signs are determined: no fewer than the bits of the roots.
+# An arbitrary point. On each curve of zeros, the point nearest to it is searched.
+_ARBITRARY_POINT = fmpq(577, 1009), fmpq(-733, 1013)
+# Working precision of FLINT, in bits, with which signs are determined: no less than that of the roots.
 _PRECISION = 1024
 # Relative error of the coefficients. A point is degenerate if such errors can make its Hessian singular.
-_ROUNDING = 2.0**-44
-# The precision is a global variable of FLINT.
+_COEFFICIENT_ERROR = 2.0**-44
+# Only one thread searches at a time, because the precision is a global variable of FLINT.
 _LOCK = threading.Lock()
 
 
@@ -54,12 +54,12 @@ def find_critical_points(terms: Terms) -> np.ndarray:
     """
     with _LOCK:
         potential = exact_polynomial({powers: _rational(c) for powers, c in terms.items() if c})
-        along_x, along_y = potential.derivative("x"), potential.derivative("y")
-        divisor = along_x.gcd(along_y)
+        slope_x, slope_y = potential.derivative("x"), potential.derivative("y")
+        divisor = slope_x.gcd(slope_y)
         if divisor.is_zero():
             raise NotIsolatedError
         degenerate = _isolated_zeros(divisor)
-        roots = [root for root in find_common_roots(along_x / divisor, along_y / divisor) if not _is_among(root, degenerate)]
+        roots = [root for root in find_common_roots(slope_x / divisor, slope_y / divisor) if not _is_among(root, degenerate)]
         rows = [(root, 0) for root in degenerate] + [(root, _index(potential, root)) for root in roots]
         return np.array([(float(root.x), float(root.y), index) for root, index in rows], float).reshape(-1, 3)
 
@@ -74,26 +74,26 @@ def _rational(c: float) -> Fraction:
 def _isolated_zeros(polynomial: fmpq_mpoly) -> list[CommonRoot]:
     """Return the real zeros of a polynomial if all are isolated points; NotIsolatedError for curves of zeros.
 
-    Each curve of zeros has a nearest point to an arbitrary point, where the gradient is parallel to the line between both points.
+    Each curve of zeros has a point nearest to the arbitrary point. There the gradient is parallel to the line between the points.
     """
     zeros = []
     x, y = RING.gens()
     for factor, _ in polynomial.factor_squarefree()[1]:
-        along_x, along_y = factor.derivative("x"), factor.derivative("y")
+        slope_x, slope_y = factor.derivative("x"), factor.derivative("y")
         # This vanishes where the gradient is parallel to the line from the arbitrary point.
-        cross_product = (x - _ARBITRARY[0]) * along_y - (y - _ARBITRARY[1]) * along_x
+        cross_product = (x - _ARBITRARY_POINT[0]) * slope_y - (y - _ARBITRARY_POINT[1]) * slope_x
         if not factor.gcd(cross_product).is_constant():
             raise NotIsolatedError
         for zero in find_common_roots(factor, cross_product):
-            is_singular = _value(along_x, zero).contains(0) and _value(along_y, zero).contains(0)
+            is_singular = _value(slope_x, zero).contains(0) and _value(slope_y, zero).contains(0)
             if not (is_singular and _Hessian(factor, zero).determinant > 0):
                 raise NotIsolatedError
             zeros.append(zero)
     return zeros
 
 
-def _is_among(root: CommonRoot, others: list[CommonRoot]) -> bool:
-    return any(root.x.overlaps(other.x) and root.y.overlaps(other.y) for other in others)
+def _is_among(root: CommonRoot, roots: list[CommonRoot]) -> bool:
+    return any(root.x.overlaps(other.x) and root.y.overlaps(other.y) for other in roots)
 
 
 def _index(potential: fmpq_mpoly, root: CommonRoot) -> int:
@@ -108,8 +108,8 @@ class _Hessian:
     """The second derivatives of a polynomial at a root, as intervals, and sums of the magnitudes of their terms."""
 
     def __init__(self, polynomial: fmpq_mpoly, root: CommonRoot) -> None:
-        along_x, along_y = polynomial.derivative("x"), polynomial.derivative("y")
-        entries = along_x.derivative("x"), along_x.derivative("y"), along_y.derivative("y")
+        slope_x, slope_y = polynomial.derivative("x"), polynomial.derivative("y")
+        entries = slope_x.derivative("x"), slope_x.derivative("y"), slope_y.derivative("y")
         self.xx, self.xy, self.yy = (_value(entry, root) for entry in entries)
         self._magnitudes = [float(_value(entry, root, magnitude=True)) for entry in entries]
         with ctx.workprec(_PRECISION):
@@ -124,13 +124,14 @@ class _Hessian:
             mean = (self.xx + self.yy) / 2
             distance = (((self.xx - self.yy) / 2) ** 2 + self.xy**2).sqrt()
             eigenvalue = self.determinant / (mean + distance if mean > 0 else mean - distance)
-            # Both vectors are parallel to the eigenvector. The longer vector has the smaller rounding error.
+            # Both vectors are parallel to the eigenvector. The longer vector has the smaller rounding error. Only magnitudes of
+            # its parts enter the bound.
             vectors = ((self.xy, eigenvalue - self.xx), (eigenvalue - self.yy, self.xy))
             vector = max(([abs(float(part)) for part in each] for each in vectors), key=lambda each: math.hypot(*each))
         length = math.hypot(*vector)
         u, v = (part / length for part in vector) if length else (1.0, 1.0)
         xx, xy, yy = self._magnitudes
-        return abs(float(eigenvalue)) <= _ROUNDING * (xx * u * u + 2.0 * xy * u * v + yy * v * v)
+        return abs(float(eigenvalue)) <= _COEFFICIENT_ERROR * (xx * u * u + 2.0 * xy * u * v + yy * v * v)
 
 
 def _value(polynomial: fmpq_mpoly, root: CommonRoot, *, magnitude: bool = False) -> arb:

@@ -14,30 +14,30 @@ from typing import Any
 import numpy as np
 
 from engine.systems.forms.expression_form import Form
-from engine.systems.forms.form import NO_POINTS, DescentError, Velocity
+from engine.systems.forms.form import NO_POINTS, DescentError, Flow
 
 # Distance from the saddle at which a descent starts, in units of the distance to the nearest other critical point.
 _START_DISTANCE = 1e-3
 # Distance from a critical point at which a descent ends, in units of the distance of the critical point nearest to the origin.
 _END_DISTANCE = 1e-4
 # Distance from the origin at which a descent counts as infinite, in units of the distance of the outermost critical point.
-_FAR = 10.0
+_INFINITE_DISTANCE = 10.0
 
 # Rise of V in a step of a descent above which the step has passed a curve where V is infinite, in units of the largest magnitude
 # of V at a critical point.
-_RISE = 1e-6
+_LARGEST_RISE = 1e-6
 
-# Length of a step below which a descent counts as at rest, in units of the distance of the nearest critical point.
-_AT_REST = 1e-13
+# Length of a step below which a descent has come to rest, in units of the distance of the nearest critical point.
+_REST_STEP = 1e-13
 
 # Relative error of a step.
 _RELATIVE_ERROR = 1e-9
-# Length of the first step, in units of the distance of the start from the saddle.
-_FIRST_MOVE = 1e-6
-# Limit on the steps of all descents of a potential. So many steps take some seconds. Most potentials need about 1 000 steps; of
-# 600 wells, one needed 17 000.
+# Length of the first step, in units of the distance of the start of the descent from the saddle.
+_FIRST_STEP = 1e-6
+# Limit on the steps of all descents of a potential. This many steps take a few seconds. Most potentials need about 1 000 steps;
+# of 600 wells, one needed 17 000.
 _MOST_STEPS = 20_000
-# Limit on the steps of a method along a line. Most lines need 200 steps. Lines through long narrow valleys need about 2 000.
+# Limit on the steps of one solver along a line. Most lines need 200 steps. Lines through long narrow valleys need about 2 000.
 _MOST_STEPS_ALONG_LINE = 5_000
 
 
@@ -72,7 +72,7 @@ def leads_out_of_well(form: Form, points: np.ndarray, indices: np.ndarray, poles
 
 
 def find_maxima_beside(form: Form, points: np.ndarray, indices: np.ndarray, saddles: np.ndarray) -> np.ndarray:
-    """Return whether a line of steepest ascent from each saddle ends at each critical point, of shape (m, n).
+    """Return, for each saddle and each critical point, whether a line of steepest ascent from the saddle ends there; (m, n).
 
     Parameters
     ----------
@@ -96,19 +96,19 @@ def find_maxima_beside(form: Form, points: np.ndarray, indices: np.ndarray, sadd
 
 
 class _Descent:
-    """Lines of steepest descent of sign · V from the saddles; with a sign of −1, they are lines of steepest ascent of V."""
+    """Lines of steepest descent of sign · V from saddles; with a sign of −1, they are lines of steepest ascent of V."""
 
     def __init__(self, form: Form, sign: float, points: np.ndarray, is_saddle: np.ndarray) -> None:
         self.form, self.sign, self.points, self.is_saddle = form, sign, points, is_saddle
         distance = np.hypot(*points.T)
         self.length = float(distance[distance > 0.0].min())
-        self.flow = form.downhill(self.length, sign)
-        self.far = _FAR * float(distance.max())
+        self.flow = form.descent_flow(self.length, sign)
+        self.infinite_distance = _INFINITE_DISTANCE * float(distance.max())
         entries = np.array([np.broadcast_to(sign * entry, len(points)) for entry in form.hessian(*points.T)])
         hessians = np.moveaxis(np.nan_to_num(entries), 0, -1)
         self.unstable_directions = [np.linalg.eigh([[a, b], [b, c]])[1][:, 0] for a, b, c in hessians]
         values = np.abs(form.value(*points.T))
-        self.largest_rise = _RISE * float(values.max(where=np.isfinite(values), initial=0.0))
+        self.largest_rise = _LARGEST_RISE * float(values.max(where=np.isfinite(values), initial=0.0))
         self.steps_left = _MOST_STEPS
 
     def find_ends(self, saddle: int, side: float) -> set[int]:
@@ -134,11 +134,11 @@ class _Descent:
         # LSODA may not detect that a long narrow valley needs an implicit method. Radau is implicit, but takes ten times as long,
         # and needs a flow of constant speed: after a very slow start, the steps of Radau would be shorter than the rounding error
         # of the time.
-        for method, flow in ((LSODA, self.flow), (Radau, self._steady_flow)):
+        for solver_class, flow in ((LSODA, self.flow), (Radau, self._steady_flow)):
             with warnings.catch_warnings():
                 # If LSODA fails, Radau is tried.
                 warnings.filterwarnings("ignore", "lsoda: ", UserWarning)
-                end = self._follow(method, flow, saddle, side)
+                end = self._follow(solver_class, flow, saddle, side)
             if end is not None:
                 return end
         x, y = self.points[saddle]
@@ -149,37 +149,37 @@ class _Descent:
         velocity = self.flow(time, place)
         return velocity / np.hypot(*velocity)
 
-    def _follow(self, method: Any, flow: Velocity, saddle: int, side: float) -> int | None:
-        """Descend along a flow by one of SciPy's methods, and return the result of `_descend`; None if the end is not reached."""
-        others = np.delete(np.arange(len(self.points)), saddle)
-        distance = _START_DISTANCE * self._distances(self.points[saddle])[others].min()
+    def _follow(self, solver_class: Any, flow: Flow, saddle: int, side: float) -> int | None:
+        """Descend along a flow with one of SciPy's solvers, and return the result of `_descend`; None if no end is reached."""
+        other_points = np.delete(np.arange(len(self.points)), saddle)
+        distance = _START_DISTANCE * self._distances(self.points[saddle])[other_points].min()
         start = self.points[saddle] + side * distance * self.unstable_directions[saddle]
         # There is no final time, because a descent in a flat valley can take arbitrarily long.
         tolerances = {"rtol": _RELATIVE_ERROR, "atol": _RELATIVE_ERROR * self.length}
         # The first step chosen by LSODA can be too long for its corrector to converge.
-        first_step = _FIRST_MOVE * distance / np.hypot(*flow(0.0, start))
-        line = method(flow, 0.0, start, np.inf, first_step=first_step, **tolerances)
+        first_step = _FIRST_STEP * distance / np.hypot(*flow(0.0, start))
+        solver = solver_class(flow, 0.0, start, np.inf, first_step=first_step, **tolerances)
         steps_left_at_end = max(self.steps_left - _MOST_STEPS_ALONG_LINE, 0)
-        while self.steps_left > steps_left_at_end and line.status == "running":
+        while self.steps_left > steps_left_at_end and solver.status == "running":
             self.steps_left -= 1
-            previous_place = line.y
-            line.step()
-            if line.status == "failed":
+            previous_place = solver.y
+            solver.step()
+            if solver.status == "failed":
                 break
-            distances = self._distances(line.y)[others]
+            distances = self._distances(solver.y)[other_points]
             if distances.min() < _END_DISTANCE * self.length:
-                return int(others[np.argmin(distances)])
-            step_length = float(np.hypot(*(line.y - previous_place)))
+                return int(other_points[np.argmin(distances)])
+            step_length = float(np.hypot(*(solver.y - previous_place)))
             # A line at rest elsewhere is at a critical point outside the searched region. The list does not contain this point.
-            is_at_rest = step_length < _AT_REST * self.length
-            if np.hypot(*line.y) > self.far or is_at_rest or self._rises(previous_place, line.y):
+            is_at_rest = step_length < _REST_STEP * self.length
+            if np.hypot(*solver.y) > self.infinite_distance or is_at_rest or self._rises(previous_place, solver.y):
                 return -1
         return None
 
     def _rises(self, before: np.ndarray, after: np.ndarray) -> bool:
         """Return whether a step of a descent leads to a higher value, on the other side of a curve where V is infinite."""
         low, high = (self.sign * float(self.form.value(*place)) for place in (before, after))
-        return high - low > self.largest_rise + _RISE * abs(low)
+        return high - low > self.largest_rise + _LARGEST_RISE * abs(low)
 
     def _distances(self, place: np.ndarray) -> np.ndarray:
         return np.hypot(*(self.points - place).T)

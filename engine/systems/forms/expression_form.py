@@ -18,7 +18,7 @@ from engine.expressions.polynomials import Terms
 from engine.expressions.singularities import singular_bases
 from engine.expressions.text import write_expression
 from engine.foundations.arrays import read_only
-from engine.systems.forms.form import NO_POINTS, NotIsolatedError, UndecidedError, Velocity
+from engine.systems.forms.form import NO_POINTS, Flow, NotIsolatedError, UndecidedError
 from engine.systems.forms.interval_newton import Derivatives
 from engine.systems.forms.polynomial_form import PolynomialForm, checked_form
 from engine.systems.forms.stationary_points import find_stationary_points
@@ -28,22 +28,22 @@ MOST_CONVOLUTIONS = 120
 """Largest number of products and functions in the graph of gradient and Hessian. It limits their cost and compile time."""
 
 # Number of cached searches for zeros, of about 0.1 kB each.
-_ZEROS = 1024
+_CACHED_SEARCHES = 1024
 # Largest number of operations of a search for zeros, as a share of the limit for critical points.
-_EFFORT_FOR_ZEROS = 0.1
+_EFFORT = 0.1
 
-# Largest order of the rotations that are searched.
-_MOST_ROTATIONS = 12
-# Largest relative difference of V at points before and after a rotation that leaves V unchanged.
+# Highest order n of a rotational symmetry, by 2π/n, that is searched.
+_HIGHEST_ORDER = 12
+# Largest difference of V before and after a rotation that leaves V unchanged, relative to the largest V on the circle.
 _ROTATION_ERROR = 1e-11
 # Radii of the circles on which V is compared, dimensionless.
 _RADII = 2.0 ** np.arange(-6.0, 3.0)[:, None]
-# Angles of the points on each circle, in radians, without any symmetry.
+# Angles of the points on each circle, in radians. They have no symmetry of their own.
 _ANGLES = np.array([0.2, 0.9, 2.1, 3.3, 4.6, 5.9])
-# Values of an expression below this, relative to its curvature, count as 0.
-_ZERO = 1e-14
-# An angle in radians that is not 2π/n.
-_ANY_ROTATION = 1.0
+# Values of an expression up to this count as 0, relative to its curvature or to its largest term.
+_ZERO_TOLERANCE = 1e-14
+# An angle in radians that is not 2π/n: only V with all rotations is invariant.
+_ARBITRARY_ANGLE = 1.0
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ class ExpressionForm:
 
     @property
     def definition(self) -> Expression:
-        """The expression."""
+        """The expression, from which kernels are generated."""
         return self.expression
 
     @property
@@ -76,7 +76,7 @@ class ExpressionForm:
 
     @property
     def length(self) -> float:
-        """The distance of the nearest critical point from the origin, or 1 if there is none."""
+        """The distance of the nearest critical point from the origin, rounded to a power of 2; 1 if there is no such point."""
         distance = np.hypot(*self.find_critical_points()[:, :2].T)
         distance = distance[distance > 0.0]
         return nearest_power_of_two(float(distance.min())) if distance.size else 1.0
@@ -112,12 +112,13 @@ class ExpressionForm:
 
     @staticmethod
     def _evaluate(x: Any, y: Any, *expressions: Expression) -> list[Any]:
+        """Return the values of expressions at (x, y)."""
         graph, numbers = make_graph(expressions)
         # The index () makes numbers of arrays without axes.
         return [value[()] for value in evaluate(graph, numbers, x, y)]
 
     def force(self, axis: int) -> ExpressionForm:
-        """Return −∂V/∂x or −∂V/∂y."""
+        """Return −∂V/∂x (axis 0) or −∂V/∂y (axis 1)."""
         return ExpressionForm(linear_combination([(-1.0, derivative(self.expression, axis))]))
 
     def find_critical_points(self) -> np.ndarray:
@@ -128,13 +129,15 @@ class ExpressionForm:
     def _critical_points(self) -> np.ndarray:
         return find_stationary_points(Derivatives.of(self.expression))
 
-    def downhill(self, length: float, sign: float) -> Velocity:
-        """Return −sign ∇V with limited speed: at most the slope of the quadratic part at `length`; at a body, the mean slope."""
+    def descent_flow(self, length: float, sign: float) -> Flow:
+        """Return the flow −sign ∇V with limited speed.
+
+        The limit is the slope of the quadratic part of V at `length`; with a body at the origin, the mean slope at `length`.
+        """
         curvature = np.abs(self.hessian(0.0, 0.0)).max()
         if np.isfinite(curvature):
             largest_speed = length * curvature
         else:
-            # There is a body at the origin.
             slopes_around = self.gradient(length * np.cos(_ANGLES), length * np.sin(_ANGLES))
             largest_speed = float(np.hypot(*slopes_around).mean())
 
@@ -154,7 +157,7 @@ class ExpressionForm:
         return read_only(np.concatenate([NO_POINTS, *zeros]))
 
     def is_singular_on_curve(self, x: np.ndarray, y: np.ndarray) -> bool:
-        """Return whether a divisor, or the argument of a root or a logarithm, has both signs at the points."""
+        """Return whether a divisor, or the argument of a root or logarithm, has both signs at points, and so a curve of zeros."""
         signs = (np.sign(self._evaluate(x, y, base)[0]) for base in singular_bases(self.expression))
         return any(bool((each > 0.0).any() and (each < 0.0).any()) for each in signs)
 
@@ -163,7 +166,7 @@ class ExpressionForm:
         return ExpressionForm(linear_combination([(1.0, self.expression), (1.0, from_terms(terms))]))
 
     def scaled(self, length: float, energy: float) -> ExpressionForm:
-        """Return V(length x, length y) / energy."""
+        """Return V(length x, length y) / energy, in units of length and energy."""
         x, y = (linear_combination([(length, axis)]) for axis in (X, Y))
         return ExpressionForm(linear_combination([(1.0 / energy, substitute(self.expression, x, y))]))
 
@@ -188,19 +191,19 @@ class ExpressionForm:
 
     def count_rotations(self) -> int:
         """Return the largest n of the rotations 2π/n that leave values of V on circles unchanged; 0 for all rotations."""
-        if self._is_turned_by(_ANY_ROTATION):
+        if self._is_invariant(_ARBITRARY_ANGLE):
             return 0
-        return next(n for n in range(_MOST_ROTATIONS, 0, -1) if n == 1 or self._is_turned_by(2.0 * math.pi / n))
+        return next((n for n in range(_HIGHEST_ORDER, 1, -1) if self._is_invariant(2.0 * math.pi / n)), 1)
 
-    def _is_turned_by(self, angle: float) -> bool:
-        """Return whether a rotation leaves V unchanged where V is defined."""
+    def _is_invariant(self, angle: float) -> bool:
+        """Return whether a rotation by an angle in radians leaves V unchanged on the circles where V is defined."""
         value, rotated = (self.value(_RADII * np.cos(a), _RADII * np.sin(a)) for a in (_ANGLES, _ANGLES + angle))
         is_defined = np.isfinite(value).all(axis=1) & np.isfinite(rotated).all(axis=1)
         error = np.abs(value[is_defined] - rotated[is_defined]).max(axis=1)
         return bool(is_defined.any() and np.all(error <= _ROTATION_ERROR * np.abs(value[is_defined]).max(axis=1)))
 
     def limits_refusal(self) -> str | None:
-        """Return a refusal if V or its derivatives are too large.
+        """Return a sentence if V or its derivatives are too large; otherwise None.
 
         V is checked first, because derivatives can be a hundred times as large as V.
         """
@@ -217,7 +220,7 @@ class ExpressionForm:
 
 
 def _expansions_about_zeros(expression: Expression) -> dict[Expression, Expression]:
-    """Map singular bases to their expansions about their zero, if they are polynomials with one isolated zero off the origin."""
+    """Return expansions about their zero of the singular bases that are polynomials with one isolated zero off the origin."""
     expansions = {}
     for base in singular_bases(expression):
         terms, zeros = as_terms(base), _isolated_zeros(base)
@@ -246,23 +249,23 @@ def _expand_about(terms: Terms, a: float, b: float) -> Expression:
     # Magnitudes of the terms at the distance of the zero from the origin.
     magnitudes = {(k, m): abs(c) * math.hypot(a, b) ** (k + m) for (k, m), c in moved.items()}
     largest = max(magnitudes.values())
-    kept = {powers: c for powers, c in moved.items() if magnitudes[powers] > _ZERO * largest}
+    kept = {powers: c for powers, c in moved.items() if magnitudes[powers] > _ZERO_TOLERANCE * largest}
     x, y = (linear_combination([(1.0, axis), (-place, number(1.0))]) for axis, place in ((X, a), (Y, b)))
     return linear_combination((c, multiply(power(x, k), power(y, m))) for (k, m), c in kept.items())
 
 
-@lru_cache(maxsize=_ZEROS)
+@lru_cache(maxsize=_CACHED_SEARCHES)
 def _isolated_zeros(expression: Expression) -> np.ndarray:
-    """Return the stationary points (n, 2) at which an expression is 0 up to rounding; none if they form a curve."""
+    """Return the critical points (n, 2) at which an expression is 0 up to rounding; none if they form a curve or are unknown."""
     terms = as_terms(expression)
     form = ExpressionForm(expression) if terms is None else PolynomialForm(tuple((i, j, c) for (i, j), c in terms.items()))
     try:
         if isinstance(form, ExpressionForm):
-            points = find_stationary_points(Derivatives.of(form.expression), _EFFORT_FOR_ZEROS)[:, :2]
+            points = find_stationary_points(Derivatives.of(form.expression), _EFFORT)[:, :2]
         else:
             points = form.find_critical_points()[:, :2]
     except (NotIsolatedError, UndecidedError):
         return NO_POINTS
     curvature = np.abs(np.broadcast_arrays(*form.hessian(*points.T))).max(axis=0)
     scale = curvature * (1.0 + (points**2).sum(axis=1))
-    return points[np.abs(form.value(*points.T)) <= _ZERO * scale]
+    return points[np.abs(form.value(*points.T)) <= _ZERO_TOLERANCE * scale]

@@ -1,4 +1,4 @@
-"""What the two kinds of formulas, `PolynomialForm` and `ExpressionForm`, have in common."""
+"""Errors, types and the Hessian matrix for both kinds of formulas, `PolynomialForm` and `ExpressionForm`."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ class NotIsolatedError(ValueError):
 
 
 class UndecidedError(ValueError):
-    """The points were not found within the limit on the work."""
+    """It is not decided whether all critical points are known, for example because the limit on the work is reached."""
 
 
 class DescentError(ValueError):
     """The end of a line of steepest descent was not found."""
 
 
-Velocity = Callable[[float, np.ndarray], np.ndarray]
-"""The velocity of a line of steepest descent, of shape (2,), as a function of time and position."""
+Flow = Callable[[float, np.ndarray], np.ndarray]
+"""The flow along lines of steepest descent: its velocity, of shape (2,), as a function of time and position (2,)."""
 
 
 def hessian_matrix(form: Form, x: float, y: float) -> np.ndarray:

@@ -20,11 +20,11 @@ Program = tuple[Graph, tuple[float, ...]]
 _ENLARGEMENT = 1.3
 # Margin for the rounding errors of Krawczyk's operator, as a share of the box.
 _MARGIN = 1e-9
-# Number of steps of Newton's method that refine a point after the proof.
+# Number of steps of Newton's method that refine a point.
 _REFINING_STEPS = 8
 # Cost of operations on intervals in units of a sum or a product.
 _COSTS = {"sin": 10, "cos": 10, "exp": 4, "log": 4, "power": 4}
-# Samples of a box, in units of half its side. They are slightly outside the edges, because a wall may run along an edge.
+# Sample points of a box, in units of half its side. They are slightly outside the edges, because a wall may run along an edge.
 _SAMPLES = 1.1 * np.stack(np.meshgrid(*[np.linspace(-1.0, 1.0, 3)] * 2), axis=-1).reshape(-1, 2)
 
 
@@ -34,17 +34,17 @@ class Derivatives:
 
     Attributes
     ----------
-    slopes
+    value_and_slopes
         V, its derivatives along two directions that are not parallel, and its derivatives along further directions.
     jacobian
-        The derivatives along x and y of the first two derivatives in `slopes`.
+        The derivatives along x and y of the first two derivatives in `value_and_slopes`.
     curvatures
         V_xx, V_xy and V_yy.
     bases
         Divisors and arguments of roots and logarithms.
     """
 
-    slopes: Program
+    value_and_slopes: Program
     jacobian: Program
     curvatures: Program
     bases: Program
@@ -72,19 +72,19 @@ class Derivatives:
     @property
     def operations(self) -> int:
         """Number of operations on intervals for a box, in units of a sum."""
-        return sum(_COSTS.get(node.kind, 1) for graph, _ in (self.slopes, self.jacobian) for node in graph.nodes)
+        return sum(_COSTS.get(node.kind, 1) for graph, _ in (self.value_and_slopes, self.jacobian) for node in graph.nodes)
 
     def slopes_at(self, points: np.ndarray) -> np.ndarray:
-        """Return the first two derivatives of `slopes` at points (n, 2), of the same shape."""
-        return np.column_stack(evaluate(*self.slopes, *points.T)[1:3])
+        """Return the first two derivatives of V in `value_and_slopes` at points (n, 2), of the same shape."""
+        return np.column_stack(evaluate(*self.value_and_slopes, *points.T)[1:3])
 
     def jacobian_at(self, points: np.ndarray) -> np.ndarray:
         """Return the Jacobian matrices of `slopes_at` at points (n, 2), of shape (n, 2, 2)."""
         return np.column_stack(evaluate(*self.jacobian, *points.T)).reshape(-1, 2, 2)
 
-    def is_singular_in(self, centres: np.ndarray, half: float) -> np.ndarray:
+    def is_singular_in(self, centres: np.ndarray, half_side: float) -> np.ndarray:
         """Return whether a base has both signs, or is not defined, at nine points of each box, of shape (n,)."""
-        x, y = np.moveaxis(centres[:, None] + half * _SAMPLES, -1, 0)
+        x, y = np.moveaxis(centres[:, None] + half_side * _SAMPLES, -1, 0)
         is_singular = np.zeros(len(centres), bool)
         for base in evaluate(*self.bases, x, y):
             is_singular |= np.isnan(base).any(axis=1) | ((base < 0.0).any(axis=1) & (base > 0.0).any(axis=1))
@@ -96,44 +96,44 @@ class Derivatives:
         return np.column_stack([vxx, vxy, vxy, vyy]).reshape(-1, 2, 2)
 
 
-def box(centres: np.ndarray, half: float) -> tuple[Interval, Interval]:
-    """Return the x and y intervals of squares, given by their centres (n, 2) and half a side."""
-    x, y = (Interval(centre - half, centre + half) for centre in centres.T)
+def box_intervals(centres: np.ndarray, half_side: float) -> tuple[Interval, Interval]:
+    """Return the x and y intervals of square boxes, given by their centres (n, 2) and half a side."""
+    x, y = (Interval(centre - half_side, centre + half_side) for centre in centres.T)
     return x, y
 
 
-def excludes_zero(slopes: Enclosure) -> np.ndarray:
+def excludes_zero(value_and_slopes: Enclosure) -> np.ndarray:
     """Return, for each box, whether at least one derivative vanishes nowhere in the box, of shape (n,)."""
-    # The first value is V itself.
-    return np.any([each.excludes_zero() for each in slopes.values[1:]], axis=0)
+    _value, *slopes = value_and_slopes.values
+    return np.any([slope.excludes_zero() for slope in slopes], axis=0)
 
 
-def solve(derivatives: Derivatives, centres: np.ndarray, half: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return the points (m, 2) of boxes with exactly one point, and flags (n,) of boxes proved to have one point or none.
+def solve_boxes(derivatives: Derivatives, centres: np.ndarray, half_side: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return the points (m, 2) of boxes with exactly one point, and whether each box (n,) is proved to have one point or none.
 
     The operator of Krawczyk maps a box c ± h to K = c − Y f + (I − Y J)(± h). Here, f are the two derivatives at c, J is their
     Jacobian matrix on the box, and Y is the inverse of the Jacobian matrix at c. All critical points of the box are in K. If K is
     inside the box, the box has exactly one critical point.
     """
-    jacobian = enclose(*derivatives.jacobian, *box(centres, _ENLARGEMENT * half))
-    slopes = enclose(*derivatives.slopes, *box(centres, 0.0))
+    jacobian = enclose(*derivatives.jacobian, *box_intervals(centres, _ENLARGEMENT * half_side))
+    centre_values = enclose(*derivatives.value_and_slopes, *box_intervals(centres, 0.0))
     with np.errstate(all="ignore"):
-        middle, spread = (each.reshape(-1, 2, 2) for each in _middle_and_spread(jacobian.values))
-        slope, error = _middle_and_spread(slopes.values[1:3])
+        midpoint, radius = (each.reshape(-1, 2, 2) for each in _midpoint_and_radius(jacobian.values))
+        slope, error = _midpoint_and_radius(centre_values.values[1:3])
         inverse = _inverse(derivatives.jacobian_at(centres))
         step = -np.einsum("nij,nj->ni", inverse, slope)
         # Bounds of |I − Y J|, and half the sides of K.
-        deviation = np.abs(np.eye(2) - inverse @ middle) + np.abs(inverse) @ spread
-        reach = _ENLARGEMENT * half * deviation.sum(axis=2) + np.einsum("nij,nj->ni", np.abs(inverse), error)
-        reach = reach * (1.0 + _MARGIN) + _MARGIN * half
-        is_known = jacobian.defined & slopes.defined & np.isfinite(step + reach).all(axis=1)
-        has_one = is_known & (np.abs(step) + reach < _ENLARGEMENT * half).all(axis=1)
-        is_empty = is_known & (np.abs(step) - reach > half).any(axis=1)
-    return refined(derivatives, (centres + step)[has_one]), has_one | is_empty
+        deviation = np.abs(np.eye(2) - inverse @ midpoint) + np.abs(inverse) @ radius
+        reach = _ENLARGEMENT * half_side * deviation.sum(axis=2) + np.einsum("nij,nj->ni", np.abs(inverse), error)
+        reach = reach * (1.0 + _MARGIN) + _MARGIN * half_side
+        is_known = jacobian.defined_everywhere & centre_values.defined_everywhere & np.isfinite(step + reach).all(axis=1)
+        has_one = is_known & (np.abs(step) + reach < _ENLARGEMENT * half_side).all(axis=1)
+        is_empty = is_known & (np.abs(step) - reach > half_side).any(axis=1)
+    return refine(derivatives, (centres + step)[has_one]), has_one | is_empty
 
 
-def _middle_and_spread(values: list[Interval]) -> tuple[np.ndarray, np.ndarray]:
-    """Return the middles of k intervals and half their lengths, each of shape (n, k)."""
+def _midpoint_and_radius(values: list[Interval]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the midpoints of k intervals and half their lengths, each of shape (n, k)."""
     low, high = np.column_stack([each.low for each in values]), np.column_stack([each.high for each in values])
     return 0.5 * (low + high), 0.5 * (high - low)
 
@@ -146,8 +146,8 @@ def _inverse(matrices: np.ndarray) -> np.ndarray:
     return adjugate / (a * d - b * c)[:, None, None] / magnitude
 
 
-def refined(derivatives: Derivatives, points: np.ndarray) -> np.ndarray:
-    """Improve points (n, 2) by some steps of Newton's method."""
+def refine(derivatives: Derivatives, points: np.ndarray) -> np.ndarray:
+    """Improve points (n, 2) by a fixed number of steps of Newton's method."""
     for _ in range(_REFINING_STEPS):
         points = points - newton_step(derivatives, points)
     return points

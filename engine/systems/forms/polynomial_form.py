@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from math import comb
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -23,7 +23,7 @@ from engine.expressions.polynomials import (
 )
 from engine.foundations.validation import LARGEST_COEFFICIENT, checked_count, checked_number, short_repr
 from engine.systems.forms.critical_points import find_critical_points
-from engine.systems.forms.form import NO_POINTS, Velocity
+from engine.systems.forms.form import NO_POINTS, Flow
 
 MOST_TERMS = 60
 """Largest number of terms of a potential after expansion."""
@@ -31,7 +31,8 @@ MOST_TERMS = 60
 COEFFICIENT_RANGE = (1e-9, 1e9)
 """Smallest and largest magnitude of a coefficient of a formula."""
 
-# Smallest coefficient, as a share of the largest. Smaller coefficients have no effect in double precision.
+# Smallest coefficient, as a share of the largest, in units of `PolynomialForm.length`. Smaller coefficients have no effect in
+# double precision.
 _SMALLEST_RATIO = 1e-18
 # Share of the largest coefficient up to which a coefficient counts as a rounding error of 0. After a shift of the origin, the
 # largest coefficient of V is meant; in `_complex_terms`, that of the same degree.
@@ -44,9 +45,12 @@ class PolynomialForm:
 
     terms: tuple[tuple[int, int, float], ...]
 
+    singular_points: ClassVar = NO_POINTS
+    """No points, because a polynomial has no singular points."""
+
     @property
     def definition(self) -> tuple[tuple[int, int, float], ...]:
-        """The terms."""
+        """The terms, from which kernels are generated."""
         return self.terms
 
     @property
@@ -112,38 +116,33 @@ class PolynomialForm:
         return self.derivative(1, 0), self.derivative(0, 1)
 
     def force(self, axis: int) -> PolynomialForm:
-        """Return −∂V/∂x or −∂V/∂y."""
+        """Return −∂V/∂x (axis 0) or −∂V/∂y (axis 1)."""
         return PolynomialForm(tuple((i, j, -c) for (i, j), c in self.slopes[axis].items()))
 
     def find_critical_points(self) -> np.ndarray:
         """Find all critical points and their indices, of shape (n, 3); see `engine.systems.forms.critical_points`."""
         return find_critical_points(self.coefficients)
 
-    def downhill(self, length: float, sign: float) -> Velocity:
-        """Return −sign ∇V, slowed beyond `length`, because a line would reach infinity in a finite time."""
+    def descent_flow(self, length: float, sign: float) -> Flow:
+        """Return the flow −sign ∇V, slowed beyond `length`, because a line would reach infinity in a finite time."""
         highest = max(map(degree, self.slopes))
-        table = np.zeros((2, highest + 1, highest + 1))
+        coefficients = np.zeros((2, highest + 1, highest + 1))
         for axis, terms in enumerate(self.slopes):
             for (i, j), c in terms.items():
-                table[axis, i, j] = -sign * c
+                coefficients[axis, i, j] = -sign * c
         # Rows 1, x, x, … and 1, y, y, …, whose cumulative products are the powers.
         factors = np.ones((2, highest + 1))
 
         def velocity(_time: float, place: np.ndarray) -> np.ndarray:
             factors[:, 1:] = place[:, None]
             powers_of_x, powers_of_y = np.multiply.accumulate(factors, axis=1)
-            downhill = table @ powers_of_y @ powers_of_x
-            return downhill / (1.0 + (np.hypot(*place) / length) ** (highest - 1))
+            descent = coefficients @ powers_of_y @ powers_of_x
+            return descent / (1.0 + (np.hypot(*place) / length) ** (highest - 1))
 
         return velocity
 
-    @property
-    def singular_points(self) -> np.ndarray:
-        """Return no points: a polynomial has no singular points."""
-        return NO_POINTS
-
     def is_singular_on_curve(self, _x: np.ndarray, _y: np.ndarray) -> bool:
-        """Return False: a polynomial has no singular points."""
+        """Return False, because a polynomial has no singular points."""
         return False
 
     def plus(self, terms: Terms) -> PolynomialForm:
@@ -152,7 +151,7 @@ class PolynomialForm:
         return checked_form(tuple((i, j, c) for (i, j), c in total.items() if c))
 
     def scaled(self, length: float, energy: float) -> PolynomialForm:
-        """Return V(length x, length y) / energy."""
+        """Return V(length x, length y) / energy, in units of length and energy."""
         # `checked_form` is not used, because the legal range of coefficients applies to the units of the potential.
         return PolynomialForm(tuple((i, j, c * length ** (i + j) / energy) for i, j, c in self.terms))
 
@@ -190,7 +189,7 @@ class PolynomialForm:
         return {(a, b): c for (a, b), c in terms.items() if abs(c) > _ZERO_COEFFICIENT * largest[a + b]}
 
     def limits_refusal(self) -> str | None:
-        """Return a refusal if the degree, the number of terms or the range of coefficients is too large."""
+        """Return a sentence if the degree, the number of terms or the range of coefficients is too large; otherwise None."""
         highest = degree(self.coefficients)
         if highest > HIGHEST_DEGREE:
             return f"V has degree {highest}; the highest allowed degree is {HIGHEST_DEGREE}."
@@ -216,8 +215,8 @@ def checked_form(terms: Any) -> PolynomialForm:
 
 
 def _checked_term(i: Any, j: Any, c: Any) -> tuple[int, int, float]:
-    power_x, power_y = (checked_count(f"terms: exponent of {axis}", n, 0, HIGHEST_DEGREE) for axis, n in (("x", i), ("y", j)))
-    return power_x, power_y, checked_number("terms: coefficient", c, largest=LARGEST_COEFFICIENT)
+    x_power, y_power = (checked_count(f"terms: exponent of {axis}", n, 0, HIGHEST_DEGREE) for axis, n in (("x", i), ("y", j)))
+    return x_power, y_power, checked_number("terms: coefficient", c, largest=LARGEST_COEFFICIENT)
 
 
 def _parameter_factor(i: int, j: int, omega_1: float, omega_2: float, epsilon: float) -> float:

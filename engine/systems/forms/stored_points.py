@@ -1,4 +1,4 @@
-"""Points of a potential, stored on disk beside the compiled kernels. Finding them needs SciPy, which loads slowly."""
+"""Points of a potential, stored on disk beside the compiled kernels, because a search takes time and SciPy loads slowly."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def stored_points(kind: str, form: object, find: Callable[[], np.ndarray]) -> np
     kind
         The kind of points, used in the name of the file.
     form
-        The object on which the result depends. Its `repr` identifies the object.
+        The object on which the result depends. Equal results of `repr` stand for equal objects.
     find
         Computes the array of numbers or flags. Errors are raised and not stored.
     """

@@ -23,7 +23,6 @@ from engine.expressions.exact_polynomials import RING, TooLargeError, exact_cons
 from engine.systems.formulas.formula_tokens import (
     ALLOWED,
     BASE_KINDS,
-    FROM_SUPERSCRIPT,
     OPERATORS,
     SIGNS,
     FormulaError,
@@ -33,7 +32,7 @@ from engine.systems.formulas.formula_tokens import (
 )
 from engine.systems.formulas.formula_values import (
     LARGEST_EXPONENT,
-    NAMES,
+    NAMED_FUNCTIONS,
     FormulaValue,
     add,
     constant_of,
@@ -55,7 +54,15 @@ def _is_r(token: Token) -> bool:
 
 
 class Parser:
-    """Recursive descent over the tokens of a text. Each `_parse_…` method handles one rule of the grammar."""
+    """Recursive descent over the tokens of a text.
+
+    Parameters
+    ----------
+    text
+        A formula without clauses.
+    values
+        Values of letters by name; a letter without a value stands for 1.
+    """
 
     def __init__(self, text: str, values: Mapping[str, Fraction]) -> None:
         self.tokens = tokenize(text)
@@ -86,7 +93,7 @@ class Parser:
     def _parse_product(self) -> FormulaValue:
         value = self._parse_factor()
         while self.token.kind in ("operator", *BASE_KINDS):
-            # Without an operator, the first token belongs to the right factor.
+            # Without an operator, the first token belongs to the factor on the right.
             first_token, previous_token = self.token, self.tokens[self.index - 1]
             if first_token.kind == "operator":
                 self._next_token()
@@ -127,22 +134,22 @@ class Parser:
         mark = self._next_token()
         if mark.kind == "power":
             position = self.token.position
-            exponent = self._parse_number_of_exponent()
+            exponent = self._parse_exponent_value()
         else:
             position = mark.position
-            exponent = Fraction(mark.text.translate(FROM_SUPERSCRIPT))
+            exponent = read_number(mark)
         if abs(exponent) > LARGEST_EXPONENT:
             raise FormulaError(position, f"an exponent must be a number from {-LARGEST_EXPONENT} to {LARGEST_EXPONENT}")
         if self.token.kind in ("power", "superscript"):
             raise FormulaError(self.token.position, "a power of a power needs brackets, as in (x^2)^3")
         return exponent
 
-    def _parse_number_of_exponent(self) -> Fraction:
+    def _parse_exponent_value(self) -> Fraction:
         is_negative, token = self._parse_signs(), self.token
         if token.kind not in (*_NUMBER_KINDS, "letter", "open", "superscript"):
             raise FormulaError(token.position, f"an exponent must be a number from {-LARGEST_EXPONENT} to {LARGEST_EXPONENT}")
         if token.kind == "superscript":
-            value: FormulaValue = exact_constant(Fraction(self._next_token().text.translate(FROM_SUPERSCRIPT)))
+            value: FormulaValue = exact_constant(read_number(self._next_token()))
         else:
             value = self._parse_base()
         exponent = constant_of(value)
@@ -159,8 +166,10 @@ class Parser:
             return self._parse_brackets(token)
         if token.kind in ("function", "root"):
             return self._parse_function(token)
+        if token.kind == "letter":
+            return exact_constant(self.values.get(token.text, Fraction(1)))
         if token.kind != "name":
-            return exact_constant(self.values.get(token.text, Fraction(1)) if token.kind == "letter" else read_number(token))
+            return exact_constant(read_number(token))
         x, y = RING.gens()
         # The value of r is r², see `_parse_power`.
         return {"x": x, "y": y, "r": x * x + y * y}[token.text]
@@ -176,7 +185,7 @@ class Parser:
             if self.token.kind != "open":
                 raise FormulaError(self.token.position, f"{token.text} needs its argument in brackets, as in {token.text}(x)")
             argument = self._parse_brackets(self._next_token())
-        return self._apply(token, NAMES["sqrt" if token.kind == "root" else token.text], argument)
+        return self._apply(token, NAMED_FUNCTIONS["sqrt" if token.kind == "root" else token.text], argument)
 
     def _parse_brackets(self, opening: Token) -> FormulaValue:
         value = self._parse_nested(opening, self._parse_sum)
@@ -198,7 +207,7 @@ class Parser:
 
     @staticmethod
     def _apply[*Operands](token: Token, operation: Callable[[*Operands], FormulaValue], *operands: *Operands) -> FormulaValue:
-        """Return the result of an operation; raise an error at the position of `token` if the result is too large or not real."""
+        """Return the result of an operation; FormulaError at the position of `token` if the result is too large or not real."""
         try:
             return operation(*operands)
         except TooLargeError as error:

@@ -20,11 +20,11 @@ from engine.expressions.nodes import Expression
 from engine.expressions.polynomials import Powers
 from engine.expressions.text import monomial
 from engine.foundations.validation import checked_between, checks_types
-from engine.systems.forms.expression_form import as_form
+from engine.systems.forms.expression_form import Form, as_form
 from engine.systems.forms.polynomial_form import COEFFICIENT_RANGE, MOST_TERMS
 from engine.systems.formulas.formula_grammar import Parser
 from engine.systems.formulas.formula_tokens import FormulaError, tokenize
-from engine.systems.formulas.formula_values import constant_of
+from engine.systems.formulas.formula_values import FormulaValue, constant_of
 from engine.systems.formulas.formula_writer import by_degree, write_form
 from engine.systems.formulas.outcome_clauses import Clauses, Part, split_clauses
 from engine.systems.outcomes import end_kinds
@@ -106,27 +106,31 @@ def parse_formula(text: str, name: str | None = None, parameters: Mapping[str, f
         raise FormulaError(LONGEST_TEXT, f"the text has {len(text)} characters; at most {LONGEST_TEXT} characters are allowed")
     clauses = split_clauses(text)
     values = _exact_values(_letters_of(clauses), parameters or {})
-    value = Parser(clauses.formula, values).parse()
+    form = _make_form(Parser(clauses.formula, values).parse())
+    evaluate_number = partial(_evaluate_number, values=values)
+    ends = [clause.evaluate(evaluate_number) for clause in clauses.ends]
+    potential = Potential(name or write_form(form), form, ends=ends, mass=clauses.find_mass(evaluate_number))
+    if clauses.well is not None:
+        potential = potential.at_minimum(*map(evaluate_number, clauses.well))
+    return replace(potential, exit_names=clauses.exits) if clauses.exits else potential
+
+
+def _make_form(value: FormulaValue) -> Form:
+    """Return the form of V; FormulaError if V exceeds a limit."""
     if isinstance(value, Expression):
         form = as_form(value)
-        # Check the size of the derivatives, which all further steps need.
+        # All further steps need the derivatives, whose size is limited.
         if (problem := form.limits_refusal()) is not None:
             raise FormulaError(0, problem)
-    else:
-        expanded = exact_terms(value)
-        _check_expanded(expanded)
-        form = as_form(tuple((i, j, float(expanded[i, j])) for i, j in sorted(expanded, key=by_degree)))
-    number_of = partial(_number_of, values=values)
-    ends = [clause.evaluate(number_of) for clause in clauses.ends]
-    potential = Potential(name or write_form(form), form, ends=ends, mass=clauses.find_mass(number_of))
-    if clauses.well is not None:
-        potential = potential.at_minimum(*map(number_of, clauses.well))
-    return replace(potential, exit_names=clauses.exits) if clauses.exits else potential
+        return form
+    expanded = exact_terms(value)
+    _check_expanded(expanded)
+    return as_form(tuple((i, j, float(expanded[i, j])) for i, j in sorted(expanded, key=by_degree)))
 
 
 @lru_cache(maxsize=64)
 def formula_letters(text: str) -> tuple[str, ...]:
-    """Return the letters of a formula and its clauses in the order of the text; FormulaError for an unknown character."""
+    """Return the letters of a formula, then those of its clauses; FormulaError for an unknown character or too many letters."""
     return _letters_of(split_clauses(text))
 
 
@@ -142,8 +146,8 @@ def _letters_of(clauses: Clauses) -> tuple[str, ...]:
     return tuple(letters)
 
 
-def _number_of(part: Part, values: Mapping[str, Fraction]) -> float:
-    """Return the value of a number in a clause; FormulaError if the text is not a number."""
+def _evaluate_number(part: Part, values: Mapping[str, Fraction]) -> float:
+    """Return the value of a place, a radius or a mass in a clause; FormulaError if the text is not a number."""
     try:
         number = constant_of(Parser(part.text, values).parse())
     except FormulaError as error:
@@ -159,6 +163,7 @@ def checked_letter_value(name: str, value: float) -> float:
 
 
 def _exact_values(letters: tuple[str, ...], parameters: Mapping[str, float]) -> dict[str, Fraction]:
+    """Return the values of letters as the decimals that Python prints; ValueError for an unknown letter or illegal value."""
     for name in parameters:
         if name not in letters:
             legal = f"its letters are {', '.join(letters)}" if letters else "it has no letters"
@@ -167,6 +172,7 @@ def _exact_values(letters: tuple[str, ...], parameters: Mapping[str, float]) -> 
 
 
 def _check_expanded(expanded: Mapping[Powers, Fraction]) -> None:
+    """Raise FormulaError unless the terms of a polynomial depend on x or y, and their number and coefficients are legal."""
     if not any(i + j for i, j in expanded):
         raise FormulaError(0, "the expanded formula has neither x nor y; a potential must depend on at least one of them")
     if len(expanded) > MOST_TERMS:
@@ -187,10 +193,9 @@ def read_potential(attributes: Mapping[Any, Any]) -> Potential:
     name = str(attributes["potential"])
     matches = [_TERM.fullmatch(term) for term in text.split("; ")]
     if all(matches):
-        terms = tuple((int(match[2]), int(match[3]), float(match[1])) for match in matches if match is not None)
-        potential = Potential(name, terms)
+        form = as_form((int(match[2]), int(match[3]), float(match[1])) for match in matches if match is not None)
     else:
-        potential = parse_formula(text, name)
+        form = parse_formula(text).form
     kinds = [kind for kind in end_kinds() if kind.attribute in attributes]
     ends = [end for kind in kinds for end in kind.read(attributes[kind.attribute])]
     x, y = json.loads(attributes.get("origin", "[0.0, 0.0]"))
@@ -198,4 +203,4 @@ def read_potential(attributes: Mapping[Any, Any]) -> Potential:
     rotation = float(attributes.get("rotation", 0.0))
     mass = float(attributes.get("mass", 1.0))
     # The terms are those of the effective potential, so the rotation is not applied again.
-    return Potential(name, potential.form, rotation, origin=(x, y), ends=ends, exit_names=names, mass=mass)
+    return Potential(name, form, rotation, origin=(x, y), ends=ends, exit_names=names, mass=mass)

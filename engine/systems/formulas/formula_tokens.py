@@ -1,4 +1,4 @@
-"""Tokens of formulas: numbers, names, letters for coefficients, operators and brackets."""
+"""Tokens of formulas: numbers, names, letters for parameters, operators and brackets."""
 
 from __future__ import annotations
 
@@ -12,18 +12,21 @@ _LARGEST_DECIMAL_EXPONENT = 99
 # Largest number of bits of a numerator or denominator, about 210 digits, which keeps exact arithmetic fast.
 _MOST_NUMBER_BITS = 700
 
-FROM_SUPERSCRIPT = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
+_FROM_SUPERSCRIPT = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
 _FROM_SUBSCRIPT = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789")
+# Plain signs and operators by the characters that stand for them.
 SIGNS = {"+": "+", "-": "-", "−": "-", "–": "-"}
 OPERATORS = {"*": "*", "·": "*", "×": "*", "⋅": "*", "∗": "*", "/": "/", "÷": "/", "∕": "/", "⁄": "/"}
 BASE_KINDS = ("number", "fraction", "name", "letter", "open", "function", "root")
 """Kinds of tokens with which a factor can begin."""
+# A token. The kind of a token is the name of its group.
 _TOKEN = re.compile(
     r"(?P<function>sin|cos|exp|log|ln|sqrt)|(?P<number>(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)|(?P<name>[xyr])|(?P<letter>[A-DF-UW-Za-df-qs-wzΑ-Ωα-ω][0-9₀-₉]?)|(?P<superscript>⁻?[⁰¹²³⁴⁵⁶⁷⁸⁹]+)|(?P<power>\^|\*\*)"
     r"|(?P<fraction>[½⅓⅔¼¾⅕⅙⅛⅒])|(?P<sign>[+\-−–])|(?P<operator>[*·×⋅∗/÷∕⁄])|(?P<root>√)|(?P<open>\()|(?P<close>\))"
 )
 # Names that would otherwise be read as letters or products, such as momenta, velocities and time.
 _UNKNOWN = re.compile("tan|abs|pi|[pv][xy]|t")
+# "V =" or "V(x, y) =" in front of a formula.
 _PREFIX = re.compile(r"\s*V\s*(?:\(\s*x\s*,\s*y\s*\)\s*)?=")
 ALLOWED = "allowed are numbers, x, y, r, letters for coefficients, + − * / ^ √, exp, log, sin, cos and round brackets"
 """The elements of a formula."""
@@ -43,7 +46,17 @@ class FormulaError(ValueError):
 
 @dataclass(frozen=True)
 class Token:
-    """A piece of a formula. The text of a letter has a plain digit in place of a subscript."""
+    """A piece of a formula.
+
+    Attributes
+    ----------
+    kind
+        Name of the group of the pattern of tokens, such as "number" or "letter", or "end".
+    text
+        The characters. A letter has a plain digit in place of a subscript.
+    position
+        Index of the first character in the text.
+    """
 
     kind: str
     text: str
@@ -74,7 +87,9 @@ def tokenize(text: str) -> list[Token]:
 
 
 def read_number(token: Token) -> Fraction:
-    """Return the exact value of a number or a fraction; FormulaError if it has too many digits."""
+    """Return the exact value of a number, a fraction or a superscript; FormulaError if a number has too many digits."""
+    if token.kind == "superscript":
+        return Fraction(token.text.translate(_FROM_SUPERSCRIPT))
     if token.kind == "fraction":
         # The denominators of these characters are 2 to 10.
         return Fraction(unicodedata.numeric(token.text)).limit_denominator(10)

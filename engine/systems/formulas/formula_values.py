@@ -12,10 +12,10 @@ from fractions import Fraction
 from flint import fmpq_mpoly
 
 from engine.expressions.exact_polynomials import (
+    checked_size,
     exact_constant,
     exact_polynomial,
     exact_terms,
-    limited,
     limited_power,
     limited_product,
 )
@@ -40,10 +40,10 @@ LARGEST_EXPONENT = 12
 
 
 def add(one: FormulaValue, other: FormulaValue) -> FormulaValue:
-    """Return the sum of two values."""
+    """Return one + other."""
     if isinstance(one, Expression) or isinstance(other, Expression):
         return _simplify(linear_combination([(1.0, _as_expression(one)), (1.0, _as_expression(other))]))
-    return limited(one + other)
+    return checked_size(one + other)
 
 
 def negate(value: FormulaValue) -> FormulaValue:
@@ -52,7 +52,7 @@ def negate(value: FormulaValue) -> FormulaValue:
 
 
 def times(one: FormulaValue, other: FormulaValue) -> FormulaValue:
-    """Return the product of two values."""
+    """Return one · other."""
     if isinstance(one, Expression) or isinstance(other, Expression):
         return _simplify(multiply(_as_expression(one), _as_expression(other)))
     return limited_product(one, other)
@@ -115,7 +115,7 @@ def _simplify(value: Expression) -> FormulaValue:
     return value if terms is None else exact_polynomial({powers: Fraction(c) for powers, c in terms.items()})
 
 
-NAMES: dict[str, Callable[[FormulaValue], FormulaValue]] = {
+NAMED_FUNCTIONS: dict[str, Callable[[FormulaValue], FormulaValue]] = {
     **{name: lambda argument, name=name: apply_named(name, argument) for name in FUNCTIONS},  # type: ignore[misc]
     "ln": lambda argument: apply_named("log", argument),
     "sqrt": lambda argument: raise_to(argument, Fraction(1, 2)),

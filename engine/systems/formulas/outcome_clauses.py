@@ -18,6 +18,8 @@ from engine.systems.motion import MASS_RANGE
 from engine.systems.outcomes import End, end_kinds
 
 SEPARATOR = ";"
+"""The character between the formula and the clauses."""
+
 _EXITS = re.compile(r"\s*exits\s+(?P<names>\w[\w ]{0,20}(?:,\s*\w[\w ]{0,20}){0,11})$")
 _WELL = re.compile(r"\s*well\s*\((?P<x>[^,;]*),(?P<y>[^,;]*)\)\s*$")
 _MASSES = re.compile(r"\s*masses\s*\((?P<x>[^,;]*),(?P<y>[^,;]*)\)\s*$")
@@ -59,21 +61,21 @@ class Clauses(NamedTuple):
     @property
     def numbers(self) -> tuple[Part, ...]:
         """All places, radii and masses."""
-        of_ends = (part for end in self.ends for part in end.numbers.values())
-        return (*of_ends, *(self.well or ()), *(self.masses or ()))
+        end_numbers = (part for end in self.ends for part in end.numbers.values())
+        return (*end_numbers, *(self.well or ()), *(self.masses or ()))
 
     def find_mass(self, value_of: Callable[[Part], float]) -> float:
         """Return the mass of both directions, 1 without a clause; FormulaError if a mass is illegal, or the masses differ."""
         if self.masses is None:
             return 1.0
-        along_x, along_y = map(value_of, self.masses)
+        x_mass, y_mass = map(value_of, self.masses)
         position, (low, high) = self.masses[0].position, MASS_RANGE
-        if along_x != along_y:
+        if x_mass != y_mass:
             remedy = "for two masses write V(x/√m₁, y/√m₂), whose axes are √m₁ x and √m₂ y"
-            raise FormulaError(position, f"masses ({along_x:g}, {along_y:g}): both must be equal; {remedy}")
-        if not low <= along_x <= high:
-            raise FormulaError(position, f"masses ({along_x:g}, {along_y:g}): must be from {low:g} to {high:g}")
-        return along_x
+            raise FormulaError(position, f"masses ({x_mass:g}, {y_mass:g}): both must be equal; {remedy}")
+        if not low <= x_mass <= high:
+            raise FormulaError(position, f"masses ({x_mass:g}, {y_mass:g}): must be from {low:g} to {high:g}")
+        return x_mass
 
 
 def split_clauses(text: str) -> Clauses:
@@ -97,9 +99,9 @@ def split_clauses(text: str) -> Clauses:
             raise FormulaError(position, f"{clause.strip()!r} is not understood; allowed are {allowed}, {others}")
         position += len(clause) + 1
     for kind, count in Counter(end.kind for end in ends).items():
-        if count > kind.most:
+        if count > kind.most_clauses:
             raise FormulaError(
-                len(formula), f"the formula has {count} clauses of {kind.word!r}; at most {kind.most} can be given"
+                len(formula), f"the formula has {count} clauses of {kind.word!r}; at most {kind.most_clauses} can be given"
             )
     return Clauses(formula, tuple(ends), pairs.get(_WELL), pairs.get(_MASSES), tuple(exits))
 
@@ -114,6 +116,7 @@ def _end_clause(clause: str, position: int) -> EndClause | None:
 
 
 def _part(match: re.Match[str], key: str, position: int) -> Part:
+    """Return a named group of the match of a clause that begins at `position`."""
     return Part(match[key], position + match.start(key))
 
 

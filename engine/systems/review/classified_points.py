@@ -25,7 +25,7 @@ class PointKind(Enum):
 
 @dataclass(frozen=True)
 class CriticalPoint:
-    """A point (x, y) with ∇V = 0 and V = `energy`. `channel` is the number of the channel over this point, or 0."""
+    """A point (x, y) with ∇V = 0 and V = `energy`. `channel` is the number of the exit channel over this point; 0 without one."""
 
     x: float
     y: float
@@ -67,8 +67,8 @@ def minima_of(points: tuple[CriticalPoint, ...]) -> list[CriticalPoint]:
     return [point for point in points if point.kind is PointKind.MINIMUM]
 
 
-def other_well(potential: Potential, points: tuple[CriticalPoint, ...]) -> tuple[float, float] | None:
-    """Return the nearest minimum if the clause ``well`` can move the axes there; otherwise None.
+def find_new_origin(potential: Potential, points: tuple[CriticalPoint, ...]) -> tuple[float, float] | None:
+    """Return (x, y) of the nearest minimum if the clause ``well`` can move the origin of the axes there; otherwise None.
 
     Axes can be moved only once, and neither in a rotating frame nor with an escape radius.
     """

@@ -15,7 +15,7 @@ from engine.systems.catalogue.entry import EnergyRange
 from engine.systems.formulas.formula_writer import write_formula
 from engine.systems.merged_channels import name_channels
 from engine.systems.potential import Potential
-from engine.systems.review.classified_points import CriticalPoint, PointKind, other_well
+from engine.systems.review.classified_points import CriticalPoint, PointKind, find_new_origin
 from engine.systems.review.energy_ranges import energy_range
 from engine.systems.review.refusals import find_points_or_refusal
 from engine.systems.system import System
@@ -42,7 +42,7 @@ class PotentialReview(Result):
     escape_energy
         Energy of the lowest exit saddle; infinite if there is none.
     channels
-        Number of exits.
+        Number of exit channels over saddles.
     highest_energy
         The energy of the lowest maximum between two exits; infinite if there is none. Above it, both form one exit. Lyapunov
         orbits need not exist up to this energy, see `find_lyapunov_orbits`.
@@ -151,11 +151,12 @@ def review_potential(potential: Potential) -> PotentialReview:
         rotations=potential.form.count_rotations(),
         refusal=refusal,
         remarks=() if refusal else _remarks(potential, points),
-        well=other_well(potential, points),
+        well=find_new_origin(potential, points),
     )
 
 
 def _remarks(potential: Potential, points: tuple[CriticalPoint, ...]) -> tuple[str, ...]:
+    """Return the unusual properties of a potential that can be used, one sentence each."""
     remarks = [_SHIFT_REMARK.format(*potential.origin)] if any(potential.origin) else []
     if potential.escape_radius is not None:
         return tuple(remarks)

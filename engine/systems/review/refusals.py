@@ -8,8 +8,8 @@ from engine.systems.review.classified_points import (
     CriticalPoint,
     PointKind,
     classify_points,
+    find_new_origin,
     minima_of,
-    other_well,
     point_at_origin,
 )
 from engine.systems.review.hill_region import is_open_below, is_open_without_saddle
@@ -20,14 +20,14 @@ MOST_CHANNELS = 16
 
 
 def find_points_or_refusal(potential: Potential) -> tuple[tuple[CriticalPoint, ...], str | None]:
-    """Return the critical points, empty if unknown, and the reason why the potential cannot be used, None if it can."""
+    """Return the critical points (empty if unknown) and the reason why the potential cannot be used (None if it can)."""
     refusal = potential.form.limits_refusal() or singularity_refusal(potential)
     if refusal is not None:
         return (), refusal
     if potential.escape_radius is not None:
         return _known_points(potential), None
     try:
-        # Both statements follow lines of steepest descent or ascent, which may fail.
+        # Both statements need the ends of lines of steepest descent or ascent, which may not be found.
         points = classify_points(potential)
         _ = potential.well.channel_mergers
     except DescentError as error:
@@ -66,7 +66,7 @@ def _well_refusal(potential: Potential, points: tuple[CriticalPoint, ...]) -> st
         return f"{problem} Add quadratic terms that make the origin a minimum, or give an escape radius."
     place = f"({minima[0].x:.6g}, {minima[0].y:.6g})"
     subject = f"The nearest of {len(minima)} minima is" if len(minima) > 1 else "The only minimum is"
-    can_move = other_well(potential, points) is not None
+    can_move = find_new_origin(potential, points) is not None
     hint = f": with “; well {place}” after the formula, x and y count from there" if can_move else ""
     return f"{problem} {subject} at {place}{hint}."
 

@@ -12,7 +12,7 @@ from engine.systems.potential import Potential
 _SCANNED_RADII = np.geomspace(1e-3, 1.0, 60)
 # Angles of the sample points, in radians, away from the axes.
 _SCANNED_ANGLES = 0.1 + np.linspace(0.0, 2.0 * np.pi, 180, endpoint=False)
-# Number of potentials whose check is cached.
+# Number of potentials for which the check is cached.
 _CACHE_SIZE = 256
 
 
@@ -29,7 +29,7 @@ def check_defined(potential: Potential) -> None:
 def singularity_refusal(potential: Potential) -> str | None:
     """Return a sentence if orbits can reach a point where V is not defined; otherwise None.
 
-    Orbits do not reach points beyond the exits.
+    Without an escape radius, only the origin is tested, because orbits do not reach points beyond the exits.
     """
     if potential.escape_radius is None:
         return _origin_refusal(potential)
@@ -39,12 +39,12 @@ def singularity_refusal(potential: Potential) -> str | None:
     radius, angle = np.meshgrid(potential.escape_radius * _SCANNED_RADII, _SCANNED_ANGLES)
     x, y = radius * np.cos(angle), radius * np.sin(angle)
     is_defined = np.isfinite([potential.value(x, y), *potential.gradient(x, y)]).all(axis=0)
-    is_missing = ~is_defined & ~_is_beyond(potential, x, y)
+    is_refused = ~is_defined & ~_is_beyond(potential, x, y)
     if potential.form.is_singular_on_curve(x, y):
         return "V is not defined along a curve within the escape radius, where a divisor changes its sign."
-    if not is_missing.any():
+    if not is_refused.any():
         return None
-    return f"V is not defined at ({x[is_missing][0]:.6g}, {y[is_missing][0]:.6g}), which is within the escape radius."
+    return f"V is not defined at ({x[is_refused][0]:.6g}, {y[is_refused][0]:.6g}), which is within the escape radius."
 
 
 def _origin_refusal(potential: Potential) -> str | None:
@@ -60,5 +60,5 @@ def _origin_refusal(potential: Potential) -> str | None:
 
 def _is_beyond(potential: Potential, x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Return whether points are beyond an end that is not an exit over a saddle."""
-    # The row of zeros gives False without ends.
+    # Without ends, only this row is left, and the result is False.
     return np.any([np.zeros(x.shape, bool), *(end.contains(x, y) for end in potential.ends)], axis=0)

@@ -89,7 +89,7 @@ def test_an_orbit_opens_the_section_of_its_system_at_its_energy(
 ) -> None:
     session = begin(plane)
     session.state.add_start(start)
-    session.presenter.controls.open_plane.clicks += 1
+    session.presenter.controls.open_section.clicks += 1
     [(system, values)] = session.opened
     assert system == expected
     assert (values["plane"], values["energy"], values["starts"]) == (Plane.X_PX, energy, ((0.1, 0.0),))

@@ -133,16 +133,16 @@ def test_a_refused_text_stays_with_its_reason_and_its_points(session: Session, t
     assert points in session.panel.facts.object or points in session.panel.message.object
     assert not text or text not in session.panel.message.object or text == escape(text)
     assert session.panel.formula.value == text
-    assert session.panel.move.visible == (text == WELL_ELSEWHERE)
+    assert session.panel.use_well.visible == (text == WELL_ELSEWHERE)
     assert (session.panel.known.value, session.state.system.case) == (TYPED, "I")
 
 
 def test_a_well_elsewhere_can_be_used(session: Session) -> None:
-    assert not session.panel.move.visible
+    assert not session.panel.use_well.visible
     session.type(WELL_ELSEWHERE)
-    session.wait_for(lambda: session.panel.move.visible)
-    session.panel.move.clicks += 1
-    session.wait_for(lambda: session.state.system.case == TYPED and not session.panel.move.visible)
+    session.wait_for(lambda: session.panel.use_well.visible)
+    session.panel.use_well.clicks += 1
+    session.wait_for(lambda: session.state.system.case == TYPED and not session.panel.use_well.visible)
     assert session.panel.formula.value == f"{WELL_ELSEWHERE}; well (1, 0)"
     assert sorted(session.state.potential.terms) == sorted(CASES["I"].terms)
     assert "alert" not in session.panel.message.object
@@ -158,10 +158,10 @@ def test_messages_beside_a_refused_text_disappear_with_the_text(session: Session
     ]
     for act, exits in zip(leave, (2, 2, 4), strict=True):
         session.type(WELL_ELSEWHERE, enter=False)
-        session.wait_for(lambda: session.panel.move.visible)
+        session.wait_for(lambda: session.panel.use_well.visible)
         session.type(WELL_ELSEWHERE + " +", enter=False)
         session.wait_for_message("ends where")
-        assert (session.panel.facts.object, session.panel.move.visible) == ("", False)
+        assert (session.panel.facts.object, session.panel.use_well.visible) == ("", False)
         act()
         session.wait_for_message(f"{exits} exits")
         assert "<td>saddle</td>" in session.panel.facts.object

@@ -16,7 +16,7 @@ import pytest
 from app.session.explorer import Explorer
 from app.state.view import Analysis
 from app.views.maps.map_toolbar import Drag
-from app.views.panels.controls import LOCK
+from app.views.panels.controls import LOCK_SCALE
 from engine import Plane, compute_map
 from plots.layers.table import LAYERS
 from plots.pictures.image_columns import map_columns
@@ -72,8 +72,8 @@ def lock_and_unlock_colours(explorer: Explorer) -> None:
     parts = pn.Column(*explorer.controls.layout())
     [fold] = parts.select(lambda part: getattr(part, "label", "") == "▸ Quality and colours")
     fold.clicks += 1
-    [lock] = parts.select(lambda part: getattr(part, "options", []) == [LOCK])
-    for value in ([LOCK], []):
+    [lock] = parts.select(lambda part: getattr(part, "options", []) == [LOCK_SCALE])
+    for value in ([LOCK_SCALE], []):
         lock.param.update(value=value)
 
 

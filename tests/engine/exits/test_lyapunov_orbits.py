@@ -73,7 +73,7 @@ def test_a_strongly_curved_exit_is_found_up_to_twice_the_escape_energy() -> None
 def test_exit_curves_of_mirror_channels_are_exact_mirror_images_also_beyond_their_ends() -> None:
     # Each exit is asymmetric, so its two ends differ.
     potential = parse_formula("½(x² + y²) − 0.3x²y − x⁴/4")
-    assert potential.well.mirror_channels.tolist() == [0, 2, 1]
+    assert potential.well.mirror_fates.tolist() == [0, 2, 1]
     one, other = exit_curves(potential, 1.2 * potential.escape_energy)
     for x, y in np.random.default_rng(1).uniform(-2.0, 2.0, (100, 2)):
         assert exit_distance(x, y, one) == exit_distance(-x, y, other)

@@ -33,8 +33,8 @@ def test_all_values_in_a_box_lie_in_its_interval(text: str, size: float) -> None
         (values,) = evaluate(graph, numbers, *(low + share * (high - low)))
         known = np.isfinite(values)
         assert np.all((interval.low <= values)[known] & (values <= interval.high)[known])
-        assert not np.any(found.defined & ~known)
-        assert not np.any(found.nowhere & known)
+        assert not np.any(found.defined_everywhere & ~known)
+        assert not np.any(found.defined_nowhere & known)
 
 
 def test_intervals_shrink_with_the_box() -> None:

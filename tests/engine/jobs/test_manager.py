@@ -246,11 +246,11 @@ def test_all_but_the_first_frame_is_put_off_while_the_process_is_crowded() -> No
     jobs.prefer_first_frames(True)
     jobs.request(Job(show_two_frames, (clock, shown), queue=Queue.FIRST_FRAME), inbox.result, inbox.error)
     assert shown.wait(SECONDS)
-    assert (jobs.stats().calls_waiting, jobs.stats().computed) == (1, 0.0)
+    assert (jobs.stats().calls_waiting, jobs.stats().processor_time) == (1, 0.0)
     clock.now += CROWDED_REST_SECONDS
     jobs.prefer_first_frames(True)
     assert inbox.done.wait(SECONDS)
-    wait_until(lambda: jobs.stats().computed == 2.0)
+    wait_until(lambda: jobs.stats().processor_time == 2.0)
 
 
 def test_finished_job_leaves_no_reference_cycles() -> None:

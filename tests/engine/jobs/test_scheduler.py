@@ -75,7 +75,7 @@ def test_long_calls_leave_one_thread_free() -> None:
 
 
 def test_a_client_with_one_call_at_a_time_leaves_the_other_threads_to_others() -> None:
-    scheduler, release = FairScheduler(ThreadPoolExecutor(2), one_each=True), threading.Event()
+    scheduler, release = FairScheduler(ThreadPoolExecutor(2), one_call_per_client=True), threading.Event()
     hostile = [scheduler.executor("a", background).submit(release.wait, SECONDS) for _ in range(2)]
     assert scheduler.executor("b", background).submit(divmod, 7, 2).result(SECONDS) == (3, 1)
     assert scheduler.pending_calls == 1

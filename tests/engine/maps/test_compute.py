@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from engine import CASES, EscapeMap, Execution, Fate, MapSpec, Plane, compute_map
-from engine.maps.compute import LARGEST_RUN, BlockStack, row_blocks
+from engine.maps.compute import LARGEST_RUN, BlockwiseRun, row_blocks
 from engine.maps.result import PIXEL_ARRAYS
 from engine.maps.stages import run_stages
 
@@ -22,7 +22,7 @@ SPECS = [
 @pytest.mark.parametrize("spec", SPECS, ids=lambda spec: spec.plane.title)
 def test_map_computed_in_blocks_is_bit_identical(spec: MapSpec) -> None:
     shares: list[float] = []
-    work = BlockStack(spec.in_well_units(), 150)
+    work = BlockwiseRun(spec.in_well_units(), 150)
     run_stages(work, Execution(on_progress=shares.append))
     in_blocks, whole = work.result().restored(spec), compute_map(spec)
     assert in_blocks.complete
@@ -35,7 +35,7 @@ def test_map_computed_in_blocks_is_bit_identical(spec: MapSpec) -> None:
 
 def test_cancelled_blocks_hold_what_is_computed_so_far() -> None:
     cancel = threading.Event()
-    work = BlockStack(SPECS[0].in_well_units(), 150)
+    work = BlockwiseRun(SPECS[0].in_well_units(), 150)
     run_stages(work, Execution(cancel=cancel, on_progress=lambda _share: cancel.set()))
     result = work.result()
     assert not result.complete

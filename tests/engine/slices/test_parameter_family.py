@@ -52,4 +52,4 @@ def test_a_continued_potential_is_kept_apart_from_an_equal_one() -> None:
 
 def test_an_axis_along_which_exits_change_too_often_is_refused() -> None:
     with pytest.raises(ManyExitsError, match="choose a smaller range"):
-        ParameterFamily(THIRD_EXIT, most_found=3)
+        ParameterFamily(THIRD_EXIT, most_searches=3)

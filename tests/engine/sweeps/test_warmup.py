@@ -49,6 +49,6 @@ def test_the_question_whether_a_potential_is_ready_generates_no_code() -> None:
 
 
 def test_a_potential_beyond_the_limit_of_compiled_code_is_not_ready() -> None:
-    compiled_operations.most = 0
+    compiled_operations.limit = 0
     same_powers = Potential("refused", ((2, 0, 0.5), (0, 2, 0.5), (2, 1, 1.0), (0, 3, 0.7)))
     assert not is_ready_for_maps(same_powers)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from engine.systems.merged_channels import ChannelMerger, MergedExit, describe_channel, exit_numbers, merged_exits
+from engine.systems.merged_channels import ChannelMerger, MergedExit, exit_numbers, merged_exits, name_exit
 
 MERGERS = (ChannelMerger(0.3, 0.0, 0.0, (1, 3)), ChannelMerger(0.5, 0.0, 0.0, (3, 4)))
 RING = (*MERGERS, ChannelMerger(0.6, 0.0, 0.0, (2, 4)), ChannelMerger(0.7, 0.0, 0.0, (1, 2)))
@@ -36,4 +36,4 @@ def test_a_merged_exit_has_the_lowest_number_of_its_channels() -> None:
     ],
 )
 def test_names_of_merged_exits_tell_their_lowest_energy(channel: int, low: float, high: float, expected: str) -> None:
-    assert describe_channel(channel, MERGERS, low, high) == expected
+    assert name_exit(channel, MERGERS, low, high) == expected

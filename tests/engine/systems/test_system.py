@@ -39,6 +39,12 @@ def test_the_slider_contains_the_escape_energy_below_the_initial_energy(name: st
     assert energies.low < escape or POTENTIALS[name].escape_radius is not None
 
 
+@pytest.mark.parametrize("name", POTENTIALS)
+def test_a_step_of_the_slider_is_at_most_a_hundredth_of_its_range(name: str) -> None:
+    energies = review_system(System(name)).energies
+    assert 10.0**-energies.decimals <= 0.01 * (energies.high - energies.low)
+
+
 def test_the_formula_contains_the_parameters() -> None:
     assert System("III").formula_shown == CATALOGUE["III"].formula
     assert (

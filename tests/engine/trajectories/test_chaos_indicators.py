@@ -114,13 +114,21 @@ def test_sali_between_chaos_and_tori_is_undecided(island: Orbit, sali: float, ex
     assert conclusions(replace(island, sali=np.full_like(island.t, sali)))[0] is expected
 
 
-@pytest.mark.parametrize(("power", "expected"), [(1.0, Verdict.NO_SIGN), (1.8, Verdict.UNDECIDED), (2.1, Verdict.CHAOTIC)])
+@pytest.mark.parametrize(("power", "expected"), [(1.8, Verdict.UNDECIDED), (2.1, Verdict.CHAOTIC)])
 def test_growth_by_a_power_of_time_is_judged_by_the_power(island: Orbit, power: float, expected: Verdict) -> None:
     with np.errstate(divide="ignore", invalid="ignore"):
         exponent = power * np.log(island.t) / island.t
     verdict = evaluate_indicators(replace(island, lyapunov_exponent=exponent))[1]
     assert verdict.conclusion is expected
     assert verdict.value == exponent[-1]
+
+
+def test_oscillations_of_the_growth_do_not_decide(island: Orbit) -> None:
+    with np.errstate(divide="ignore", invalid="ignore"):
+        # Without the oscillation, the vector grows like t. At t/10 and t, the oscillation is at its lowest and its highest.
+        growth = np.log(island.t) + 0.8 * np.cos(50.0 * np.pi * island.t / island.t[-1])
+        oscillating = replace(island, lyapunov_exponent=growth / island.t)
+    assert conclusions(oscillating)[1] is Verdict.NO_SIGN
 
 
 def test_growth_that_turns_exponential_late_is_not_regular(island: Orbit) -> None:

@@ -12,9 +12,10 @@ from engine import CASES, Fate, Plane, classify_orbits, find_divergent_start, in
 from engine.results import DivergentStart
 
 T_MAX = 2000.0
-# Potential, plane, energy, x and ordinate of starts at different distances from the basin boundary. The second orbit is bounded.
+# Potential, plane, energy, x and ordinate of starts at different distances from the basin boundary. The first orbit escapes at
+# t = 1377, and the nearest divergent orbits later than t = 1000. The second orbit is bounded.
 STARTS = [
-    ("I", Plane.X_PX, 0.2, -0.2, 0.1),
+    ("I", Plane.X_PX, 0.15, -0.22, 0.07),
     ("III", Plane.X_Y, 0.5, 0.2, 0.3),
     ("II", Plane.X_PX, 0.22, 0.3, 0.05),
     ("II", Plane.X_H, (0.2, 0.4), -0.2, 0.25),

@@ -22,6 +22,6 @@ def test_numbers_at_the_limits_are_legal_and_others_are_refused(name: str) -> No
             FigureStyle(**options)
 
 
-@pytest.mark.parametrize(("width", "font_size", "columns"), [(8.5, 9.0, 1), (17.4, 9.0, 3), (17.4, 14.0, 2)])
-def test_panels_stand_beside_each_other_where_they_are_wide_enough(width: float, font_size: float, columns: int) -> None:
-    assert FigureStyle(width, font_size=font_size).columns(3) == columns
+@pytest.mark.parametrize(("style", "columns"), [(FigureStyle(), 3), (FigureStyle(8.5), 1), (FigureStyle(font_size=14.0), 2)])
+def test_panels_stand_beside_each_other_where_they_are_wide_enough(style: FigureStyle, columns: int) -> None:
+    assert style.columns(3) == columns

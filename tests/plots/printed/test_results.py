@@ -83,6 +83,15 @@ def test_paths_have_the_colours_of_their_exits() -> None:
     assert len(legend.get_texts()) == len(drawn)
 
 
+@pytest.mark.parametrize(
+    ("name", "scales"),
+    [("statistics", ("log", "linear")), ("decay laws", ("log", "log")), ("separation", ("linear", "log"))],
+)
+def test_axes_are_logarithmic_where_values_differ_by_factors(name: str, scales: tuple[str, str]) -> None:
+    axes = result_of(name).plot(Figure().subplots())
+    assert (axes.get_xscale(), axes.get_yscale()) == scales
+
+
 def test_the_survival_is_drawn_until_the_last_escape() -> None:
     laws = result_of("decay laws")
     assert isinstance(laws, DecayLaws)

@@ -36,10 +36,10 @@ def regions(view: BasinMeasuresView) -> list[str]:
 def test_the_measures_of_a_map_are_those_of_the_box(state: ViewState, view: BasinMeasuresView) -> None:
     state.box = Window(0.0, 0.1, 0.0, 0.1)
     assert regions(view) == ["box"]
-    assert view.whole.visible
+    assert view.count_whole.visible
     state.box = None
     assert regions(view) == ["whole view"]
-    assert not view.whole.visible
+    assert not view.count_whole.visible
 
 
 def test_numbers_have_their_errors_and_sentences_open_on_demand(view: BasinMeasuresView) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import panel as pn
 from bokeh.document import Document
 
-from app.views.components.notice import NAME, Notice, show_lasting_notice
+from app.views.components.notice import MODEL_NAME, Notice, show_lasting_notice
 
 
 def test_the_same_notice_twice_is_two_changes() -> None:
@@ -33,5 +33,5 @@ def test_the_server_finds_the_notice_in_a_document() -> None:
     show_lasting_notice(document, "restart")
     pn.Column(Notice().layout()).server_doc(document)
     show_lasting_notice(document, "<i>restart</i>")
-    assert "restart" in document.get_model_by_name(NAME).text
-    assert "<i>" not in document.get_model_by_name(NAME).text
+    assert "restart" in document.get_model_by_name(MODEL_NAME).text
+    assert "<i>" not in document.get_model_by_name(MODEL_NAME).text

@@ -9,12 +9,12 @@ import pytest
 from app.state.view import PICTURES, View
 from app.state.view_state import ViewState
 from app.views.components.plots import FigurePane
-from app.views.maps.map_plots import PICTURES_ALONE
+from app.views.maps.map_plots import PLAIN_PICTURES
 from app.views.maps.picture_grid import SHORT_TITLES, PictureGrid
 from plots.layers.table import LAYER_OF
 from tests.app.map_actions import make_maps
 
-ALWAYS = [*PICTURES_ALONE]
+ALWAYS = [*PLAIN_PICTURES]
 
 
 def grid(*on_demand: str, **values: Any) -> PictureGrid:

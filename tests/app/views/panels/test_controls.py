@@ -9,7 +9,7 @@ from panel.widgets import Widget
 from app.job_clients.shown_results import ShownResults
 from app.state.view_state import ViewState
 from app.views.components.widgets import Switches
-from app.views.panels.controls import LOCK, Controls
+from app.views.panels.controls import LOCK_SCALE, Controls
 from app.views.panels.engine_component import BrowserEngine
 from engine import System
 from engine.jobs.manager import Jobs
@@ -46,7 +46,9 @@ def open_quality(page: Page) -> dict[str, Widget]:
     assert fold.label == "▸ Quality and colours"
     fold.clicks += 1
     section = parts[parts.index(fold) + 1]
-    return {LOCK if isinstance(part, Switches) else part.label: part for part in section.objects if isinstance(part, Widget)}
+    return {
+        LOCK_SCALE if isinstance(part, Switches) else part.label: part for part in section.objects if isinstance(part, Widget)
+    }
 
 
 def test_the_lists_change_the_state_and_follow_a_preset(page: Page) -> None:
@@ -60,14 +62,14 @@ def test_the_lists_change_the_state_and_follow_a_preset(page: Page) -> None:
 
 
 def test_the_lock_asks_for_the_limits_of_the_map_and_follows_the_state(page: Page) -> None:
-    lock = open_quality(page)[LOCK]
-    lock.value = [LOCK]
+    lock = open_quality(page)[LOCK_SCALE]
+    lock.value = [LOCK_SCALE]
     assert page.locks == [True]
     page.state.lock_times = TimeScale(1.0, 500.0)
     page.state.lock_times = None
     assert (lock.value, page.locks) == ([], [True])
     page.state.lock_times = TimeScale(1.0, 500.0)
-    assert lock.value == [LOCK]
+    assert lock.value == [LOCK_SCALE]
     lock.value = []
     assert page.locks == [True, False]
 

@@ -132,7 +132,7 @@ def test_a_figure_of_an_incomplete_map_is_refused_with_the_reason(
 def test_an_illegal_number_is_named_and_nothing_is_saved_or_copied(
     name: str, number: float, form: FigureForm, saved: KeptFiles
 ) -> None:
-    form.type(name, number)
+    form.set_number(name, number)
     form.save.clicks += 1
     assert form.text.object.startswith(f"{name}={number!r}: must be from ")
     assert send(form.copy, {"wanted": True}) == [{"image": None}]

@@ -33,16 +33,16 @@ SHARE = MOST // SHARES
 def limited() -> CompiledOperations:
     """Return an account of compiled code with a limit of `MOST` operations."""
     limited = CompiledOperations()
-    limited.most = MOST
+    limited.limit = MOST
     return limited
 
 
 def test_compilation_beyond_the_limit_is_refused_with_a_sentence() -> None:
     terms = ((2, 0, 0.5), (0, 2, 0.5), (9, 0, 1.0))
-    compiled_operations.most = 1
+    compiled_operations.limit = 1
     with pytest.raises(ValueError, match="choose a potential with the same powers"):
         load_kernels(terms, Setting())
-    compiled_operations.most = None
+    compiled_operations.limit = None
     assert load_kernels(terms, Setting()).potential_value(1.0, 1.0) == 2.0
     assert compiled_operations.used == generate_code(terms, Setting()).operations
 
@@ -60,7 +60,7 @@ def test_reserved_code_is_compiled_at_the_limit_and_does_not_count(limited: Comp
 def test_a_code_that_is_too_large_is_refused_where_there_is_a_limit() -> None:
     operations = CompiledOperations()
     operations.add("large", LARGEST_CODE + 1)
-    operations.most = 10 * LARGEST_CODE
+    operations.limit = 10 * LARGEST_CODE
     operations.add("less", LARGEST_CODE)
     with pytest.raises(CompiledCodeLimitError, match=f"has {LARGEST_CODE + 1} operations, and at most {LARGEST_CODE}"):
         operations.add("other", LARGEST_CODE + 1)
@@ -81,7 +81,7 @@ def test_an_account_has_a_share_of_the_limit(limited: CompiledOperations) -> Non
 @pytest.mark.parametrize(("account", "is_refused"), [("one", True), (None, False)])
 def test_a_job_takes_the_share_of_its_client(account: Hashable, is_refused: bool) -> None:
     terms = ((2, 0, 0.5), (0, 2, 0.5), (3, 6, 1.0 if account else 2.0), (6, 3, 1.0))
-    compiled_operations.most = SHARES * generate_code(terms, Setting()).operations - 1
+    compiled_operations.limit = SHARES * generate_code(terms, Setting()).operations - 1
     client, inbox = JobClient(Jobs(), account=account), Inbox()
     client.request(Job(load_kernels, (terms, Setting()), queue=Queue.COMPILATION), inbox.result, inbox.error)
     assert inbox.done.wait(SECONDS)

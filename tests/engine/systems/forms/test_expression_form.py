@@ -45,7 +45,7 @@ def test_a_map_has_its_outcomes_and_its_mirror_image() -> None:
     potential = parse_formula(TEXT, parameters={"a": 2.0})
     found = compute_map(MapSpec(potential, Plane.X_PX, potential.well.energy_at(1.3), (24, 24), t_max=60.0))
     assert {1, 2, int(Fate.FORBIDDEN)} <= set(np.unique(found.fate).tolist())
-    mirrored = potential.well.mirror_channels[np.maximum(found.fate[::-1, ::-1], 0)]
+    mirrored = potential.well.mirror_fates[np.maximum(found.fate[::-1, ::-1], 0)]
     np.testing.assert_array_equal(np.where(found.fate > 0, found.fate, 0), np.where(found.fate[::-1, ::-1] > 0, mirrored, 0))
 
 

@@ -23,7 +23,7 @@ from plots.pictures.palette import LIGHT, MOST_CHANNELS, Entry
 # Number of maps whose curves are cached.
 _CACHED_MAPS = 64
 # Energies of the faint equipotentials, as multiples of the depth of the well.
-_LEVELS = (0.1, 0.3, 0.5, 0.7, 0.9, 1.2, 1.6, 2.2, 3.0)
+_DEPTH_MULTIPLES = (0.1, 0.3, 0.5, 0.7, 0.9, 1.2, 1.6, 2.2, 3.0)
 
 
 class TracedCurves(NamedTuple):
@@ -36,24 +36,29 @@ class TracedCurves(NamedTuple):
 
 @functools.lru_cache(maxsize=_CACHED_MAPS)
 def trace_curves(spec: MapSpec) -> TracedCurves:
-    """Return the curves of a map. The result is cached: the job of the map calls this first, because tracing can take time."""
+    """Return the curves of a map, cached. The job of the map calls this first, because tracing takes up to half a second."""
     window = spec.find_window()
     limit = trace_zero_velocity_curve(spec.potential, spec.plane, spec.energy, window)
     if spec.common_energy is None:
         return TracedCurves(limit, [], [])
     critical = critical_energies(spec.potential)
-    energies = [*critical, *depth_levels(spec.potential, _LEVELS)]
-    # The lines of each energy.
-    groups = trace_equipotentials(spec.potential, spec.plane, energies, window)
-    return TracedCurves(limit, _flatten(groups[: len(critical)]), _flatten(groups[len(critical) :]))
+    energies = [*critical, *depth_levels(spec.potential, _DEPTH_MULTIPLES)]
+    lines_by_energy = trace_equipotentials(spec.potential, spec.plane, energies, window)
+    return TracedCurves(limit, _flatten(lines_by_energy[: len(critical)]), _flatten(lines_by_energy[len(critical) :]))
 
 
-def _flatten(groups: Iterable[Sequence[np.ndarray]]) -> list[np.ndarray]:
-    return [line for lines in groups for line in lines]
+def _flatten(lines_by_energy: Iterable[Sequence[np.ndarray]]) -> list[np.ndarray]:
+    return [line for lines in lines_by_energy for line in lines]
 
 
-class CurveLayers:
-    """Draws the curves of a map over any number of pictures, in the colours of the view state."""
+class MapCurves:
+    """Draws the curves of a map over any number of pictures.
+
+    Parameters
+    ----------
+    state
+        View state, whose palette has the colours of the exits.
+    """
 
     def __init__(self, state: ViewState) -> None:
         self._state = state

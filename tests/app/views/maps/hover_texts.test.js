@@ -2,7 +2,7 @@
 import assert from "node:assert/strict"
 import {test} from "node:test"
 
-import {coordinate, fateName, pixelDetails} from "../../../../app/views/components/hover_texts.js"
+import {coordinate, fateName, pixelDetails} from "../../../../app/views/maps/hover_texts.js"
 
 const CODES = {bounded: 4, firstDifference: 5, firstEvidence: 10}
 const WORDS = {
