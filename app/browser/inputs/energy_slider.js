@@ -66,9 +66,11 @@ export function render({model, el}) {
   rail.addEventListener("input", () => drag(value.read()))
   for (const event of ["change", "pointerup", "pointercancel"]) rail.addEventListener(event, release)
   rail.addEventListener("keydown", press)
-  model.on("lifecycle:remove", hear("energyshown", energy => write(clamped(energy))))
+  const show = (/** @type {number} */ energy) => write(clamped(energy))
+  model.on("lifecycle:remove", hear("energyshown", show))
   // The engine may be loaded while the user holds the slider.
-  model.on("lifecycle:remove", hear("energyasked", () => value.unsent && tell("energydragged", value.read())))
+  const answer = () => value.unsent && tell("energydragged", value.read())
+  model.on("lifecycle:remove", hear("energyasked", answer))
   model.on(["low", "high", "decimals", "label", "note", "disabled", "shown"], follow)
   follow()
 }

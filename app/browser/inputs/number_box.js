@@ -32,9 +32,7 @@ export function render({model, el}) {
   // Enter without a change of the number fires no change event.
   input.addEventListener("keydown", event => event.key === "Enter" && finish())
   // Show a number of the page that the server has not received yet.
-  const show = (/** @type {number} */ number) => {
-    if (!value.unsent) write(Number(number.toPrecision(10)))
-  }
+  const show = (/** @type {number} */ number) => !value.unsent && write(Number(number.toPrecision(10)))
   if (model.shown_event) model.on("lifecycle:remove", hear(model.shown_event, show))
   model.on(["step", "disabled", "shown"], follow)
   follow()
