@@ -11,7 +11,7 @@ from app.runtime.settings import read_settings
 from app.server.lifecycle.start_checks import INVALID_SETTING
 
 SESSION_SECONDS = 60
-"""Lifetime of a session without a connection, in seconds. A broken connection can be resumed until then."""
+"""Lifetime of a session without a connection, in seconds. A slow browser has this time to connect after it has got the page."""
 
 KEEP_ALIVE_SECONDS = 20
 """Interval between pings on an idle connection, in seconds; shorter than the usual timeouts of proxies."""

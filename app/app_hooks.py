@@ -60,10 +60,7 @@ def on_server_loaded(server_context: Any) -> None:
     stop_on_signals(state, context.io_loop.stop)
     PeriodicCallback(disconnects.DisconnectMonitor(state.sessions).check, 1000.0 * disconnects.CHECK_SECONDS).start()
     PeriodicCallback(partial(context.io_loop.run_in_executor, None, return_free_memory), 1000.0 * RETURN_SECONDS).start()
-    watch = LoopWatch(state.load, state.metrics.loop_delays)
-    gc.callbacks.append(watch.on_collection)
-    PeriodicCallback(lambda: _measure_load(state, watch), 1000.0 * loop_watch.TICK_SECONDS).start()
-    threading.Thread(target=watch.watch, args=[state.stopping], name="loop watch", daemon=True).start()
+    _watch_event_loop(state)
     compile_in(state.compiler)
     start_warmup(state)
     # Otherwise, the first request would wait for this import and for the reviews of the cases.
@@ -106,8 +103,17 @@ def _start_state() -> ProcessState:
         refuse_to_start(str(error))
 
 
+def _watch_event_loop(state: ProcessState) -> None:
+    """Measure the delay of the running event loop at each tick, and find the causes of long delays on another thread."""
+    watch = LoopWatch(state.load, state.metrics.loop_delays)
+    gc.callbacks.append(watch.on_collection)
+    PeriodicCallback(lambda: _measure_load(state, watch), 1000.0 * loop_watch.TICK_SECONDS).start()
+    threading.Thread(target=watch.sample_stacks, args=[state.stopping], name="loop watch", daemon=True).start()
+
+
 def _measure_load(state: ProcessState, watch: LoopWatch) -> None:
-    # A stopping server logs no more delays, so the line that it stops is the last.
+    """Measure the delay of the event loop, and postpone work while the load is high."""
+    # A stopping server logs no delays, so that its last line says that it stops.
     if not state.stopping.is_set():
         watch.tick()
     state.adapt_to_load()

@@ -30,11 +30,12 @@ class BrowserSystem:
     Attributes
     ----------
     key
-        Text that is different for each system.
+        Hash that is different for each system.
     portable
         Data from which the browser integrates orbits of the system.
     windows
-        Default windows, {key of a plane: {"energies": […], "windows": [[x_low, x_high, ordinate_low, ordinate_high], …]}}.
+        Default windows by energy, for each plane without an axis of energy: {key of the plane: {"energies": […],
+        "windows": [[x_low, x_high, ordinate_low, ordinate_high], …]}}. The energies are in ascending order.
     """
 
     key: str
@@ -53,22 +54,22 @@ class BrowserSystem:
 
 
 def system_key(potential: Potential) -> str:
-    """Return a text that is different for each potential."""
-    contents = potential.form, potential.rotation, potential.ends
-    return hashlib.sha256(repr(contents).encode()).hexdigest()[:16]
+    """Return a hash of a potential, as 16 hexadecimal digits."""
+    definition = potential.form, potential.rotation, potential.ends
+    return hashlib.sha256(repr(definition).encode()).hexdigest()[:16]
 
 
 def make_browser_system(potential: Potential, low: float, high: float, *, execution: Execution) -> BrowserSystem:
-    """Compile the module of a system, and tabulate its exits and windows for energies from `low` to `high`."""
+    """Compile the module of a system, and tabulate its exits and windows for energies from `low` to `high`, dimensionless."""
     planes = [plane for plane in Plane if plane.energy_axis is None]
     windows = {plane.key: _tabulate_windows(potential, plane, (low, high), execution) for plane in planes}
     return BrowserSystem(system_key(potential), make_portable_system(potential, high), windows)
 
 
 def _tabulate_windows(potential: Potential, plane: Slice, energies: tuple[float, float], execution: Execution) -> dict[str, Any]:
-    """Return the default windows of the energies in a range, from the first to the last energy with a window."""
+    """Return the default windows of a plane for energies in a range, from the first energy with a window to the last."""
     windows: dict[float, list[float]] = {}
-    for energy in _energies(potential, *energies).tolist():
+    for energy in _tabulated_energies(potential, *energies).tolist():
         execution.raise_if_cancelled()
         try:
             window = default_window(potential, plane, energy)
@@ -80,10 +81,10 @@ def _tabulate_windows(potential: Potential, plane: Slice, energies: tuple[float,
     return {"energies": list(windows), "windows": list(windows.values())}
 
 
-def _energies(potential: Potential, low: float, high: float) -> np.ndarray:
+def _tabulated_energies(potential: Potential, low: float, high: float) -> np.ndarray:
     """Return the energies at which windows are tabulated, in ascending order."""
     if potential.escape_radius is not None:
-        # There is no escape energy.
+        # A system with an escape circle has no escape energy.
         return np.linspace(low, high, _ENERGIES_BELOW + _ENERGIES_ABOVE)
     escape = min(max(potential.escape_energy, low), high)
     below = np.linspace(low, escape, _ENERGIES_BELOW)

@@ -1,10 +1,11 @@
-"""Texts of JavaScript modules for components, and for callbacks of Bokeh. The text of a callback is the body of a function."""
+"""The code of JavaScript modules as single texts: for components, and for callbacks of Bokeh, which are bodies of functions."""
 
 from __future__ import annotations
 
 import re
 from pathlib import Path
 
+# An import of another module of the app, on a line. Such a module imports nothing itself.
 _IMPORT = re.compile(r'^import .* from "(\.\.?/.+)"\n', re.MULTILINE)
 
 
@@ -25,4 +26,5 @@ def _read_imports(module: Path, source: str) -> list[str]:
 
 
 def _strip_module_syntax(source: str) -> str:
+    """Return the code of a module without its imports, and without the word that exports a name."""
     return _IMPORT.sub("", source).replace("export ", "")

@@ -15,17 +15,17 @@ from tornado.web import RequestHandler, StaticFileHandler
 
 from engine.integrator.portable_kernels import kernel_module, module_digest
 
-MODULES = Path(__file__).parent / "modules"
+MODULES_FOLDER = Path(__file__).parent / "modules"
 """Folder of the modules."""
 
-NUMBERS = MODULES / "numbers.js"
-"""Module that writes numbers, which callbacks of Bokeh and components also use."""
+NUMBERS_MODULE = MODULES_FOLDER / "numbers.js"
+"""Module that writes numbers as text. Callbacks of Bokeh and components also use it."""
 
 
 def _digest() -> str:
     """Return a hash of all modules and of the sources of the kernels."""
     digest = hashlib.sha256(module_digest().encode())
-    for path in sorted(MODULES.rglob("*.js")):
+    for path in sorted(MODULES_FOLDER.rglob("*.js")):
         digest.update(path.name.encode() + path.read_bytes())
     return digest.hexdigest()[:16]
 
@@ -36,15 +36,15 @@ ADDRESS = f"{_FOLDER}/main.js"
 """Address of the first module, relative to the page."""
 
 WATCH_ADDRESS = f"{_FOLDER}/gestures/watch.js"
-"""Address of the module of many orbits, which the page loads when the player is first shown."""
+"""Address of the module of the ensemble player, which the page loads when the player is first shown."""
 
 KERNELS_ADDRESS = f"{_FOLDER}/kernels.wasm"
 """Address of the kernels, relative to the page."""
 
 
-def accepts_gzip(accepted: str) -> bool:
-    """Return whether gzip is among the accepted encodings, the value of a header ``Accept-Encoding``, with a weight above 0."""
-    encodings = (encoding.replace(" ", "").lower().split(";q=") for encoding in accepted.split(","))
+def accepts_gzip(header: str) -> bool:
+    """Whether the value of a header ``Accept-Encoding`` accepts gzip: with a weight above 0, by its name or by ``*``."""
+    encodings = (encoding.replace(" ", "").lower().split(";q=") for encoding in header.split(","))
     weights = {name: weight[0] if weight else "1" for name, *weight in encodings}
     # A weight of 0, 0.0, 0.00 or 0.000 excludes an encoding.
     return weights.get("gzip", weights.get("*", "0")).strip("0.") != ""
@@ -59,7 +59,7 @@ class ModuleHandler(StaticFileHandler):
 
 
 class KernelsHandler(RequestHandler):
-    """Serves the kernels, which the first start of a version builds."""
+    """Serves the kernels. The first start of a version compiles them."""
 
     async def get(self) -> None:
         """Answer with the kernels, compressed if the browser accepts gzip."""
@@ -74,7 +74,7 @@ class KernelsHandler(RequestHandler):
 
 
 ROUTES: tuple[tuple[str, type[RequestHandler], dict[str, Any]], ...] = (
-    (rf"/{_FOLDER}/((?:[a-z]+/)?[a-z_]+\.js)", ModuleHandler, {"path": str(MODULES)}),
+    (rf"/{_FOLDER}/((?:[a-z]+/)?[a-z_]+\.js)", ModuleHandler, {"path": str(MODULES_FOLDER)}),
     (f"/{KERNELS_ADDRESS}", KernelsHandler, {}),
 )
 """Paths below the server's prefix, with their handlers and the handlers' arguments."""

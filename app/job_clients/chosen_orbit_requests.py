@@ -16,11 +16,11 @@ from engine.results import DivergentStart, Separation
 from plots.pictures.orbit_curves import initial_state
 
 Pair = tuple[int, int]
-"""Places of two orbits in the list of starts, in ascending order."""
+"""Indices of two orbits in the list of starts, in ascending order."""
 
 
 class SeparationRequests:
-    """Requests separations for one session. `show(pair, separation)` takes each; without a pair of orbits, both are None."""
+    """Requests separations for one session, which `show(pair, separation)` shows. Without a pair of orbits, both are None."""
 
     def __init__(
         self,
@@ -32,15 +32,15 @@ class SeparationRequests:
     ) -> None:
         self._state, self._show = state, show
         self._pair: Pair | None = None
-        # Place of the previously chosen orbit. The list may be shorter now.
-        self._previous_place = 0
-        state.param.watch(lambda event: setattr(self, "_previous_place", event.old), "chosen")
+        # Index of the previously chosen orbit. The list may be shorter now.
+        self._previous_index = 0
+        state.param.watch(lambda event: setattr(self, "_previous_index", event.old), "chosen")
         self._request = LatestRequest(jobs, lambda separation: show(self._pair, separation), notify, locked)
 
     def follow(self, orbits: Sequence[ChosenOrbit]) -> None:
         """Request the separation of the chosen orbit from the previously chosen orbit, or else from a neighbour in the list."""
         self._pair = self._find_pair(orbits)
-        job = None if self._pair is None else self._job(*(orbits[place].orbit for place in self._pair))
+        job = None if self._pair is None else self._separation_job(*(orbits[index].orbit for index in self._pair))
         if job is not None:
             self._request.submit(job)
         else:
@@ -50,15 +50,15 @@ class SeparationRequests:
     def _find_pair(self, orbits: Sequence[ChosenOrbit]) -> Pair | None:
         """Return the pair to compare; None unless both orbits are computed."""
         chosen = self._state.chosen
-        other_places = [
-            place for place in (self._previous_place, chosen - 1, chosen + 1) if place != chosen and 0 <= place < len(orbits)
-        ]
-        if not other_places or chosen >= len(orbits):
+        candidates = [self._previous_index, chosen - 1, chosen + 1]
+        others = [index for index in candidates if index != chosen and 0 <= index < len(orbits)]
+        if not others or chosen >= len(orbits):
             return None
-        pair = min(chosen, other_places[0]), max(chosen, other_places[0])
-        return pair if all(orbits[place].orbit is not None for place in pair) else None
+        pair = min(chosen, others[0]), max(chosen, others[0])
+        return pair if all(orbits[index].orbit is not None for index in pair) else None
 
-    def _job(self, first: Orbit | None, second: Orbit | None) -> Job[Separation] | None:
+    def _separation_job(self, first: Orbit | None, second: Orbit | None) -> Job[Separation] | None:
+        """Return the job for two computed orbits; None if one of them ends at once."""
         assert first is not None
         assert second is not None
         t_end = float(min(first.t[-1], second.t[-1]))
@@ -67,7 +67,7 @@ class SeparationRequests:
 
 
 class DivergentStartRequests:
-    """Finds divergent starts (the nearest that escape elsewhere), and adds them to the state. `notify` reports progress."""
+    """Finds divergent starts, the nearest that escape elsewhere, and adds them to the state. `notify` shows the progress."""
 
     def __init__(self, state: ViewState, jobs: JobSubmitter, notify: Callable[[str], None], locked: Locked) -> None:
         self._state, self._notify = state, notify

@@ -9,7 +9,7 @@ from engine.foundations.wording import format_number
 
 log = logging.getLogger(__name__)
 
-# Texts for visitors by the beginnings of the library's messages about an energy, which the page calls h. "" begins any message.
+# Texts for visitors, by the beginnings of the messages of `engine` about an energy. "" begins any message.
 _ENERGY_PROBLEMS = {
     "the interior is empty on": "no orbit of this energy starts on this slice, as the well lies higher.",
     "no Lyapunov orbit was found": "there is no neck to leave through; choose another energy.",
@@ -21,7 +21,7 @@ ZOOM_ENDS = "Double precision ends here: pixels cannot be closer together."
 """Message for a zoom beyond the smallest window."""
 
 
-def sentence(error: Exception) -> str:
+def error_sentence(error: Exception) -> str:
     """Return the message of a `ValueError`, which is meant for users. Log any other error, and return a reference to the log."""
     if isinstance(error, ValueError):
         return _ENERGY.sub(_explain, str(error))
@@ -30,5 +30,6 @@ def sentence(error: Exception) -> str:
 
 
 def _explain(match: re.Match[str]) -> str:
+    """Return the text for a message about an energy, which the page calls h."""
     template = next(text for beginning, text in _ENERGY_PROBLEMS.items() if match["rest"].startswith(beginning))
     return f"h = {format_number(float(match['energy']), 6)}: {match.expand(template)}"

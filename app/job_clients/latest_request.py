@@ -1,4 +1,4 @@
-"""One request at a time: a new request replaces the previous request, whose results are dropped."""
+"""One request at a time. A new request replaces the previous request, whose results are dropped."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from app.job_clients.error_messages import sentence
+from app.job_clients.error_messages import error_sentence
 from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job
 from engine.jobs.subscription import Subscription
@@ -34,7 +34,7 @@ class LatestRequest:
     convert
         Converts a result to what is shown, or to `SKIPPED`, on the thread of the job. A ValueError counts as an error of the job.
     begin
-        Takes each job that is requested.
+        Called with each job just before it is requested.
     """
 
     def __init__(
@@ -51,10 +51,11 @@ class LatestRequest:
         self._handle_later = locked(self._handle)
         self._job: Job[Any] | None = None
         # The jobs that are not requested yet.
-        self._next: deque[Job[Any]] = deque()
+        self._remaining_jobs: deque[Job[Any]] = deque()
         self._subscriptions: list[Subscription] = []
         # Results of requests with earlier numbers are dropped.
-        self._number = 0
+        self._request_number = 0
+        # Reentrant, because without a session `_handle_later` calls `_handle` at once, which may cancel the request.
         self._number_lock = threading.RLock()
 
     def submit(self, *jobs: Job[Any]) -> None:
@@ -62,26 +63,26 @@ class LatestRequest:
         if jobs[-1] == self._job:
             return
         self.cancel()
-        self._job, self._next = jobs[-1], deque(jobs)
+        self._job, self._remaining_jobs = jobs[-1], deque(jobs)
         self._request_next()
 
     def cancel(self) -> None:
         """Cancel the current request, if any."""
         with self._number_lock:
-            self._number += 1
+            self._request_number += 1
         self._job = None
         for subscription in self._subscriptions:
             subscription.cancel()
         self._subscriptions.clear()
 
     def _request_next(self) -> None:
-        job = self._next.popleft()
-        receive = partial(self._receive, self._number, not self._next)
+        job = self._remaining_jobs.popleft()
+        receive = partial(self._receive, self._request_number, not self._remaining_jobs)
         self._begin(job)
         self._subscriptions.append(self._jobs.request(job, receive, receive))
 
     def _receive(self, number: int, is_last: bool, result: Any) -> None:
-        """Take a result or an error of a job, on any thread."""
+        """Pass a result or an error of a job to `_handle`. Any thread may call this."""
         if is_last and not isinstance(result, Exception):
             try:
                 result = self._convert(result)
@@ -89,17 +90,17 @@ class LatestRequest:
                 result = error
         # The lock keeps `number` valid until the call is queued: an outdated call could replace the only waiting call.
         with self._number_lock:
-            if number == self._number and result is not SKIPPED:
+            if number == self._request_number and result is not SKIPPED:
                 self._handle_later(number, is_last, result)
 
     def _handle(self, number: int, is_last: bool, result: Any) -> None:
         """Show a result or an error of the current request, or request the next job."""
-        if number != self._number:
+        if number != self._request_number:
             return
         if isinstance(result, Exception):
             # The same job may be submitted again.
             self.cancel()
-            self._fail(sentence(result))
+            self._fail(error_sentence(result))
         elif is_last:
             self._show(result)
         else:

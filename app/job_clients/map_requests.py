@@ -1,4 +1,4 @@
-"""Requests for the map of the view state. A listener takes the frames of the map, which are partial results except the last."""
+"""Requests for the map of the view state. A listener gets the frames of the map: partial results, then the complete map."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class MapRequests:
     jobs
         Computes the maps.
     listener
-        Takes frames and errors, under the session's lock.
+        Called with frames and errors, under the session's lock.
     locked
         Wraps callbacks to run under the session's lock. Of several waiting calls, the latest alone may run.
     is_crowded
@@ -80,8 +80,8 @@ class MapRequests:
     ) -> None:
         self._state, self._listener, self._is_crowded, self._prepare = state, listener, is_crowded, prepare
         self._has_frame = self._has_complete_map = False
-        # The last job of the current map that was requested.
-        self._begun: Job[Any] | None = None
+        # The job that was requested last for the current map.
+        self._last_job: Job[Any] | None = None
         # The map of the last delivered frame, and its image columns.
         self._delivered_columns: tuple[MapSpec, Columns] | None = None
         self._request = LatestRequest(
@@ -102,11 +102,12 @@ class MapRequests:
 
     def _cancel(self) -> None:
         self._has_frame = self._has_complete_map = False
-        self._begun = None
+        self._last_job = None
         self._request.cancel()
 
     def _begin(self, job: Job[Any]) -> None:
-        previous, self._begun = self._begun, job
+        """Tell the listener about the first job of a map, and about the job after the compilation."""
+        previous, self._last_job = self._last_job, job
         if previous is None or previous.queue is Queue.COMPILATION:
             self._listener.map_requested(compiling=job.queue is Queue.COMPILATION)
 
@@ -115,12 +116,11 @@ class MapRequests:
         # The ranges of the maps need the default window. Find and cache it here, because finding it is slow.
         replace(frame.spec, window=None).find_window()
         self._prepare(frame.spec)
-        # A crowded server skips the frames between the first and the last.
         if self._has_frame and not frame.complete and self._is_crowded():
             return SKIPPED
         last_spec, last_columns = self._delivered_columns or (None, {})
         columns = map_columns(frame) | layer_columns(frame, self._state.layers)
-        if last_spec is not None and _has_same_plane(last_spec, frame.spec):
+        if last_spec is not None and _show_same_plane(last_spec, frame.spec):
             columns = draw_over(columns, last_columns, frame.spec.resolution)
         self._delivered_columns = frame.spec, columns
         return frame, columns
@@ -131,6 +131,6 @@ class MapRequests:
         self._has_frame, self._has_complete_map = True, frame.complete
 
 
-def _has_same_plane(one: MapSpec, other: MapSpec) -> bool:
+def _show_same_plane(one: MapSpec, other: MapSpec) -> bool:
     """Whether two maps show the same plane at the same energy; window, resolution and t_max may differ."""
     return (one.potential, one.plane, one.energy) == (other.potential, other.plane, other.energy)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from app.job_clients.error_messages import sentence
+from app.job_clients.error_messages import error_sentence
 from app.job_clients.latest_request import Locked
 from app.job_clients.requested_results import RequestedResults
 from app.state.view import Start
@@ -33,7 +33,7 @@ class ChosenOrbit:
     problem
         Why the start has no orbit; empty for other starts.
     digits
-        Birkhoff digits of a bounded orbit, which follow later; None for other orbits.
+        Birkhoff digits of a bounded orbit; None until they are computed, and for other orbits.
     """
 
     start: Start
@@ -61,7 +61,7 @@ class ChosenOrbit:
 
 
 class OrbitRequests:
-    """Requests the orbits of one session, then the Birkhoff digits of bounded orbits. The digits need a second integration.
+    """Requests the orbits of one session, then the Birkhoff digits of bounded orbits, which need a second integration.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ class OrbitRequests:
         self._state, self._show, self._notify = state, show, notify
         self._orbits = RequestedResults(jobs, _curves_or_sentence, lambda arrived: self._update(), latest)
         self._digits = RequestedResults(jobs, _digits_or_sentence, self._take_digits, latest)
-        self._last_orbits: tuple[ChosenOrbit, ...] = ()
+        self._shown_orbits: tuple[ChosenOrbit, ...] = ()
         state.param.watch(lambda *events: self.follow(), ["starts", "system", "plane", "energy", "t_max"])
 
     def follow(self) -> None:
@@ -108,11 +108,12 @@ class OrbitRequests:
         self._digits.follow([_digits_job(job) for job in bounded_jobs])
         orbits = tuple(map(self._orbit_of, self._state.starts))
         # Showing unchanged orbits again would delay a map that is requested at the same time.
-        if orbits != self._last_orbits:
-            self._last_orbits = orbits
+        if orbits != self._shown_orbits:
+            self._shown_orbits = orbits
             self._show(orbits)
 
     def _orbit_of(self, start: Start) -> ChosenOrbit:
+        """Return a start with what is known about its orbit."""
         job = self._state.orbit_job(start)
         if job is None:
             return ChosenOrbit(start, problem=describe_fate(Fate.FORBIDDEN))
@@ -132,8 +133,8 @@ def _digits_job(job: Job[Orbit]) -> Job[BirkhoffDigits]:
 
 
 def _digits_or_sentence(job: Job[Any], result: BirkhoffDigits | Exception) -> BirkhoffDigits | str:
-    return sentence(result) if isinstance(result, Exception) else result
+    return error_sentence(result) if isinstance(result, Exception) else result
 
 
 def _curves_or_sentence(job: Job[Orbit], result: Orbit | Exception) -> OrbitCurves | str:
-    return sentence(result) if isinstance(result, Exception) else compute_orbit_curves(job.arguments[0], result)
+    return error_sentence(result) if isinstance(result, Exception) else compute_orbit_curves(job.arguments[0], result)

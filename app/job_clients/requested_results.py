@@ -20,7 +20,7 @@ class RequestedResults:
     jobs
         Computes the results.
     convert
-        Takes a job and its result or error, and returns the value to keep. Runs on the thread that delivers the result.
+        Returns the value to keep, given a job and its result or error. Runs on the thread that delivers the result.
     on_arrival
         Handles the values that have arrived, under the session's lock.
     latest
@@ -43,11 +43,12 @@ class RequestedResults:
 
     def follow(self, wanted: Collection[Job[Any]]) -> None:
         """Request the results of new jobs, and drop jobs that are no longer wanted."""
-        for job in [job for job in self._subscriptions if job not in wanted]:
+        unwanted_jobs = [job for job in self._subscriptions if job not in wanted]
+        for job in unwanted_jobs:
             subscription = self._subscriptions.pop(job)
             if subscription is not None:
                 subscription.cancel()
-        self.found = {job: result for job, result in self.found.items() if job in wanted}
+        self.found = {job: value for job, value in self.found.items() if job in wanted}
         for job in wanted:
             if job not in self.found and job not in self._subscriptions:
                 self._request(job)
@@ -67,9 +68,9 @@ class RequestedResults:
         """Keep and report the new values of jobs that are still wanted."""
         arrived: dict[Job[Any], Any] = {}
         while self._new_values:
-            job, result = self._new_values.popleft()
+            job, value = self._new_values.popleft()
             if job in self._subscriptions:
                 del self._subscriptions[job]
-                arrived[job] = result
+                arrived[job] = value
         self.found |= arrived
         self._on_arrival(arrived)

@@ -1,4 +1,4 @@
-"""The number of pages for which the processors suffice. It decides when work is postponed and when new pages are refused.
+"""The share of the processors that the open pages need. It decides when work is postponed and when new pages are refused.
 
 Each open page reserves the processor time that an active visitor uses: otherwise, a server would admit too many visitors while
 they are still reading. Two values are measured: the processors that other programs leave, and the use of the event loop.
@@ -31,22 +31,22 @@ MOST_CORES = 1.0
 """Most processors that a process uses: its threads share the interpreter lock."""
 
 LEAST_CORES = 0.2
-"""Fewest processors of a process: what the operating system gives to it when other programs keep all processors busy."""
+"""Fewest processors that a process gets from the operating system, even while other programs keep all processors busy."""
 
 LEAST_IDLE_CORES = 0.1
-"""Number of idle processors below which the use of other programs may be measured too low, because other programs wait."""
+"""Number of idle processors below which the measured use of other programs may be too low, because they wait for a processor."""
 
 WINDOW_SECONDS = 20
 """Time over which the use of the processors is averaged, in seconds."""
 
 ACTING_SECONDS = 300.0
-"""Time after the visitor's last action during which a page counts in full, in seconds."""
+"""Time after a visitor's last action during which the page counts in full, in seconds."""
 
 IDLE_WEIGHT = 0.1
 """Weight of an idle page, compared with 1 for a page in use."""
 
 CONNECTION_SECONDS = 15.0
-"""Time after the last action during which a page without a connection counts, in seconds: it may be opening or reconnecting."""
+"""Time after the last action during which a page without a connection counts, in seconds: its browser may be about to connect."""
 
 
 class ProcessorTimes(NamedTuple):
@@ -59,21 +59,23 @@ class ProcessorTimes(NamedTuple):
     all_programs: float
     """Time of all programs on the processors that this process may use."""
     own: float
-    """Time of this process, and of the processes that compute for it."""
+    """Time of this process, and of the helper processes that compute for it."""
     loop: float
     """Time of the event loop of this process."""
 
 
 class _Use(NamedTuple):
-    """Average numbers of processors that other programs and the event loop used during a measurement of `seconds`."""
+    """Use of the processors during an interval between two measurements."""
 
     seconds: float
     other_cores: float
-    loop: float
+    """Average number of processors that other programs used."""
+    loop_share: float
+    """Share of the interval during which the event loop was busy."""
 
 
 class Capacity:
-    """Measures the free processor time, and decides whether there is capacity for another page.
+    """Measures the use of the processors, and decides whether there is capacity for another page.
 
     Parameters
     ----------
@@ -92,7 +94,7 @@ class Capacity:
     ----------
     cores
         Number of processors available to this process, without the part that other programs use.
-    loop
+    loop_share
         Share of the time during which the event loop is busy.
     """
 
@@ -110,7 +112,7 @@ class Capacity:
         # Measurements are a second or more apart, so this many of them cover the window.
         self._uses = deque[_Use](maxlen=WINDOW_SECONDS)
         self.cores = self._available_cores(0.0)
-        self.loop = 0.0
+        self.loop_share = 0.0
 
     def update(self) -> bool:
         """Measure unless the last measurement is less than a second old; return whether a measurement was made."""
@@ -123,27 +125,28 @@ class Capacity:
             other_cores = max(other_cores, self._mean_other_cores())
         self._uses.append(_Use(seconds, other_cores, loop / seconds))
         self.cores = self._available_cores(max(self._mean_other_cores(), 0.0))
-        self.loop = self._mean(use.loop for use in self._uses)
+        self.loop_share = self._mean(use.loop_share for use in self._uses)
         return True
 
     def is_crowded(self, pages: Mapping[str, float]) -> bool:
         """Whether work that can wait should be postponed, given the number of pages by visitor."""
-        return self.taken(pages) > CROWDED
+        return self.occupied_share(pages) > CROWDED
 
     def has_room(self, pages: Mapping[str, float], visitor: str = "") -> bool:
         """Whether another page of a visitor is admitted, given the number of pages by visitor."""
         most_pages = VISITOR_SHARE * FULL * self.cores / self._cores_per_page
-        counted_pages = {name: count if name == visitor else min(count, most_pages) for name, count in pages.items()}
-        return self.taken(counted_pages | {visitor: counted_pages.get(visitor, 0.0) + 1.0}) <= FULL
+        counted_pages = {name: min(count, most_pages) for name, count in pages.items() if name != visitor}
+        return self.occupied_share(counted_pages | {visitor: pages.get(visitor, 0.0) + 1.0}) <= FULL
 
-    def taken(self, pages: Mapping[str, float]) -> float:
-        """Return the larger share: of the processors that the pages may use, or of the time that the event loop is busy."""
-        return max(self._cores_per_page * sum(pages.values()) / self.cores, self.loop)
+    def occupied_share(self, pages: Mapping[str, float]) -> float:
+        """Return the share of the processors that the pages reserve, or the busy share of the event loop if that is larger."""
+        return max(self._cores_per_page * sum(pages.values()) / self.cores, self.loop_share)
 
     def _mean_other_cores(self) -> float:
         return self._mean(use.other_cores for use in self._uses)
 
     def _mean(self, values: Iterable[float]) -> float:
+        """Return the mean of a value for each measurement, weighted by the lengths of the intervals; 0 without a measurement."""
         return fmean(values, [use.seconds for use in self._uses]) if self._uses else 0.0
 
     def _available_cores(self, other_cores: float) -> float:
@@ -151,8 +154,8 @@ class Capacity:
         return min(max((self._usable_cores - other_cores) / self._processes, LEAST_CORES), MOST_CORES)
 
 
-def count_page(share: FairShare, *, connected: bool) -> float:
-    """Return the weight of a page: 1 while in use, less for an idle page, and 0 for a page that the visitor has left."""
+def page_weight(share: FairShare, *, connected: bool) -> float:
+    """Return the weight of a page: 1 in use, `IDLE_WEIGHT` when idle, and 0 if the visitor has left."""
     idle_seconds = share.idle_seconds()
     if not connected:
         return float(idle_seconds < CONNECTION_SECONDS)

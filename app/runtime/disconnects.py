@@ -1,4 +1,4 @@
-"""Callbacks for pages that lose their last connection. The callbacks cancel jobs long before the session expires."""
+"""Callbacks for pages that lose their last connection. They can cancel jobs long before the session expires."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _callbacks: WeakKeyDictionary[Any, Callable[[], None]] = WeakKeyDictionary()
 
 
 def on_disconnect(document: Any, callback: Callable[[], None]) -> None:
-    """Register a callback that is called once, after the last connection of a document is closed."""
+    """Register the callback of a document, which is called once, after the last connection of its session is closed."""
     _callbacks[document] = callback
 
 

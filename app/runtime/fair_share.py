@@ -15,61 +15,63 @@ SHARE = 0.5
 """Largest share of the thread's time for one page in the long run. A drag with 30 messages per second uses 0.2."""
 
 BURST_SECONDS = 3.0
-"""Largest time that a page may use at once after a pause, in seconds. It is also the largest time that a page can owe."""
+"""Longest time that a page may use at once after a pause, in seconds. It is also the longest time that a page can owe."""
 
 
 class FairShare:
-    """Counts the processor time that the messages and callbacks of a page use on the event loop.
+    """Limits the processor time that the messages and callbacks of a page use on the event loop.
 
     Parameters
     ----------
     clock
         Monotonic clock, in seconds.
     busy_clock
-        Processor time of the event loop's thread, in seconds. Waiting for the interpreter lock, for example during a compilation,
-        does not count.
+        Processor time of the event loop's thread, in seconds. Unlike elapsed time, it leaves out waiting for the interpreter
+        lock, for example during a compilation.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic, busy_clock: Callable[[], float] = time.thread_time) -> None:
         self._clock, self._busy_clock = clock, busy_clock
-        # Time that the page may use now; negative if the page owes time.
+        # Time that the page may use now, in seconds; negative if the page owes time.
         self._balance = BURST_SECONDS
         self._last_refill = clock()
         self._last_use = self._last_refill
 
     def charge(self, seconds: float) -> None:
         """Charge processor time that the page used on the event loop."""
-        self._accrue()
+        self._refill()
         self._balance = max(self._balance - seconds, -BURST_SECONDS)
         if seconds:
             self._last_use = self._last_refill
 
-    def _accrue(self) -> None:
+    def _refill(self) -> None:
         """Add the share of the time since the last call to the balance."""
         now = self._clock()
         self._balance = min(self._balance + SHARE * (now - self._last_refill), BURST_SECONDS)
         self._last_refill = now
 
     def idle_seconds(self) -> float:
-        """Return the time since the page last used the event loop, or since it was opened."""
+        """Return the time since the page last used the event loop, or else since it was opened, in seconds."""
         return self._clock() - self._last_use
 
     def wait_seconds(self) -> float:
-        """Return the time until the next message may be handled: 0 unless the page owes time."""
-        self._accrue()
+        """Return the time until the next message may be handled, in seconds: 0 unless the page owes time."""
+        self._refill()
         return max(0.0, -self._balance / SHARE)
 
     @types.coroutine
-    def count[Result](self, coroutine: Coroutine[Any, Any, Result]) -> Generator[Any, Any, Result]:
-        """Await a coroutine, and charge the processor time of its steps. Code that runs while the coroutine waits is free."""
+    def charge_for[Result](self, coroutine: Coroutine[Any, Any, Result]) -> Generator[Any, Any, Result]:
+        """Await a coroutine, and charge the processor time of its steps. Code that runs while the coroutine waits is free.
+
+        A generator-based coroutine can resume the given coroutine step by step, which ``await`` cannot.
+        """
         step: Callable[[], Any] = partial(coroutine.send, None)
         while True:
             begin = self._busy_clock()
             try:
                 awaited = step()
             except StopIteration as end:
-                result: Result = end.value
-                return result
+                return end.value
             finally:
                 self.charge(self._busy_clock() - begin)
             try:

@@ -12,7 +12,7 @@ from app.runtime.capacity import FULL, WINDOW_SECONDS
 from app.runtime.metrics import NAMESPACE
 from app.runtime.process_state import ProcessState
 from app.runtime.settings import variable_name
-from app.runtime.visitors import is_near
+from app.runtime.visitors import is_local
 from engine.integrator.jit.compiled_operations import compiled_operations
 
 
@@ -67,7 +67,10 @@ def _full_reason(state: ProcessState, network: str = "") -> str | None:
 
 def _is_alone(state: ProcessState, network: str) -> bool:
     """Whether a visitor is on this machine, or no page is open except perhaps one of this visitor, who may be reloading it."""
-    return (network != "" and is_near(network)) or state.sockets.total() <= min(state.sockets[network], 1)
+    if network and is_local(network):
+        return True
+    own_page_count = min(state.sockets[network], 1)
+    return state.sockets.total() <= own_page_count
 
 
 class StateCollector(Collector):
@@ -94,13 +97,13 @@ class StateCollector(Collector):
         yield _gauge(
             "capacity_taken",
             f"Share of these, or of the event loop, that open pages may take; beyond {FULL:g} pages are refused",
-            state.capacity.taken(state.pages()),
+            state.capacity.occupied_share(state.pages()),
         )
         yield _gauge("resident_memory_bytes", "Resident memory", resident_bytes())
         yield CounterMetricFamily(
             f"{NAMESPACE}_formulas_stopped",
             "Typed formulas whose review exceeded its time or its memory",
-            value=state.limited.stopped,
+            value=state.limited.stopped_calls,
         )
         yield from _job_metrics(state)
 

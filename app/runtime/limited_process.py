@@ -16,8 +16,8 @@ from queue import PriorityQueue
 
 from loky import ProcessPoolExecutor
 
-SECONDS = 5
-"""Limit of the processor time of a review, in seconds."""
+REVIEW_SECONDS = 5
+"""Limit of the processor time of a review of a formula, in seconds."""
 
 COMPILATION_SECONDS = 60
 """Limit of the processor time for compiling one kernel, in seconds. The kernels of the largest formulas need 10 s."""
@@ -25,16 +25,16 @@ COMPILATION_SECONDS = 60
 PROCESSES = 2
 """Number of processes for reviews. While one process is busy with a visitor's formula, the other serves other visitors."""
 
-PATIENCE = 60.0
-"""Longest time until a process begins, and longest time that a call waits for a processor, in seconds."""
+LONGEST_WAIT_SECONDS = 60.0
+"""Longest time until a process has started, and longest time that a call waits for a processor, in seconds."""
 
 IDLE_SECONDS = 300
 """Time without a call after which a process ends, in seconds. A process uses 100 MB."""
 
-MEMORY = 2**30
-"""Memory that the process may use in addition to its memory at the start, in bytes."""
+ADDITIONAL_BYTES = 2**30
+"""Memory that a process may use in addition to its memory at the start, in bytes."""
 
-# Interval at which a process checks whether the server still exists, in seconds.
+# Interval at which a process checks whether the server still runs, in seconds.
 _WATCH_SECONDS = 2.0
 # Interval at which a waiting call checks whether it is cancelled, in seconds.
 _POLL_SECONDS = 0.1
@@ -50,7 +50,7 @@ class LimitedProcess:
     """Makes calls in a process, one at a time. The process starts with the first call, and again after it has ended.
 
     The process ends after `IDLE_SECONDS` without a call, or with the server. When a call exceeds a limit or is cancelled, another
-    process begins at once, so that the next call need not wait for its start.
+    process is started at once, so that the next call need not wait for it.
 
     Parameters
     ----------
@@ -60,33 +60,33 @@ class LimitedProcess:
         Memory that the process may use in addition to its memory at the start, in bytes.
     task
         The task of the process, in words. Messages about exceeded limits begin with it.
-    patience
-        Longest time until the process begins, and longest time that a call waits for a processor, in seconds.
+    longest_wait
+        Longest time until the process has started, and longest time that a call waits for a processor, in seconds.
 
     Attributes
     ----------
-    stopped
+    stopped_calls
         Number of calls that exceeded a limit.
-    computed
+    computed_seconds
         Processor time of the ended calls, in seconds.
-    has_begun
+    has_started
         Whether the process has answered a call.
     """
 
     def __init__(
         self,
-        seconds: int = SECONDS,
-        memory: int = MEMORY,
+        seconds: int = REVIEW_SECONDS,
+        memory: int = ADDITIONAL_BYTES,
         task: str = "reviewing this formula",
-        patience: float = PATIENCE,
+        longest_wait: float = LONGEST_WAIT_SECONDS,
     ) -> None:
-        self._seconds, self._memory, self._task, self._patience = seconds, memory, task, patience
+        self._seconds, self._memory, self._task, self._longest_wait = seconds, memory, task, longest_wait
         self._lock = threading.Lock()
         self._executor: ProcessPoolExecutor | None = None
         self._is_closed = False
-        self.stopped = 0
-        self.computed = 0.0
-        self.has_begun = False
+        self.stopped_calls = 0
+        self.computed_seconds = 0.0
+        self.has_started = False
 
     def __call__[Result](self, function: Callable[[], Result], cancel: threading.Event | None = None) -> Result:
         """Return the result of a function. Function and result are pickled.
@@ -107,10 +107,12 @@ class LimitedProcess:
         """
         with self._lock:
             try:
-                return self._call(function, cancel or threading.Event())
+                cancel = cancel or threading.Event()
+                self._wait_for_start(cancel)
+                return self._call(function, cancel)
             except LimitError:
-                self.stopped += 1
-                self.computed += self._seconds
+                self.stopped_calls += 1
+                self.computed_seconds += self._seconds
                 raise
 
     def start(self) -> None:
@@ -128,7 +130,7 @@ class LimitedProcess:
         self._end()
 
     def _end(self) -> None:
-        executor, self._executor, self.has_begun = self._executor, None, False
+        executor, self._executor, self.has_started = self._executor, None, False
         if executor is not None:
             executor.shutdown(wait=False, kill_workers=True)
 
@@ -139,22 +141,25 @@ class LimitedProcess:
 
     def _start(self) -> None:
         if not self._is_closed:
-            # Any call starts the process. If no process can start now, the next call starts one.
+            # Any call starts the process; this one is cheap. If no process can start now, the next call starts one.
             with suppress(OSError, MemoryError):
                 self._submit(os.getpid)
+
+    def _wait_for_start(self, cancel: threading.Event) -> None:
+        """Wait until the process has started. Start the process if it does not run."""
+        try:
+            # This call takes no time, so its result shows that the process has started.
+            self._wait(self._submit(os.getpid), cancel, self._longest_wait)
+            self.has_started = True
+        except (BrokenExecutor, FutureTimeoutError, MemoryError):
+            self._end()
+            raise LimitError(f"{self._task} could not begin: the machine is busy or short of memory; try again later") from None
 
     def _call[Result](self, function: Callable[[], Result], cancel: threading.Event) -> Result:
         """Return the result of a function. Replace a process that exceeds a limit or whose call is cancelled."""
         try:
-            # This call takes no time, so its result shows that the process has begun.
-            self._wait(self._submit(os.getpid), cancel, self._patience)
-            self.has_begun = True
-        except (BrokenExecutor, FutureTimeoutError, MemoryError):
-            self._end()
-            raise LimitError(f"{self._task} could not begin: the machine is busy or short of memory; try again later") from None
-        try:
             call = self._submit(partial(_call_limited, self._seconds, function))
-            result, computed = self._wait(call, cancel, self._seconds + self._patience)
+            result, seconds = self._wait(call, cancel, self._seconds + self._longest_wait)
         except FutureTimeoutError:
             self._replace()
             raise LimitError(f"{self._task} takes too long while the machine is busy; try again later") from None
@@ -167,7 +172,7 @@ class LimitedProcess:
             # The process survives.
             pass
         else:
-            self.computed += computed
+            self.computed_seconds += seconds
             return result
         raise LimitError(f"{self._task} needs more than {self._seconds} s or {self._memory // 2**20} MB; choose a simpler one")
 
@@ -186,27 +191,26 @@ class LimitedProcess:
         """Start a call, in a new process if the previous process has ended."""
         if self._executor is not None:
             with suppress(BrokenExecutor):
-                future: Future[Result] = self._executor.submit(call)
-                return future
+                return self._executor.submit(call)
         self._executor = ProcessPoolExecutor(
             max_workers=1, timeout=IDLE_SECONDS, initializer=_prepare_process, initargs=(self._memory, os.getpid())
         )
-        first_future: Future[Result] = self._executor.submit(call)
-        return first_future
+        return self._executor.submit(call)
 
 
 class LimitedProcesses:
-    """Makes calls in several limited processes. A process that has not begun is used only when the other processes are busy."""
+    """Makes calls in several limited processes. A process that has not started is used only when the others are busy."""
 
     def __init__(self, count: int = PROCESSES) -> None:
         self._processes = [LimitedProcess() for _ in range(count)]
-        # Free processes as (has not begun, number): processes that have begun precede the others.
+        # Free processes as (has not started, number), so that processes that have started come first.
         self._free: PriorityQueue[tuple[bool, int]] = PriorityQueue()
         for number in range(count):
             self._release(number)
 
     def _release(self, number: int) -> None:
-        self._free.put((not self._processes[number].has_begun, number))
+        """Make a process available for another call."""
+        self._free.put((not self._processes[number].has_started, number))
 
     def __call__[Result](self, function: Callable[[], Result], cancel: threading.Event | None = None) -> Result:
         """Return the result of a function, called in a free process as by `LimitedProcess`."""
@@ -218,18 +222,18 @@ class LimitedProcesses:
 
     def start(self) -> None:
         """Start a process on another thread. A call that follows need not wait until the process has loaded its modules."""
-        process = next((each for each in self._processes if each.has_begun), self._processes[0])
+        process = next((each for each in self._processes if each.has_started), self._processes[0])
         threading.Thread(target=process.start, name="start of a limited process", daemon=True).start()
 
     @property
-    def stopped(self) -> int:
+    def stopped_calls(self) -> int:
         """Number of calls that exceeded a limit."""
-        return sum(process.stopped for process in self._processes)
+        return sum(process.stopped_calls for process in self._processes)
 
     @property
-    def computed(self) -> float:
+    def computed_seconds(self) -> float:
         """Processor time of the ended calls, in seconds."""
-        return sum(process.computed for process in self._processes)
+        return sum(process.computed_seconds for process in self._processes)
 
     def close(self) -> None:
         """End the processes."""
@@ -266,6 +270,7 @@ def _end_with_server(server_id: int) -> None:
 
 
 def _limit_memory(additional_bytes: int) -> None:
+    """Limit the address space of this process, except on Windows."""
     with suppress(ImportError):
         import resource
 

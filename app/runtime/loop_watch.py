@@ -27,8 +27,8 @@ HIGH_SECONDS = 0.05
 # Factor by which the delay decays per tick: 0.7 in 0.1 s. The load is normal again half a second after a peak of 0.3 s.
 _DECAY = 0.7 ** (TICK_SECONDS / 0.1)
 
-LONGEST_SECONDS = 2.0
-"""Time after which a high load counts as normal for one tick, in seconds. Thus postponed work is not blocked for ever."""
+LONGEST_HIGH_SECONDS = 2.0
+"""Time after which a high load counts as normal for one tick, in seconds, so that postponed work is not blocked for ever."""
 
 
 class LoadMonitor:
@@ -44,16 +44,16 @@ class LoadMonitor:
         self._clock = clock
         self._due: float | None = None
         self._high_since: float | None = None
-        # Largest recent delay, which decays, in seconds.
-        self.delay = 0.0
+        # Largest delay of a tick so far, in seconds, with exponential decay.
+        self._recent_delay = 0.0
 
     def tick(self) -> float:
         """Return the delay of this tick, in seconds. Call this every `TICK_SECONDS` on the event loop."""
         now = self._clock()
         delay = max(0.0, now - self._due) if self._due is not None else 0.0
-        self.delay = max(delay, _DECAY * self.delay)
+        self._recent_delay = max(delay, _DECAY * self._recent_delay)
         self._due = now + TICK_SECONDS
-        if self.delay <= HIGH_SECONDS or (self._high_since is not None and now - self._high_since > LONGEST_SECONDS):
+        if self._recent_delay <= HIGH_SECONDS or (self._high_since is not None and now - self._high_since > LONGEST_HIGH_SECONDS):
             self._high_since = None
         elif self._high_since is None:
             self._high_since = now
@@ -71,15 +71,15 @@ class LoadMonitor:
 SLOW_SECONDS = 0.05
 """Duration above which an iteration of the event loop is logged and counted, in seconds."""
 
-# Smallest delay of a tick that is reported. A slow iteration may begin up to one interval before the tick is due, and then delays
-# the tick by less than its own duration.
+# Delay above which a tick is reported, in seconds. A slow iteration may begin up to one interval before the tick is due, and then
+# delays the tick by less than its own duration.
 _REPORTED_DELAY = SLOW_SECONDS - TICK_SECONDS
 # Interval at which the stack is read, in seconds.
 _SAMPLE_SECONDS = 0.5 * TICK_SECONDS
 # Folder of the app.
 _APP_FOLDER = Path(__file__).parents[1]
-# Folders of the app whose functions only pass calls on.
-_PLUMBING = ("runtime", "server", "browser/bokeh_patches")
+# Folders of the app whose functions only relay calls to other functions.
+_RELAYING_FOLDERS = ("runtime", "server", "browser/bokeh_patches")
 # Modules outside the app that run the loop. If the stack contains nothing else, the loop waits for events or for a processor.
 _LOOP_MODULES = (
     "asyncio",
@@ -93,7 +93,7 @@ _LOOP_MODULES = (
 )
 
 WAITING = "none: the thread waited for the interpreter lock or a processor"
-"""Cause of a delay during which the loop ran no callback."""
+"""Cause of a delay during which no callback was seen on the loop."""
 
 log = logging.getLogger(f"bokeh.{__name__}")
 
@@ -117,9 +117,10 @@ class LoopWatch:
     def __init__(self, load: LoadMonitor, delays: Histogram, processor_time: Callable[[], float] = time.thread_time) -> None:
         self._load, self._delays, self._processor_time = load, delays, processor_time
         self._thread = threading.get_ident()
+        # Causes that were found since the last tick.
         self._samples: list[str] = []
         self._last_processor_time = self._processor_time()
-        # Processor time at the beginning of a garbage collection.
+        # Processor time of the loop's thread at the beginning of the present garbage collection.
         self._collection_begin = 0.0
         # Processor time of the garbage collections since the last tick.
         self._collection_seconds = 0.0
@@ -149,8 +150,8 @@ class LoopWatch:
                 *(1000.0 * seconds for seconds in (delay, own_seconds, collection_seconds)), cause,
             )  # fmt: skip
 
-    def watch(self, stopping: threading.Event) -> None:
-        """Read the loop's stack whenever a tick is overdue, until the server stops. Call this on a separate thread."""
+    def sample_stacks(self, stopping: threading.Event) -> None:
+        """Read the loop's stack repeatedly while a tick is overdue, until the server stops. Call this on a separate thread."""
         while not stopping.wait(_SAMPLE_SECONDS):
             frame = sys._current_frames().get(self._thread) if self._load.overdue_seconds() > _SAMPLE_SECONDS else None
             if frame is not None:
@@ -158,13 +159,17 @@ class LoopWatch:
 
 
 def find_cause(innermost: FrameType) -> str:
-    """Return the outermost function of the app that does more than pass calls on; without one, other functions or `WAITING`."""
+    """Return the outermost function of the app that does more than relay calls, given the innermost frame of the loop's stack.
+
+    Without such a function, return another function of the app, of a library, or both; without these, `WAITING`.
+    """
+    # The outermost frame comes first.
     frames = [frame for frame, _ in traceback.walk_stack(innermost)][::-1]
     app_places = [place for place in (_place_in_app(frame.f_code) for frame in frames) if place is not None]
     library_places = [place for place in map(_place_in_library, frames) if place is not None]
-    cause = next((place for place in app_places if not place.startswith(_PLUMBING)), None)
-    if cause is not None:
-        return cause
+    own_places = [place for place in app_places if not place.startswith(_RELAYING_FOLDERS)]
+    if own_places:
+        return own_places[0]
     if not app_places:
         return library_places[0] if library_places else WAITING
     return f"{app_places[0]}, {library_places[-1]}" if library_places else app_places[0]
@@ -173,11 +178,13 @@ def find_cause(innermost: FrameType) -> str:
 # Without the cache, one reading of a stack takes a millisecond, in which the loop waits for the interpreter lock.
 @lru_cache(maxsize=4096)
 def _place_in_app(code: CodeType) -> str | None:
+    """Return file and function of code in the app; None for other code."""
     path = Path(code.co_filename)
     return f"{path.relative_to(_APP_FOLDER).with_suffix('')}: {code.co_qualname}" if path.is_relative_to(_APP_FOLDER) else None
 
 
 def _place_in_library(frame: FrameType) -> str | None:
+    """Return module and function of a frame in a library; None for the app, Python's own modules and `_LOOP_MODULES`."""
     module = frame.f_globals.get("__name__", "")
     top = module.partition(".")[0]
     if top in sys.stdlib_module_names or top in ("__main__", "app", "") or module.startswith(_LOOP_MODULES):

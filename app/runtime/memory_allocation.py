@@ -1,4 +1,4 @@
-"""Memory allocation of glibc: options and calls with which a server of many threads returns free memory to the system."""
+"""Options and calls of glibc with which a server of many threads returns free memory to the operating system."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _OPTIONS = (
     # Number of arenas. By default there are eight per core, and each keeps the memory that its threads have freed.
     _Option("MALLOC_ARENA_MAX", -8, 2),
     # Smallest size of an array with its own memory mapping, in bytes. Arrays of a map with 224 × 224 pixels are larger. By
-    # default, this smallest size grows to 32 MiB.
+    # default, glibc raises this size up to 32 MiB.
     _Option("MALLOC_MMAP_THRESHOLD_", -3, 2**17),
 )
 

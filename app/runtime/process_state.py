@@ -13,7 +13,7 @@ from weakref import WeakKeyDictionary
 
 from bokeh.document import Document
 
-from app.runtime.capacity import Capacity, ProcessorTimes, count_page, processor_times
+from app.runtime.capacity import Capacity, ProcessorTimes, page_weight, processor_times
 from app.runtime.fair_share import FairShare
 from app.runtime.limited_process import COMPILATION_SECONDS, PROCESSES, LimitedProcess, LimitedProcesses
 from app.runtime.loop_watch import LoadMonitor
@@ -39,7 +39,7 @@ class ProcessState:
     sockets
         Number of open WebSockets by network, see `app.runtime.visitors.network_of`.
     making_page
-        Lock that is held while a page is made.
+        Lock that is held while a page is built.
     jobs
         Background jobs of all sessions.
     limited
@@ -92,7 +92,7 @@ class ProcessState:
     async def next_turn(self) -> None:
         """Wait for an iteration of the event loop in which no other page has the turn.
 
-        asyncio runs all that is ready in one iteration, so work of many pages that has piled up would delay all else by its sum.
+        asyncio runs all ready callbacks in one iteration, so the pending work of many pages would delay everything else.
         """
         async with self._turns.setdefault(asyncio.get_running_loop(), asyncio.Lock()):
             await asyncio.sleep(0)
@@ -102,14 +102,14 @@ class ProcessState:
         return self._shares.setdefault(document, FairShare())
 
     def _processor_times(self) -> ProcessorTimes:
-        return processor_times(self.jobs.stats().processor_time, self.limited.computed + self.compiler.computed)
+        return processor_times(self.jobs.stats().processor_time, self.limited.computed_seconds + self.compiler.computed_seconds)
 
     def pages(self) -> Mapping[str, float]:
-        """Return the number of pages by visitor, as `Capacity` counts them."""
+        """Return the sum of the weights of each visitor's pages, see `app.runtime.capacity.page_weight`."""
         pages: dict[str, float] = defaultdict(float)
         for session in self.sessions():
             share = self.fair_share(session.document)
-            pages[visitor_of(session.document)] += count_page(share, connected=session.connection_count > 0)
+            pages[visitor_of(session.document)] += page_weight(share, connected=session.connection_count > 0)
         return pages
 
     def adapt_to_load(self) -> None:
@@ -125,7 +125,7 @@ class ProcessState:
 
 
 _lock = threading.Lock()
-_started: ProcessState | None = None
+_current_state: ProcessState | None = None
 
 
 def process_state() -> ProcessState:
@@ -137,7 +137,7 @@ def process_state() -> ProcessState:
         If an environment variable is invalid. The message has its name, its value and the legal values.
     """
     with _lock:
-        return _started or _start(read_settings(os.environ))
+        return _current_state or _start(read_settings(os.environ))
 
 
 def start_process_state(settings: Settings) -> ProcessState:
@@ -147,6 +147,6 @@ def start_process_state(settings: Settings) -> ProcessState:
 
 
 def _start(settings: Settings) -> ProcessState:
-    global _started
-    _started = ProcessState(settings)
-    return _started
+    global _current_state
+    _current_state = ProcessState(settings)
+    return _current_state

@@ -1,7 +1,7 @@
-"""Callbacks that any thread may call. They run on the event loop under the lock of a session.
+"""Callbacks that any thread may call. They run on the event loop, under the lock of a session.
 
 Bokeh's ``Document.locked_callback`` is not used, because it schedules calls through events of the document. While a
-callback holds events back (``pn.io.hold``), Panel and Bokeh copy the list of held events, then replace the list: an
+callback holds events back (``pn.io.hold``), Panel and Bokeh copy the list of held events, then replace the list. An
 event that a thread appends in between is lost. With Bokeh's ``policy="latest"``, one lost event blocks all later calls.
 """
 
@@ -91,21 +91,24 @@ class _LockedCallback:
     async def _run_calls(self) -> None:
         while self._calls:
             await self._next_turn()
-            context = self._open_session()
+            context = self._open_context()
             if context is None:
                 return
             try:
-                await self._share.count(context.with_locked_document(self._run_one))
+                await self._share.charge_for(context.with_locked_document(self._run_one))
             except Exception:
+                # Later changes could not be sent either.
                 log.exception("the changes of a callback could not be sent")
                 self._calls.clear()
 
-    def _open_session(self) -> SessionContext | None:
+    def _open_context(self) -> SessionContext | None:
+        """Return the context of the session; None after the end of the session."""
         document = self._document()
         context = document.session_context if document is not None else None
         return context if context is not None and not context.destroyed else None
 
     async def _run_one(self, document: Document) -> None:
+        """Run the first waiting call, if any, with the document locked."""
         if self._calls:
             call = self._calls.popleft()
             try:

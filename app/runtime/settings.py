@@ -41,6 +41,7 @@ def _number(low: float, high: float) -> _Parser:
 
 
 def _in_range[Number: (int, float)](value: Number, low: Number, high: Number) -> Number:
+    """Return a value from `low` to `high`; ValueError for another value, including NaN."""
     if not low <= value <= high:
         raise ValueError
     return value

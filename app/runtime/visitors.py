@@ -1,4 +1,4 @@
-"""Identification of visitors for limits: by an address, or by a network."""
+"""Identification of visitors for limits, by the networks of their addresses."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ def network_of(address: str) -> str:
     return address if parsed.version == 4 or parsed.is_loopback else str(ipaddress.ip_network((parsed, 64), strict=False))
 
 
-def is_near(network: str) -> bool:
-    """Whether a network is this machine or has no address, as in a notebook."""
+def is_local(network: str) -> bool:
+    """Whether a network is this machine, or is no network, as in a notebook."""
     try:
         return ipaddress.ip_network(network).is_loopback
     except ValueError:
@@ -30,6 +30,6 @@ def visitor_of(document: Document) -> str:
 
 
 def account_of(document: Document) -> str | None:
-    """Return the visitor whose share of compiled code a page uses; None for this machine, which has no limit."""
+    """Return the visitor to whose limit of compiled code a page counts; None for this machine, which has no limit."""
     visitor = visitor_of(document)
-    return None if is_near(visitor) else visitor
+    return None if is_local(visitor) else visitor

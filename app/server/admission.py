@@ -1,4 +1,4 @@
-"""Admission of pages and WebSockets. They are refused if the server is full or stopping, or if their address has too many."""
+"""Admission of pages and WebSockets. Both are refused if the server is full or stopping, or if their address has too many."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ LONGEST_LINK = 8192
 RETRY_SECONDS = 10
 """Interval at which the browser requests a refused page again, in seconds."""
 
-RETRIED = (http.client.TOO_MANY_REQUESTS, http.client.SERVICE_UNAVAILABLE)
-"""HTTP statuses of refused pages that may be served later."""
+RETRIED_STATUSES = (http.client.TOO_MANY_REQUESTS, http.client.SERVICE_UNAVAILABLE)
+"""HTTP statuses of refusals after which the browser requests the page again."""
 
 
 def admit(request: Any) -> None:
@@ -40,18 +40,17 @@ def admit(request: Any) -> None:
     if len(request.uri) > LONGEST_LINK:
         raise HTTPError(http.client.REQUEST_URI_TOO_LONG, reason=f"The address is longer than {LONGEST_LINK} characters.")
     network = network_of(request.remote_ip)
-    _refuse(http.client.SERVICE_UNAVAILABLE, refusal_reason(process_state(), network))
+    _raise_for(http.client.SERVICE_UNAVAILABLE, refusal_reason(process_state(), network))
     page_count = sum(visitor_of(session.document) == network for session in process_state().sessions())
-    _refuse(http.client.TOO_MANY_REQUESTS, _share_reason(page_count))
+    _raise_for(http.client.TOO_MANY_REQUESTS, _address_reason(page_count))
 
 
 def refusal_page(sentence: str) -> str:
     """Return an error page with a sentence. The browser requests the refused page again after `RETRY_SECONDS`."""
-    head = (
-        f"<meta charset=utf-8><meta name=viewport content='width=device-width'><meta http-equiv=refresh content={RETRY_SECONDS}>"
-    )
+    refresh = f"<meta http-equiv=refresh content={RETRY_SECONDS}>"
+    head = f"<meta charset=utf-8><meta name=viewport content='width=device-width'>{refresh}<title>Escape Explorer</title>"
     body = f"<p>{escape(sentence)} This page tries again every {RETRY_SECONDS} s.</p>"
-    return f"<!doctype html><html lang=en><head>{head}<title>Escape Explorer</title></head><body>{body}</body></html>"
+    return f"<!doctype html><html lang=en><head>{head}</head><body>{body}</body></html>"
 
 
 def check_session(token: str, application_context: Any, address: str, application: Any) -> None:
@@ -91,13 +90,14 @@ def count_socket(address: str) -> None:
     bokeh.protocol.exceptions.ProtocolError
         If the address, or the server, has too many WebSockets. Then the count does not change.
     """
-    sockets, most_sockets = process_state().sockets, process_state().settings.most_sessions
-    reason = _share_reason(sockets[network_of(address)])
+    sockets, network = process_state().sockets, network_of(address)
+    most_sockets = process_state().settings.most_sessions
+    reason = _address_reason(sockets[network])
     if reason is None and sockets.total() >= most_sockets:
         reason = f"There are {most_sockets} connections already."
     if reason is not None:
         raise ProtocolError(reason)
-    sockets[network_of(address)] += 1
+    sockets[network] += 1
 
 
 def forget_socket(address: str) -> None:
@@ -108,14 +108,16 @@ def forget_socket(address: str) -> None:
         del sockets[network]
 
 
-def _share_reason(count: int) -> str | None:
+def _address_reason(count: int) -> str | None:
+    """Return a sentence that refuses another page or WebSocket to an address with `count` of them; None if it may have more."""
     limit = process_state().settings.pages_per_address
     if count < limit:
         return None
     return f"Your address has {limit} open pages, the most that {variable_name('pages_per_address')} permits. Close some of them."
 
 
-def _refuse(status: int, reason: str | None) -> None:
+def _raise_for(status: int, reason: str | None) -> None:
+    """Refuse a request with a status if there is a reason, and count the refusal."""
     if reason is not None:
         process_state().metrics.pages_refused.inc()
         raise HTTPError(status, reason=reason)

@@ -14,7 +14,7 @@ from typing import Any
 import param
 from bokeh.core.serialization import DeserializationError, Deserializer, UnknownReferenceError
 from bokeh.document import Document
-from bokeh.events import ClientReconnected, DocumentReady, ModelEvent
+from bokeh.events import DocumentReady, ModelEvent
 from bokeh.model import DataModel, Model
 from bokeh.models import (
     AbstractGroup,
@@ -48,11 +48,11 @@ _LARGEST_NUMBER = 1e15
 _LARGEST_DEPTH = 12
 
 Check = Callable[[Model, Any], bool]
-"""Returns whether a model may get a value."""
+"""Function that returns whether a browser may give a value to a property of a model."""
 
 
 class RefusedMessageError(ValueError):
-    """A message that no page sends. The sentence says what is wrong."""
+    """A message that no page sends. Its text says what is wrong."""
 
 
 class OutdatedMessageError(RefusedMessageError):
@@ -63,7 +63,7 @@ def find_choices(content: Any, document: Document) -> list[tuple[Model, str]]:
     """Return the switches, radio buttons and lists that a checked PATCH-DOC message changes, with the changed properties."""
     events = (event for event in content["events"] if event["kind"] == "ModelChanged")
     changes = ((document.models.get_by_id(event["model"]["id"]), event["attr"]) for event in events)
-    return [(model, name) for model, name in changes if isinstance(model, _CHOICES)]
+    return [(model, name) for model, name in changes if isinstance(model, _CHOICE_MODELS)]
 
 
 def check_patch(content: Any, document: Document) -> None:
@@ -103,7 +103,7 @@ def check_patch(content: Any, document: Document) -> None:
 
 
 def _decode(document: Document, decoder: Deserializer, value: Any) -> Any:
-    """Return a value as a Python object. Refuse unknown classes and wrong fields. Bokeh raises various errors for both."""
+    """Return a value as a Python object. Refuse unknown models, unknown classes and wrong fields."""
     try:
         return decoder.decode(value)
     except UnknownReferenceError as error:
@@ -111,27 +111,38 @@ def _decode(document: Document, decoder: Deserializer, value: Any) -> Any:
             raise OutdatedMessageError(f"the model {_quote(error.id)} is no longer there") from None
         raise RefusedMessageError(f"there is no model {_quote(error.id)}") from None
     except (DeserializationError, TypeError, ValueError, KeyError, AttributeError) as error:
+        # Bokeh raises any of these for an unknown class or a wrong field.
         raise RefusedMessageError(f"{_quote(value)} cannot be decoded: {_quote(str(error))}") from None
 
 
 def _check_range(changed_range: Range1d, **values: float) -> None:
-    """Refuse a range whose ends would change their order, even if only one end changes."""
-    ends = {"start": changed_range.start, "end": changed_range.end} | values
-    if (ends["end"] - ends["start"]) * (changed_range.end - changed_range.start) <= 0.0:
-        raise RefusedMessageError(f"a range from {ends['start']} to {ends['end']}")
+    """Refuse values of a range, of one end or both, that would make the range empty or reverse its direction."""
+    start, end = values.get("start", changed_range.start), values.get("end", changed_range.end)
+    if (end - start) * (changed_range.end - changed_range.start) <= 0.0:
+        raise RefusedMessageError(f"a range from {start} to {end}")
 
 
 def _check_change(model: Model, name: str, value: Any) -> None:
+    """Refuse a change of a property that no browser changes, or to a value that the property must not have."""
     place = f"{type(model).__name__}.{name}"
-    checks = [checks[name] for kind, checks in _EDITABLE.items() if isinstance(model, kind) and name in checks]
+    checks = _checks_of(model, name)
     if not checks or name not in model.properties():
         raise RefusedMessageError(f"{place} is not a property that a browser changes")
     if not model.lookup(name).property.is_valid(value) or not all(check(model, value) for check in checks):
         raise RefusedMessageError(f"{place} cannot be {_quote(value)}")
 
 
+def _checks_of(model: Model, name: str) -> list[Check]:
+    """Return the checks of a property; none if a browser must not change the property."""
+    # Every Bokeh model has the properties name and tags, which are no parameters of the component.
+    if isinstance(model, DataModel) and name not in ("name", "tags"):
+        return [lambda model, value: _is_parameter_value(model, name, value)]
+    return [checks[name] for kind, checks in _EDITABLE.items() if isinstance(model, kind) and name in checks]
+
+
 def _check_event(event: Any) -> None:
-    if isinstance(event, DocumentReady | ClientReconnected):
+    """Refuse an event without a subscriber on the server, or with coordinates that are not numbers."""
+    if isinstance(event, DocumentReady):
         return
     if not isinstance(event, ModelEvent) or not isinstance(event.model, Model):
         raise RefusedMessageError(f"an event {_quote(event)} that no page sends")
@@ -148,17 +159,18 @@ _EVENT_COORDINATES = ("x", "y", "sx", "sy", "x0", "x1", "y0", "y1")
 
 def _check_values(events: Any, known: Container[str]) -> None:
     """Refuse too many, too deep or too large values, and values of types that no page sends."""
-    for count, (depth, value) in enumerate(_walk(events, 0, known)):
-        if count == MOST_VALUES or depth > _LARGEST_DEPTH:
-            raise RefusedMessageError("a patch with too many values")
+    for index, (depth, value) in enumerate(_walk(events, 0, known)):
+        if index == MOST_VALUES or depth > _LARGEST_DEPTH:
+            raise RefusedMessageError("a patch with too many or too deeply nested values")
         if not _is_plain(value):
             raise RefusedMessageError(f"a patch with the value {_quote(value)}")
 
 
 def _walk(value: Any, depth: int, known: Container[str]) -> Iterator[tuple[int, Any]]:
-    """Yield all values with their depths, except the attributes of models in `known`, which Bokeh ignores.
+    """Yield a value and all values in it, with their depths, except the models whose ids are in `known`.
 
-    A browser that first refers to a model added by the server sends all attributes of the model, and not only its id.
+    Bokeh ignores the attributes of these models. A browser that first refers to a model added by the server sends all attributes
+    of the model, and not only its id.
     """
     if isinstance(value, dict) and value.get("type") == "object" and isinstance(value.get("id"), str) and value["id"] in known:
         return
@@ -183,7 +195,7 @@ def _is_plain(value: Any) -> bool:
 
 
 def _is_real(value: Any) -> bool:
-    # NaN is not real: the comparison is False.
+    """Whether a value is a number of at most `_LARGEST_NUMBER`. NaN is not: its comparison is False."""
     return isinstance(value, int | float) and abs(value) <= _LARGEST_NUMBER
 
 
@@ -192,13 +204,13 @@ def _quote(value: Any) -> str:
 
 
 def _is_between(value: Any, low: Any, high: Any) -> bool:
-    """Whether a value is a number within limits; None stands for no limit."""
+    """Whether a value is a number, but no boolean, within two limits; None stands for no limit."""
     return _is_real(value) and not isinstance(value, bool) and (low is None or low <= value) and (high is None or value <= high)
 
 
 def _is_on_slider(slider: Any, value: Any) -> bool:
-    values = value if isinstance(value, list | tuple) else [value]
-    return all(_is_between(each, slider.start, slider.end) for each in values) and list(values) == sorted(values)
+    values = list(value) if isinstance(value, list | tuple) else [value]
+    return all(_is_between(each, slider.start, slider.end) for each in values) and values == sorted(values)
 
 
 def _is_option(select: Any, value: Any) -> bool:
@@ -226,7 +238,7 @@ def _is_short(box: Any, value: Any) -> bool:
     return len(value) <= (LONGEST_TEXT if box.max_length is None else box.max_length)
 
 
-def _is_yes_or_no(_: Any, value: Any) -> bool:
+def _is_boolean(_: Any, value: Any) -> bool:
     return isinstance(value, bool)
 
 
@@ -235,7 +247,7 @@ def _is_number(_: Any, value: Any) -> bool:
 
 
 def _is_position(_: Any, value: Any) -> bool:
-    """Whether a value is a position; NaN stands for a pointer outside a plot."""
+    """Whether a value is a position on an axis; NaN stands for a pointer outside the plot."""
     return value is None or isinstance(value, int | float)
 
 
@@ -243,20 +255,21 @@ def _is_size(_: Any, value: Any) -> bool:
     return _is_between(value, 0, None)
 
 
-def _is_list_of_positions(_: Any, value: Any) -> bool:
-    """Whether no number of a list is negative."""
+def _is_nonnegative_list(_: Any, value: Any) -> bool:
+    """Whether all values of a list are numbers of at least 0."""
     return all(_is_between(each, 0, None) for each in value)
 
 
-def _is_data(model: DataModel, name: str, value: Any) -> bool:
-    """Whether a value is legal for the component's parameter of this name."""
+def _is_parameter_value(model: DataModel, name: str, value: Any) -> bool:
+    """Whether a value is legal for the parameter of a component, given the component's data model and the parameter's name."""
     # Panel offers no public way from a data model to the component class.
     owners = (each for each in param.concrete_descendents(JSComponent).values() if each._data_model is type(model))
     parameter = next((owner.param[name] for owner in owners if name in owner.param), None)
     match parameter:
-        case param.Integer() | param.Number():
+        case param.Number():
             low, high = parameter.bounds or (None, None)
-            return _is_between(value, low, high) and (isinstance(value, int) or type(parameter) is param.Number)
+            is_right_type = isinstance(value, int) or not isinstance(parameter, param.Integer)
+            return is_right_type and _is_between(value, low, high)
         case param.Boolean():
             return isinstance(value, bool)
         case param.String() | param.Dict():
@@ -264,19 +277,8 @@ def _is_data(model: DataModel, name: str, value: Any) -> bool:
     return False
 
 
-# Widgets whose changes the server sends back, see `app.server.page_websocket`.
-_CHOICES = (CheckboxGroup, RadioGroup, Select)
-
-
-class _DataProperties(dict[str, Check]):
-    """Checks for the properties of components, whose parameters are numbers, texts or dictionaries."""
-
-    def __contains__(self, name: object) -> bool:
-        # Every Bokeh model has these two properties, which are not parameters.
-        return name not in ("name", "tags")
-
-    def __missing__(self, name: str) -> Check:
-        return lambda model, value: _is_data(model, name, value)
+# Widgets whose changes the server sends back to the browser, see `app.server.page_websocket`.
+_CHOICE_MODELS = (CheckboxGroup, RadioGroup, Select)
 
 
 _EDITABLE: dict[type[Model], Mapping[str, Check]] = {
@@ -284,18 +286,18 @@ _EDITABLE: dict[type[Model], Mapping[str, Check]] = {
     TextInput: {"value": _is_short, "value_input": _is_short},
     Select: {"value": _is_option},
     AbstractGroup: {"active": _is_active},
-    Toggle: {"active": _is_yes_or_no},
-    Checkbox: {"active": _is_yes_or_no},
-    Switch: {"active": _is_yes_or_no},
+    Toggle: {"active": _is_boolean},
+    Checkbox: {"active": _is_boolean},
+    Switch: {"active": _is_boolean},
     Tabs: {"active": _is_tab},
     Player: {"value": _is_on_slider, "value_throttled": _is_on_slider, "direction": _is_direction},
-    Card: {"collapsed": _is_yes_or_no},
+    Card: {"collapsed": _is_boolean},
     Column: {"scroll_position": _is_size},
     # The tags are answers to moves, see `app.views.maps.map_ranges`.
-    Range1d: {"start": _is_number, "end": _is_number, "tags": _is_list_of_positions},
+    Range1d: {"start": _is_number, "end": _is_number, "tags": _is_nonnegative_list},
     Span: {"location": _is_position},
     Plot: dict.fromkeys(("inner_width", "inner_height", "outer_width", "outer_height"), _is_size),
-    Selection: {"indices": _is_list_of_positions, "line_indices": _is_list_of_positions},
-    DataModel: _DataProperties(),
+    Selection: {"indices": _is_nonnegative_list, "line_indices": _is_nonnegative_list},
 }
-"""Properties that a browser may change, each with a check of its value, by class of model; subclasses are included."""
+"""Properties that a browser may change, each with a check of its value, by class of model. The checks also apply to subclasses.
+`_checks_of` adds the parameters of components."""

@@ -1,4 +1,4 @@
-"""Static files, compressed for browsers that accept gzip: the scripts of Bokeh and Panel shrink to a quarter."""
+"""Static files, compressed for browsers that accept gzip. The scripts of Bokeh and Panel shrink to a quarter."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from app.browser.module_files import accepts_gzip
 
 # Suffixes of the files to compress. Other types are compressed already.
 _SUFFIXES = frozenset({".js", ".mjs", ".css", ".svg", ".json", ".map"})
-# Number of compressed files in the cache. Together, they take some megabytes.
+# Number of compressed files in the cache. Together, they take a few megabytes.
 _CACHED_FILES = 64
 
 
@@ -32,6 +32,7 @@ class CompressedFiles(StaticFileHandler):
         if not self._is_compressed:
             await super().get(path, include_body)
             return
+        # The following steps are those of Tornado's method, which would send the file itself.
         self.path = self.parse_url_path(path)
         absolute_path = self.validate_absolute_path(self.root, self.get_absolute_path(self.root, self.path))
         if absolute_path is None:
@@ -58,5 +59,5 @@ class CompressedFiles(StaticFileHandler):
 
 @functools.lru_cache(maxsize=_CACHED_FILES)
 def _compress(path: str, _change_time: int) -> bytes:
-    """Return the compressed content of a file. `_change_time` distinguishes versions of the file in the cache."""
+    """Return the compressed content of a file. `_change_time` distinguishes the versions of a file in the cache."""
     return gzip.compress(Path(path).read_bytes())

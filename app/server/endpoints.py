@@ -15,7 +15,7 @@ from app.runtime.process_state import process_state
 from app.server.security_headers import SecurityHeaders
 
 
-class _Uncached(SecurityHeaders):
+class _UncachedHandler(SecurityHeaders):
     """Handler whose responses must not be cached."""
 
     def set_default_headers(self) -> None:
@@ -24,7 +24,7 @@ class _Uncached(SecurityHeaders):
         self.set_header("Cache-Control", "no-store")
 
 
-class Liveness(_Uncached):
+class Liveness(_UncachedHandler):
     """Answers 200 while the process responds, like ``panel serve --liveness``."""
 
     def get(self) -> None:
@@ -32,7 +32,7 @@ class Liveness(_Uncached):
         self.write({self.request.path: True})
 
 
-class Readiness(_Uncached):
+class Readiness(_UncachedHandler):
     """Answers 200 if the server accepts more visitors, otherwise 503 with the reason."""
 
     def get(self) -> None:
@@ -43,7 +43,7 @@ class Readiness(_Uncached):
         self.write({"ready": reason is None, "sentence": reason or "Ready."})
 
 
-class Metrics(_Uncached):
+class Metrics(_UncachedHandler):
     """Answers with metrics for Prometheus."""
 
     def get(self) -> None:
@@ -52,7 +52,7 @@ class Metrics(_Uncached):
         self.write(generate_latest(process_state().metrics.registry))
 
 
-class Status(_Uncached):
+class Status(_UncachedHandler):
     """Answers with the same metrics as an HTML page for people."""
 
     def get(self) -> None:
@@ -91,6 +91,7 @@ def status_page(sentence: str, registry: CollectorRegistry) -> str:
 
 
 def _samples(registry: CollectorRegistry) -> list[tuple[str, float]]:
+    """Return label and value of each metric. Buckets and times of creation say nothing to people."""
     return [
         (_label(family.documentation, sample), sample.value)
         for family in registry.collect()
@@ -100,8 +101,9 @@ def _samples(registry: CollectorRegistry) -> list[tuple[str, float]]:
 
 
 def _label(documentation: str, sample: Any) -> str:
-    """Return the documentation of a metric, with the sample's labels in parentheses."""
-    labels = [label for label in sample.labels.values() if label]
+    """Return the documentation of a metric, with the values of the sample's labels in parentheses."""
+    details = [value for value in sample.labels.values() if value]
+    # A histogram also has a sample with the sum.
     if sample.name.endswith("_count"):
-        labels.append("count")
-    return f"{documentation} ({', '.join(labels)})" if labels else documentation
+        details.append("count")
+    return f"{documentation} ({', '.join(details)})" if details else documentation

@@ -18,10 +18,10 @@ from tornado.iostream import IOStream
 from app.runtime.process_state import process_state
 from app.runtime.visitors import network_of
 from app.server.admission import LONGEST_LINK
-from app.server.routes import lead_to_page, refuse_other_hosts, refuse_other_routes
+from app.server.routes import redirect_to_page, refuse_other_hosts, refuse_other_routes
 
 LIMITS: Mapping[str, int] = {
-    # Time until the next request of a connection, and until the end of its headers.
+    # Longest time until the next request of a connection has begun and its headers have arrived.
     "idle_connection_timeout": 20,
     "body_timeout": 10,
     # The page uploads nothing.
@@ -31,7 +31,7 @@ LIMITS: Mapping[str, int] = {
 }
 """Options of the HTTP server, in seconds and bytes."""
 
-UNTRUSTED = ("X-Real-Ip", "X-Scheme")
+UNTRUSTED_HEADERS = ("X-Real-Ip", "X-Scheme")
 """Headers that are removed from requests, because a client can forge them. With ``--use-xheaders``, Tornado prefers them to
 ``X-Forwarded-For`` and ``X-Forwarded-Proto``, which the proxy sets."""
 
@@ -49,11 +49,12 @@ class LimitedHTTPServer(HTTPServer):
     def initialize(self, *args: Any, **kwargs: Any) -> None:
         """Apply the limits. Tornado calls this instead of a constructor."""
         super().initialize(*args, **{**LIMITS, **kwargs})
-        self._counts: Counter[str] = Counter()
+        # Numbers of open connections, WebSockets apart, by network.
+        self._connection_counts: Counter[str] = Counter()
         if isinstance(self.request_callback, BokehTornado):
             refuse_other_routes(self.request_callback)
             refuse_other_hosts(self.request_callback)
-            lead_to_page(self.request_callback)
+            redirect_to_page(self.request_callback)
 
     def handle_stream(self, stream: IOStream, address: Any) -> None:
         """Serve a new connection, or close it."""
@@ -62,32 +63,35 @@ class LimitedHTTPServer(HTTPServer):
             process_state().metrics.connections_refused.inc()
             stream.close()
             return
-        self._counts[network] += 1
+        self._connection_counts[network] += 1
         super().handle_stream(stream, address)
 
     def start_request(self, server_conn: object, request_conn: HTTPConnection) -> HTTPMessageDelegate:
-        """Read a request without the headers in `UNTRUSTED`."""
+        """Read a request without the headers in `UNTRUSTED_HEADERS`."""
         return _UntrustedHeaderRemover(super().start_request(server_conn, request_conn))
 
     def on_close(self, server_conn: Any) -> None:
         """Stop counting a connection that is closed or has become a WebSocket."""
         super().on_close(server_conn)
-        self._counts -= Counter([_network(server_conn.context.address)])
+        # Unlike the method `subtract`, this operator removes counts of 0.
+        self._connection_counts -= Counter([_network(server_conn.context.address)])
 
     def _is_full(self, network: str) -> bool:
+        """Whether the server, or a network unless a proxy hides it, has all the connections that it may have."""
         settings = process_state().settings
-        network_limit = CONNECTIONS_PER_PAGE * settings.pages_per_address
-        return self._counts.total() >= settings.most_connections or (not self.xheaders and self._counts[network] >= network_limit)
+        if self._connection_counts.total() >= settings.most_connections:
+            return True
+        return not self.xheaders and self._connection_counts[network] >= CONNECTIONS_PER_PAGE * settings.pages_per_address
 
 
 class _UntrustedHeaderRemover(HTTPMessageDelegate):
-    """Removes the headers in `UNTRUSTED` before another delegate receives a request."""
+    """Removes the headers in `UNTRUSTED_HEADERS` before another delegate receives a request."""
 
     def __init__(self, delegate: HTTPMessageDelegate) -> None:
         self._delegate = delegate
 
     def headers_received(self, start_line: RequestStartLine | ResponseStartLine, headers: HTTPHeaders) -> Awaitable[None] | None:
-        for name in UNTRUSTED:
+        for name in UNTRUSTED_HEADERS:
             headers.pop(name, None)
         return self._delegate.headers_received(start_line, headers)
 
@@ -101,6 +105,6 @@ class _UntrustedHeaderRemover(HTTPMessageDelegate):
         self._delegate.on_connection_close()
 
 
-def _network(address: Any) -> str:
-    # A Unix socket has no address.
-    return network_of(address[0]) if address else ""
+def _network(peer: Any) -> str:
+    """Return the network of the peer of a connection; empty for a Unix socket, whose peer has no address."""
+    return network_of(peer[0]) if peer else ""

@@ -1,4 +1,4 @@
-"""Checks of a WebSocket's messages before Bokeh gets them: form, size, number, and changes."""
+"""Checks of the messages of a WebSocket before Bokeh gets them: their form, size, rate and changes."""
 
 from __future__ import annotations
 
@@ -22,23 +22,23 @@ MOST_BUFFERS = 64
 MESSAGES_PER_SECOND = 400.0
 """Largest rate of the messages of a connection in the long run. Fast drags on a screen with 144 frames per second send 300."""
 
-MOST_AT_ONCE = 4000
-"""Largest number of messages at once, after a pause."""
+LARGEST_BURST = 4000
+"""Largest number of messages at once, after a pause in which none were sent."""
 
-REFUSED_COUNTS = 40
+REFUSAL_WEIGHT = 40
 """A refused message counts as this many messages, because it causes a line in the log. The page sends no such messages."""
 
 BYTES_PER_MESSAGE = 16 * 1024
 """Number of bytes of a part of a message that count as one more message."""
 
 # Number of parts before the buffers: header, metadata and content.
-_FIRST_PARTS = 3
+_PARTS_BEFORE_BUFFERS = 3
 # Number of parts of a buffer: header and payload.
 _PARTS_PER_BUFFER = 2
 
 
 class UnacceptableConnectionError(Exception):
-    """The connection must be closed. The sentence says why."""
+    """A violation of the protocol or of the limits, after which the connection must be closed. Its text says which."""
 
 
 class MessageGuard:
@@ -58,10 +58,16 @@ class MessageGuard:
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
         self._parts: list[str | bytes] = []
-        self._expected_parts = _FIRST_PARTS
+        self._expected_parts = _PARTS_BEFORE_BUFFERS
         self._has_pulled_document = False
         self.choices: list[tuple[Model, str]] = []
-        self._reserve, self._last_count = float(MOST_AT_ONCE), clock()
+        # Number of messages that the connection may send now.
+        self._reserve, self._last_refill = float(LARGEST_BURST), clock()
+
+    @property
+    def is_next_part_last(self) -> bool:
+        """Whether the next part is the last part of a message, whose content is then checked."""
+        return len(self._parts) + 1 == self._expected_parts
 
     def take(self, part: str | bytes, document: Document) -> list[str | bytes]:
         """Take a part of a message.
@@ -78,37 +84,39 @@ class MessageGuard:
             If the connection must be closed because of invalid parts, too many messages or refusals.
         """
         # After the first parts, the headers and the payloads of buffers alternate. Only payloads are binary.
-        is_payload = len(self._parts) > _FIRST_PARTS and (len(self._parts) - _FIRST_PARTS) % _PARTS_PER_BUFFER
-        if isinstance(part, str) == bool(is_payload):
+        buffer_parts = len(self._parts) - _PARTS_BEFORE_BUFFERS
+        is_payload = buffer_parts > 0 and buffer_parts % _PARTS_PER_BUFFER == 1
+        if isinstance(part, bytes) != is_payload:
             raise UnacceptableConnectionError("a message with binary parts in the wrong places")
-        self._count(len(part) / BYTES_PER_MESSAGE)
+        self._use_reserve(len(part) / BYTES_PER_MESSAGE)
         if not self._parts:
-            self._expected_parts = _FIRST_PARTS + _PARTS_PER_BUFFER * _count_buffers(part)
+            self._expected_parts = _PARTS_BEFORE_BUFFERS + _PARTS_PER_BUFFER * _count_buffers(part)
         self._parts.append(part)
         if len(self._parts) < self._expected_parts:
             return []
         parts, self._parts = self._parts, []
-        self._count(1.0)
+        self._use_reserve(1.0)
         try:
             self._check(_parse(parts[0]), _parse(parts[2]), document)
         except OutdatedMessageError:
             return []
         except RefusedMessageError:
-            self._count(REFUSED_COUNTS)
+            self._use_reserve(REFUSAL_WEIGHT)
             raise
         return parts
 
-    def _count(self, messages: float) -> None:
-        """Refill the reserve of messages for the time since the last call, and take from it."""
+    def _use_reserve(self, messages: float) -> None:
+        """Subtract messages from the reserve, which grows with time; raise an error if the reserve is used up."""
         now = self._clock()
-        self._reserve = min(self._reserve + MESSAGES_PER_SECOND * (now - self._last_count), MOST_AT_ONCE) - messages
-        self._last_count = now
+        self._reserve = min(self._reserve + MESSAGES_PER_SECOND * (now - self._last_refill), LARGEST_BURST) - messages
+        self._last_refill = now
         if self._reserve < 0.0:
             raise UnacceptableConnectionError(
-                f"more than {MESSAGES_PER_SECOND:g} messages per second, of which each invalid one counts as {REFUSED_COUNTS}"
+                f"more than {MESSAGES_PER_SECOND:g} messages per second, of which each invalid one counts as {REFUSAL_WEIGHT}"
             )
 
     def _check(self, header: Any, content: Any, document: Document) -> None:
+        """Refuse a message that no page sends, given its parsed header and content, and find the choices in it."""
         kind, self.choices = header["msgtype"], []
         if kind == "PATCH-DOC":
             check_patch(content, document)

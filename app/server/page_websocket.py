@@ -1,4 +1,4 @@
-"""The WebSocket of a page. It checks token and messages of the page, and closes the connection when they break the rules."""
+"""The WebSocket of a page, which checks the page's token and messages, and closes the connection if they violate the limits."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from app.server.admission import check_session, count_socket, forget_socket
 from app.server.browser_rules import RefusedMessageError
 from app.server.message_guard import LARGEST_FRAGMENT, MessageGuard, UnacceptableConnectionError
 from app.server.security_headers import SecurityHeaders
-from app.server.session_tokens import brings_own_token
+from app.server.session_tokens import has_signed_token
 from app.views.components.notice import PASSING_SECONDS, show_passing_notice
 
 DELAYED_NOTICE = "This page keeps the server busy: what you do next is delayed, so that others are served too."
@@ -54,18 +54,18 @@ class PageWebSocket(SecurityHeaders, WSHandler):
 
     async def prepare(self) -> None:
         """Refuse tokens that this server has not signed, before Bokeh or a login of Panel decompresses them."""
-        if brings_own_token(self.application, self.request):
+        if has_signed_token(self.application, self.request):
             await WSHandler.prepare(self)
             return
-        log.warning("connection refused: its token is not one of this server")
+        log.warning("connection refused: its token is not signed by this server")
         self.set_status(http.client.FORBIDDEN, "Reload the page.")
         self.finish()
 
     def open(self, *args: Any, **kwargs: Any) -> Any:
         """Disable Nagle's algorithm and open the connection."""
         self.set_nodelay(True)
-        # `_closed`: no further message is handled. `_is_ended`: Tornado has reported the end of the connection.
-        self._guard, self._closed, self._is_ended = MessageGuard(), False, False
+        # `_closed`: no further message is handled. `_has_ended`: Tornado has reported the end of the connection.
+        self._guard, self._closed, self._has_ended = MessageGuard(), False, False
         self._writes: list[Awaitable[None]] = []
         self._last_notice = -PASSING_SECONDS
         try:
@@ -78,11 +78,12 @@ class PageWebSocket(SecurityHeaders, WSHandler):
             return self._refuse_connection(error)
 
     async def _async_open(self, token: str) -> None:
+        """Open or join the session of a token, or close the connection if Bokeh refuses the token."""
         try:
             await super()._async_open(token)
         except ProtocolError as error:
             self._refuse_connection(error)
-        if self._is_ended and self._open_session() is not None:
+        if self._has_ended and self._open_session() is not None:
             # The socket was closed before Bokeh made the connection. Bokeh would keep connection and session for ever.
             super().on_close()
 
@@ -107,48 +108,48 @@ class PageWebSocket(SecurityHeaders, WSHandler):
         """Wait for the page's share of time, then pass a part of a message to Bokeh if a page can have sent it."""
         session = self._open_session()
         if session is not None:
-            document = session.document
-            await self._wait_for_share(session, document)
-            await process_state().fair_share(document).count(self._take_part(message, document))
+            await self._wait_for_share(session)
+            await process_state().fair_share(session.document).charge_for(self._take_part(message))
         elif self.connection is None and not self._closed:
             self._refuse_connection(UnacceptableConnectionError("a message before the session is open"))
 
-    async def _wait_for_share(self, session: Any, document: Document) -> None:
+    async def _wait_for_share(self, session: Any) -> None:
         """Wait until the page may use more time, unless no other page is open."""
-        while (seconds := process_state().fair_share(document).wait_seconds()) and self._has_others() and not self._closed:
+        share = process_state().fair_share(session.document)
+        while (seconds := share.wait_seconds()) and self._has_other_pages() and not self._closed:
             process_state().metrics.messages_delayed.inc()
             if time.monotonic() >= self._last_notice + PASSING_SECONDS:
                 self._last_notice = time.monotonic()
-                await session.with_document_locked(show_passing_notice, document, DELAYED_NOTICE)
+                await session.with_document_locked(show_passing_notice, session.document, DELAYED_NOTICE)
             await asyncio.sleep(seconds)
 
-    def _has_others(self) -> bool:
-        return bool(sum(session.connection_count for session in self.application_context.sessions) > 1)
+    def _has_other_pages(self) -> bool:
+        return sum(session.connection_count for session in self.application_context.sessions) > 1
 
-    async def _take_part(self, message: str | bytes, document: Document) -> None:
+    async def _take_part(self, part: str | bytes) -> None:
         """Pass a message on after its last part, log a refused message, or close the connection."""
-        if self._closed or self._open_session() is None:
+        # The check of a message depends on the document, which may change while the page waits for its turn.
+        if self._guard.is_next_part_last:
+            await process_state().next_turn()
+        session = self._open_session()
+        if self._closed or session is None:
             return
         try:
-            parts = self._guard.take(message, document)
+            parts = self._guard.take(part, session.document)
         except UnacceptableConnectionError as error:
             self._refuse_connection(error)
         except RefusedMessageError as refusal:
             log.warning("message refused: %s", refusal)
         else:
             if parts:
-                await self._pass_on(parts, document)
+                await self._pass_on(parts, session)
 
-    async def _pass_on(self, parts: Sequence[str | bytes], document: Document) -> None:
-        """Pass a message to Bokeh when it is this page's turn, unless the connection has been closed in the meantime."""
-        await process_state().next_turn()
-        session = self._open_session()
-        if self._closed or session is None:
-            return
+    async def _pass_on(self, parts: Sequence[str | bytes], session: Any) -> None:
+        """Pass the parts of a message to Bokeh, then send the choices in it back."""
         for part in parts:
             await super().on_message(part)
         if self._guard.choices:
-            await session.with_document_locked(_send_again, document, self._guard.choices)
+            await session.with_document_locked(_send_again, session.document, self._guard.choices)
 
     def on_close(self) -> None:
         """Tell Bokeh that the connection is closed, unless Bokeh has already dropped it."""
@@ -156,10 +157,10 @@ class PageWebSocket(SecurityHeaders, WSHandler):
             forget_socket(str(self.request.remote_ip))
         if self.connection is None or self._open_session() is not None:
             super().on_close()
-        self._closed = self._is_ended = True
+        self._closed = self._has_ended = True
 
     def _open_session(self) -> Any:
-        """Return the session; None before it is open, and after Bokeh has dropped the connection."""
+        """Return the session of the connection; None before it is open, and after Bokeh has dropped the connection."""
         try:
             return None if self.connection is None else self.connection.session
         except AssertionError:
@@ -173,7 +174,7 @@ class PageWebSocket(SecurityHeaders, WSHandler):
 
 
 async def _send_again(document: Document, choices: Sequence[tuple[Model, str]]) -> None:
-    """Send the choices of a browser back to the browser: an older choice from the server may have replaced them there."""
+    """Send choices back to the browser that made them: an older choice from the server may have replaced them there."""
     with set_curdoc(document), pn.io.hold(document):
         for model, name in choices:
             if model.document is document:

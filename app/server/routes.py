@@ -1,6 +1,7 @@
 """The routes that the page and the operator need, their handlers, and the accepted hosts. Other routes and hosts are refused.
 
-Bokeh and Panel add more routes: ``autoload.js`` creates sessions, and ``components`` imports the module that the address names.
+Bokeh and Panel add more routes, which are refused, such as ``autoload.js``, which creates sessions, and ``components``, which
+imports the module that the address names.
 
 The handlers are installed in two documented lists of ``bokeh.server.urls``, from which Bokeh builds its web application
 (https://docs.bokeh.org/en/latest/docs/reference/server/urls.html). Panel also adds its handlers there. The lists are the only
@@ -13,6 +14,7 @@ from __future__ import annotations
 
 import http.client
 import re
+import secrets
 from typing import Any
 
 from bokeh.server.tornado import BokehTornado
@@ -20,13 +22,14 @@ from bokeh.settings import settings as bokeh_settings
 from panel.io.server import DocHandler, RootHandler, WSHandler
 from tornado.web import Finish, HTTPError, RedirectHandler, StaticFileHandler
 
-from app.browser.module_files import ROUTES as MODULES
+from app.browser.module_files import ROUTES as MODULE_ROUTES
 from app.runtime.process_state import process_state
-from app.server.admission import RETRIED, RETRY_SECONDS, refusal_page
+from app.server.admission import RETRIED_STATUSES, RETRY_SECONDS, refusal_page
 from app.server.compressed_files import CompressedFiles
-from app.server.endpoints import ROUTES, NotFound
+from app.server.endpoints import ROUTES as ENDPOINT_ROUTES
+from app.server.endpoints import NotFound
 from app.server.page_websocket import PageWebSocket
-from app.server.security_headers import SecurityHeaders, add_nonce, new_nonce
+from app.server.security_headers import SecurityHeaders, add_nonce
 from app.server.session_tokens import issue_token, use_token
 
 # Tornado fails when it looks for a file with a null character in its name.
@@ -35,7 +38,7 @@ _FILES = "/static/(?!.*%00).*"
 PAGE_ROUTES = ("", "/ws", _FILES)
 """Routes below the path of a page: the page itself, its WebSocket and its files."""
 
-SERVER_ROUTES = ("/?", _FILES, *(path for path, *_ in (*MODULES, *ROUTES)))
+SERVER_ROUTES = ("/?", _FILES, *(path for path, *_ in (*MODULE_ROUTES, *ENDPOINT_ROUTES)))
 """Routes below the server's prefix: the redirect to the page, scripts, styles, modules, and the endpoints for the operator."""
 
 LOOPBACK = ("localhost", "127.0.0.1", "[::1]")
@@ -58,25 +61,25 @@ def refuse_other_routes(application: BokehTornado) -> None:
     application.add_handlers(".*", [(f"(?!(?:{'|'.join(served_routes(application))})$).*", NotFound)])
 
 
-class ToPage(SecurityHeaders, RedirectHandler):
+class PageRedirect(SecurityHeaders, RedirectHandler):
     """Redirects from the root to the page, with the query of the link."""
 
 
-def lead_to_page(application: BokehTornado) -> None:
+def redirect_to_page(application: BokehTornado) -> None:
     """Redirect the root to the page of the server's only application. Bokeh's own redirect drops the query."""
     paths = list(application.app_paths)
     if len(paths) == 1:
         # A relative address, because a proxy may have removed a part of the path.
         redirect_options = {"url": f".{paths[0]}", "permanent": False}
-        application.add_handlers(".*", [(f"{application.prefix}/", ToPage, redirect_options)])
+        application.add_handlers(".*", [(f"{application.prefix}/", PageRedirect, redirect_options)])
 
 
-class OtherHost(SecurityHeaders):
+class HostRefusal(SecurityHeaders):
     """Answers 421 to requests for a host that is not accepted."""
 
     def prepare(self) -> None:
         """Refuse the request."""
-        raise HTTPError(http.client.MISDIRECTED_REQUEST, reason="This host must be given by --allow-websocket-origin.")
+        raise HTTPError(http.client.MISDIRECTED_REQUEST, reason="This host is not accepted; --allow-websocket-origin adds it.")
 
 
 def accepted_hosts(application: BokehTornado) -> str:
@@ -92,39 +95,40 @@ def refuse_other_hosts(application: BokehTornado) -> None:
 
     Probes and the collector of metrics may use any host, because the answers to them contain no data of visitors.
     """
-    operator_paths = "|".join(application.prefix + path for path, _ in ROUTES)
-    application.add_handlers(f"(?!(?:{accepted_hosts(application)})$).*", [(f"(?!(?:{operator_paths})$).*", OtherHost)])
+    operator_paths = "|".join(application.prefix + path for path, _ in ENDPOINT_ROUTES)
+    application.add_handlers(f"(?!(?:{accepted_hosts(application)})$).*", [(f"(?!(?:{operator_paths})$).*", HostRefusal)])
 
 
 class PageHandler(SecurityHeaders, DocHandler):
-    """Serves the page with a nonce on its scripts, and with a signed token of its session.
+    """Serves the page with a nonce on its scripts and a signed token of its session.
 
-    Pages are made one at a time. Bokeh would make all waiting pages in one turn of the event loop. Meanwhile, it would serve
+    Pages are made one at a time. Bokeh would make all waiting pages in one iteration of the event loop. Meanwhile, it would serve
     nobody else, and it might discard the first page as unused before sending it.
     """
 
-    _has_left = False
+    _visitor_has_left = False
 
     async def get_session(self) -> Any:
         """Create a session with a new token, unless the server is full when this page's turn comes."""
         async with process_state().making_page:
-            if self._has_left:
+            if self._visitor_has_left:
                 raise Finish
-            extra = self.application_context.application.process_request(self.request)
-            use_token(self.request, issue_token(self.application, self.request, extra))
+            # The hook of `app_hooks` raises an HTTPError if the server is full.
+            payload = self.application_context.application.process_request(self.request)
+            use_token(self.request, issue_token(self.application, self.request, payload))
             session = await super().get_session()
             await process_state().next_turn()
             return session
 
     def on_connection_close(self) -> None:
         """Make no page for a visitor who has left."""
-        self._has_left = True
+        self._visitor_has_left = True
         super().on_connection_close()
 
     def write_error(self, status_code: int, **kwargs: Any) -> None:
         """Answer with the reason. A page that may be served later is requested again by the browser."""
         error = kwargs.get("exc_info", (None, None))[1]
-        if status_code not in RETRIED or not isinstance(error, HTTPError):
+        if status_code not in RETRIED_STATUSES or not isinstance(error, HTTPError):
             super().write_error(status_code, **kwargs)
             return
         self.set_header("Retry-After", RETRY_SECONDS)
@@ -133,7 +137,7 @@ class PageHandler(SecurityHeaders, DocHandler):
     def write(self, chunk: Any) -> None:
         """Write a response. A page contains the nonce and is sent with the matching policy."""
         if isinstance(chunk, str):
-            nonce = new_nonce()
+            nonce = secrets.token_urlsafe(16)
             self.set_security_headers(nonce)
             chunk = add_nonce(chunk, nonce)
         super().write(chunk)
@@ -149,16 +153,19 @@ def install_handlers(per_app_patterns: list[Any], toplevel_patterns: list[Any]) 
     """
     for patterns in (per_app_patterns, toplevel_patterns):
         patterns[:] = [(path, _secured(handler), *rest) for path, handler, *rest in patterns]
-    own_routes = [*ROUTES, *((path, _secured(handler), arguments) for path, handler, arguments in MODULES)]
-    if all(path != own_routes[0][0] for path, *_ in toplevel_patterns):
+    own_routes = [*ENDPOINT_ROUTES, *((path, _secured(handler), arguments) for path, handler, arguments in MODULE_ROUTES)]
+    is_installed = any(path == own_routes[0][0] for path, *_ in toplevel_patterns)
+    if not is_installed:
         toplevel_patterns += own_routes
 
 
 def _secured(handler: type) -> type:
-    """Return a handler with security headers. A handler of files also compresses the files."""
+    """Return a handler class that also sets security headers and, for static files, compresses them."""
     # Bokeh recognises the root handler by identity.
     if handler is RootHandler or issubclass(handler, SecurityHeaders):
         return handler
-    replacements = {DocHandler: PageHandler, WSHandler: PageWebSocket}
+    replacements: dict[type, type] = {DocHandler: PageHandler, WSHandler: PageWebSocket}
+    if handler in replacements:
+        return replacements[handler]
     mixins = (SecurityHeaders, CompressedFiles) if issubclass(handler, StaticFileHandler) else (SecurityHeaders,)
-    return replacements.get(handler) or type(f"Secured{handler.__name__}", (*mixins, handler), {})
+    return type(f"Secured{handler.__name__}", (*mixins, handler), {})

@@ -9,13 +9,12 @@ imports components; and ``unsafe-inline`` for styles, which Bokeh inserts at run
 from __future__ import annotations
 
 import re
-import secrets
 
 from tornado.web import RequestHandler
 
 from app.runtime.process_state import process_state
 
-_SCRIPT = re.compile(r"<script(?=[\s>])", re.IGNORECASE)
+_SCRIPT_TAG = re.compile(r"<script(?=[\s>])", re.IGNORECASE)
 
 
 class SecurityHeaders(RequestHandler):
@@ -35,12 +34,7 @@ class SecurityHeaders(RequestHandler):
 
 def add_nonce(page: str, nonce: str) -> str:
     """Return an HTML page with a nonce on all scripts. Panel's module loader passes the nonce on to scripts that it inserts."""
-    return _SCRIPT.sub(f'<script nonce="{nonce}"', page)
-
-
-def new_nonce() -> str:
-    """Return a random nonce."""
-    return secrets.token_urlsafe(16)
+    return _SCRIPT_TAG.sub(f'<script nonce="{nonce}"', page)
 
 
 def content_policy(frame_ancestors: tuple[str, ...], nonce: str | None = None) -> str:

@@ -34,8 +34,8 @@ _TOKEN = "bokeh-token"
 _SESSION_ID = "bokeh-session-id"
 # Entry of a token's payload: the time of issue on the monotonic clock, in seconds.
 _ISSUED = "issued"
-# Ten years, in seconds: a token never expires for Bokeh.
-_NO_EXPIRATION = 10 * 365 * 24 * 3600
+# Lifetime for which Bokeh accepts a token, in seconds: ten years, so that only this server decides.
+_BOKEH_EXPIRATION = 10 * 365 * 24 * 3600
 
 # Signs the tokens if the operator has set no key for Bokeh. A new start of the server makes a new key.
 _own_key = generate_secret_key().encode()
@@ -54,8 +54,8 @@ def issue_token(
     application
         The server's web application.
     request
-        The request for the page. The token contains only the request's link parameters, and with a login the cookies: the
-        session needs nothing else.
+        The request for the page. The token contains its link parameters and, with a login, its cookies. The session needs
+        nothing else of the request.
     extra
         Additional entries of the token's payload.
     clock
@@ -65,19 +65,19 @@ def issue_token(
     has_login = bool(application.auth_provider.endpoints)
     cookies = {name: morsel.value for name, morsel in request.cookies.items()} if has_login else {}
     key = _signing_key(application)
-    token: str = generate_jwt_token(
+    return generate_jwt_token(
         generate_session_id(key, signed=True),
         key,
         signed=True,
         extra_payload={"headers": {}, "cookies": cookies, "arguments": arguments, _ISSUED: clock(), **extra},
-        expiration=_NO_EXPIRATION,
+        expiration=_BOKEH_EXPIRATION,
     )
-    return token
 
 
 def may_begin_session(application: BokehTornado, token: str, clock: Callable[[], float] = time.monotonic) -> bool:
-    """Whether a token with a valid signature is young enough. After a restart of the machine, its age may be negative."""
+    """Whether a token with a valid signature is young enough to begin a session."""
     age: float = clock() - get_token_payload(token).get(_ISSUED, math.inf)
+    # After a restart of the machine, the age of an earlier token may be negative.
     return bool(0.0 <= age < application.session_token_expiration)
 
 
@@ -87,7 +87,7 @@ def use_token(request: HTTPServerRequest, token: str) -> None:
     request.arguments[_TOKEN] = [token.encode()]
 
 
-def brings_own_token(application: BokehTornado, request: HTTPServerRequest) -> bool:
+def has_signed_token(application: BokehTornado, request: HTTPServerRequest) -> bool:
     """Whether the request for a WebSocket has a token with a valid signature. The token is not decompressed."""
     subprotocols = [name.strip() for name in request.headers.get("Sec-WebSocket-Protocol", "").split(",")]
     if len(subprotocols) != 2 or subprotocols[0] != _SUBPROTOCOL:
@@ -100,5 +100,5 @@ def brings_own_token(application: BokehTornado, request: HTTPServerRequest) -> b
 
 
 def _signing_key(application: BokehTornado) -> bytes:
-    key: bytes | None = application.secret_key
-    return key or _own_key
+    """Return the key with which this server signs tokens."""
+    return application.secret_key or _own_key

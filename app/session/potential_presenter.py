@@ -57,14 +57,14 @@ class PotentialPresenter:
         self.panel.show(state.reviewed)
 
     def open(self, system: System, use: Callable[[SystemReview], object], refuse: Callable[[str], None]) -> bool:
-        """Use or refuse the system of a link, a preset or the browser's history; return whether a review was requested."""
+        """Use or refuse the system of a link, a preset or the browser's history; return whether its review is awaited."""
         known = self._known_review(system)
         if known is not None and page_refusal(known) is None:
             self._cancel_link_review()
             use(known)
             return False
         self._propose(_Proposal(system, use, refuse))
-        return True
+        return self._proposal is not None
 
     def _cancel_link_review(self) -> None:
         """Cancel the review of an earlier link, but not the review of a system of the panel."""

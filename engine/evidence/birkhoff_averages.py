@@ -24,7 +24,7 @@ from engine.propagation.tiles import map_tiles
 from engine.systems.potential import Potential
 
 WINDOWS = (1000.0, 4000.0, 16000.0, 64000.0)
-"""Window lengths T to try in turn, dimensionless; the first window suffices for most tori."""
+"""Window lengths T to try in turn, in units of the well; the first window suffices for most tori."""
 
 TORUS_DIGITS = 8.0
 """Smallest number of agreeing digits with which an orbit counts as quasi-periodic.
@@ -55,7 +55,7 @@ def count_agreeing_digits(
     states
         (n, 4) x, y, px, py at the start of the first window; finite, in units of the well.
     window
-        Length T of each window, dimensionless, at least 10.
+        Length T of each window, in units of the well, at least 10.
     execution
         How the computation runs. When it is cancelled, orbits not processed yet get NaN.
 

@@ -51,14 +51,14 @@ class BoundedOrbitSearch:
     potential
         The `Potential` in units of its well.
     energy
-        The energy of all orbits; None if the energies differ, as with an axis h. The invariant curves of an orbit do not bound
-        orbits of other energies.
+        The energy of all orbits, in units of the well; None if the energies differ, as with an axis h. The invariant curves of
+        an orbit do not bound orbits of other energies.
     states
-        (n, 4) current states x, y, px, py, finite.
+        (n, 4) current states x, y, px, py, finite, in units of the well.
     grid_indices
         (n, 2) row and column of each orbit's pixel.
     time_left
-        Time until the next test, or until t_max, dimensionless: the integration time that evidence saves.
+        Time until the next test, or until t_max, in units of the well: the integration time that evidence saves.
     execution
         How the computation runs.
     tested_for
@@ -130,7 +130,7 @@ class BoundedOrbitSearch:
         """Yield groups of candidates, those on a coarse lattice first, because the curves of a few orbits can enclose many."""
         for stride in _LATTICE_STRIDES:
             on_lattice = np.all(self.grid_indices % stride == stride // 2, axis=1)
-            group = np.flatnonzero(self._without_evidence() & is_candidate & on_lattice)
+            group = np.flatnonzero(self._lacks_evidence() & is_candidate & on_lattice)
             if group.size >= _SMALLEST_ROUND or (stride == _LATTICE_STRIDES[-1] and group.size):
                 yield group
 
@@ -138,9 +138,9 @@ class BoundedOrbitSearch:
         """Yield small groups of the candidates with the most digits, until a group costs more than it saves."""
         is_candidate = is_candidate.copy()
         while True:
-            count_before = np.count_nonzero(self._without_evidence())
+            count_before = np.count_nonzero(self._lacks_evidence())
             most_affordable = int(_LARGEST_WORK_SHARE * count_before * self._time_left / duration) // LANES * LANES
-            candidates = np.flatnonzero(self._without_evidence() & is_candidate)
+            candidates = np.flatnonzero(self._lacks_evidence() & is_candidate)
             best_first = candidates[np.argsort(-self.digits[candidates], kind="stable")]
             group = best_first[: min(most_affordable, _MOST_SEEDS)]
             if not group.size:
@@ -148,11 +148,11 @@ class BoundedOrbitSearch:
             is_candidate[group] = False
             yield group
             # The caller has tested the group.
-            saved_count = count_before - np.count_nonzero(self._without_evidence())
+            saved_count = count_before - np.count_nonzero(self._lacks_evidence())
             if saved_count * self._time_left < group.size * duration:
                 return
 
-    def _without_evidence(self) -> np.ndarray:
+    def _lacks_evidence(self) -> np.ndarray:
         """Return whether there is no evidence yet for each orbit, of shape (n,)."""
         return self.evidence == Evidence.NONE
 
@@ -171,7 +171,7 @@ class BoundedOrbitSearch:
             self._separated[remaining] = _separated_by_any(barriers, self._section_points[remaining], self._separated[remaining])
         else:
             self._separate_in_parallel(barriers, remaining)
-        self.evidence[self._separated.all(axis=1) & self._without_evidence()] = Evidence.ENCLOSED
+        self.evidence[self._separated.all(axis=1) & self._lacks_evidence()] = Evidence.ENCLOSED
 
     def _separate_in_parallel(self, barriers: list[_Barrier], orbits: np.ndarray) -> None:
         """Apply `_separated_by_any` to orbits, (k,) indices, in several workers."""

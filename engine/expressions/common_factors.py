@@ -24,11 +24,9 @@ def factor_out(terms: SumTerms) -> SumTerms:
     terms = as_sum(linear_combination(_with_unit_sums(part, c) for part, c in terms)).terms
     while (factor := _most_common_factor(terms)) is not None:
         inverse = power(factor, -1.0)
-        are_multiples = [_contains(part, factor) for part, _ in terms]
-        inner_sum = linear_combination(
-            (c, multiply(part, inverse)) for (part, c), is_multiple in zip(terms, are_multiples, strict=True) if is_multiple
-        )
-        other_terms = [(c, part) for (part, c), is_multiple in zip(terms, are_multiples, strict=True) if not is_multiple]
+        multiples = [(part, c) for part, c in terms if _contains(part, factor)]
+        other_terms = [(c, part) for part, c in terms if not _contains(part, factor)]
+        inner_sum = linear_combination((c, multiply(part, inverse)) for part, c in multiples)
         terms = as_sum(linear_combination([_with_unit_sums(multiply(factor, inner_sum), 1.0), *other_terms])).terms
     return terms
 

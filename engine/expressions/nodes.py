@@ -120,6 +120,11 @@ def as_sum(expression: Expression) -> Sum:
     return expression if isinstance(expression, Sum) else Sum(0.0, ((expression, 1.0),))
 
 
+def factors_of(expression: Expression) -> tuple[tuple[Expression, float], ...]:
+    """Return the factors (b, a) of a product Π b^a; for any other expression, the expression with the exponent 1."""
+    return expression.factors if isinstance(expression, Product) else ((expression, 1.0),)
+
+
 def linear_combination(parts: Iterable[tuple[float, Expression]]) -> Expression:
     """Return Σ c e over the pairs (c, e)."""
     constant = 0.0
@@ -142,7 +147,7 @@ def multiply(*factors: Expression) -> Expression:
     for factor in factors:
         scale, rest = _split_coefficient(factor)
         coefficient *= scale
-        for base, exponent in rest.factors if isinstance(rest, Product) else ((rest, 1.0),):
+        for base, exponent in factors_of(rest):
             if as_number(base) is None:
                 exponents[base] = exponents.get(base, 0.0) + exponent
     if not coefficient:
@@ -216,7 +221,7 @@ def as_terms(expression: Expression) -> dict[Powers, float] | None:
 def powers_of(expression: Expression) -> Powers | None:
     """Return (i, j) of x^i y^j; None for other expressions."""
     powers = [0, 0]
-    for base, exponent in expression.factors if isinstance(expression, Product) else ((expression, 1.0),):
+    for base, exponent in factors_of(expression):
         if not isinstance(base, Coordinate) or exponent < 0.0 or exponent != int(exponent):
             return None
         powers[base.axis] += int(exponent)

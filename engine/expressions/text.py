@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from engine.expressions.nodes import Coordinate, Expression, Function, Product, as_sum, powers_of
+from engine.expressions.nodes import Coordinate, Expression, Function, as_sum, factors_of, powers_of
 
 _TO_SUPERSCRIPT = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 # Largest denominator of a number that is written as a fraction.
@@ -88,9 +88,8 @@ def write_power(name: str, exponent: float) -> str:
 
 def _product(expression: Expression, digits: int | None) -> str:
     """Return a product, or its only factor, as text: coordinates first, then brackets, then functions."""
-    factors = expression.factors if isinstance(expression, Product) else ((expression, 1.0),)
     text = ""
-    for base, exponent in sorted(factors, key=lambda factor: _rank(factor[0])):
+    for base, exponent in sorted(factors_of(expression), key=lambda factor: _rank(factor[0])):
         space = " " if text and isinstance(base, Function) else ""
         text += f"{space}{_factor(base, exponent, digits)}"
     return text

@@ -25,7 +25,8 @@ def find_root(function: Callable[[float], float], low: float, high: float, *, xt
     low, high
         The ends of the bracket, at which the function has different signs.
     xtol, rtol
-        The result is within ``xtol + rtol * abs(root)`` of a change of sign, unless the number of steps is exhausted.
+        The result is within ``xtol + rtol * abs(root)`` of a change of sign, unless the number of steps is exhausted. By default
+        `rtol` is four times the spacing of doubles at 1.
 
     Returns
     -------

@@ -104,4 +104,5 @@ def run_job[Result](job: Job[Result], execution: Execution, known_results: Mappi
 
 @functools.cache
 def _parameter_names(function: Callable[..., Any]) -> frozenset[str]:
+    """Return the names of the parameters of a function."""
     return frozenset(inspect.signature(function).parameters)

@@ -173,7 +173,7 @@ class Jobs:
         """Return the current load, totals and memory."""
         return JobStats(
             in_flight=self.in_flight,
-            calls_waiting=sum(queue.pending_calls for queue in (self._scheduler, self._compilations, self._limited_calls)),
+            calls_waiting=sum(each.pending_calls for each in (self._scheduler, self._compilations, self._limited_calls)),
             done=self._ended["done"],
             failed=self._ended["failed"],
             cancelled=self._ended["cancelled"],
@@ -182,10 +182,11 @@ class Jobs:
             orbits_held=self._semaphore.held,
             orbits_limit=self._semaphore.limit,
             threads=count_workers(self._executor) if self._executor is not None else self._scheduler.threads,
-            processor_time=sum(queue.processor_time for queue in (self._scheduler, self._compilations)),
+            processor_time=sum(each.processor_time for each in (self._scheduler, self._compilations)),
         )
 
     def _map_priority(self) -> MapPriority:
+        """Return the priority of a map that is requested now."""
         return MapPriority(lambda: self._scheduler.first_frames_preferred, self._clock)
 
     def prefer_first_frames(self, preferred: bool) -> None:
@@ -224,7 +225,7 @@ class Jobs:
             with self._semaphore.acquire(run.job.orbits_held, execution), charged_to(run.account):
                 execution.raise_if_cancelled()
                 run.executors = self._create_executors(run)
-                result = self._compute(run.job, run, partial(self._publish, run))
+                result = self._call_function(run.job, run, partial(self._publish, run))
         except CancelledError:
             pass
         except Exception as raised:
@@ -236,7 +237,7 @@ class Jobs:
             elif result is not ABSENT:
                 subscription.deliver(result, last=True)
 
-    def _compute(self, job: Job[Any], run: _Run, publish: Callable[[Any], None] | None) -> Any:
+    def _call_function(self, job: Job[Any], run: _Run, publish: Callable[[Any], None] | None) -> Any:
         """Call the function of a job: of the run's own job, or of a job whose result that job needs."""
         arguments = [self._find_result(run, value) if isinstance(value, Job) else value for value in job.arguments]
         executors: Mapping[Queue, Executor] = dict.fromkeys(Queue, self._executor) if self._executor else run.executors
@@ -257,7 +258,7 @@ class Jobs:
         """Return the complete result of a job that the job of the run needs, from the cache or computed and cached."""
         result: Any = self.cache.get(job, ABSENT)
         if not _is_complete(result):
-            result = self._compute(job, run, None)
+            result = self._call_function(job, run, None)
             self.cache.put(job, result)
         if not _is_complete(result):
             raise CancelledError

@@ -41,7 +41,7 @@ class Priority(IntEnum):
     """Part of the first frame of a map. The page shows nothing until this frame is complete."""
 
     LONG_CALL = 1
-    """A single call of up to seconds, such as one orbit. One of several threads is kept free of such calls."""
+    """A single call that takes up to some seconds, such as one orbit. One of several threads is kept free of such calls."""
 
     BACKGROUND = 2
     """Part of a larger computation, about 50 ms long. Under load, most calls have this priority."""
@@ -63,6 +63,7 @@ class _Call(NamedTuple):
         self.future.set_running_or_notify_cancel()
 
     def run(self) -> None:
+        """Call the function, unless the call was cancelled, and set the result or the exception of the future."""
         if not self.future.set_running_or_notify_cancel():
             return
         try:
@@ -200,6 +201,7 @@ class FairScheduler:
             self._end_call(call.executor.client, priority, duration, processor_time)
 
     def _end_call(self, client: Hashable, priority: Priority, duration: float, processor_time: float) -> None:
+        """Record that a call has ended, with its times in seconds."""
         with self._lock:
             self._running_by_priority[priority] -= 1
             self.processor_time += processor_time

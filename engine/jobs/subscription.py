@@ -48,6 +48,7 @@ class Subscription:
         self._call(self._on_error, error, True)
 
     def _call(self, callback: Callable[[Any], None], value: Any, last: bool) -> None:
+        """Call a callback, unless the subscription is closed; close it after the last call."""
         with self._delivery_lock:
             if not self.open:
                 return

@@ -96,7 +96,7 @@ def _make_line(spec: MapSpec, window: Window, find_member: Callable[[float], Any
     except ValueError:
         return None
     columns, rows = spec.resolution
-    # Across the line, only the middle of the window matters: it is the value of the only pixel.
+    # There is one pixel across the line. Its centre is the middle of this window.
     edges = value - 0.5, value + 0.5
     if spec.plane.parameter_axis == 0:
         resolution, line_window = (1, rows), Window(*edges, window.ordinate_low, window.ordinate_high)
@@ -131,6 +131,7 @@ class LinewiseRun:
         # The lines with a potential, and their maps so far, by index.
         self._lines = {k: line for k, line in enumerate(lines) if line is not None}
         self._line_maps: dict[int, EscapeMap] = {}
+        self._first_horizon = _FIRST_HORIZON * spec.potential.units.time
         self._stride, self._horizon = _STRIDES[0], 0.0
         self._arrays = empty_arrays(PIXEL_ARRAYS, spec.resolution[::-1])
         for k in range(self._line_count):
@@ -138,11 +139,11 @@ class LinewiseRun:
                 place = _find_place(spec, k)
                 self._arrays["fate"][place], self._arrays["started"][place] = Fate.FORBIDDEN, True
             elif resume is not None:
-                self._put(k, self._lines[k].extract(resume))
+                self._store_line(k, self._lines[k].extract(resume))
 
     def stages(self, execution: Execution, on_change: OnChange) -> Iterator[Stage]:
         """Yield the stages, see `Staged`. Each stage integrates the orbits of some lines to a horizon."""
-        first, last = _FIRST_HORIZON * self.spec.potential.units.time, self.spec.t_max
+        first, last = self._first_horizon, self.spec.t_max
         # A second horizon continues from the states at the first. An earlier map already gives an overview.
         has_two_horizons = first < last and self._keeps_states and not self._line_maps
         for horizon in (first, last) if has_two_horizons else (last,):
@@ -163,19 +164,19 @@ class LinewiseRun:
         continued_indices = [k for k in indices if _can_change(self._line_maps.get(k))]
         arguments = [(self._lines[k], horizon, self._line_maps.get(k)) for k in continued_indices]
         with _create_coordinating_threads() as threads:
-            if horizon <= _FIRST_HORIZON * self.spec.potential.units.time:
+            if horizon <= self._first_horizon:
                 futures = [execution.submit(_compute_line, *each) for each in arguments]
             else:
                 silent_execution = replace(execution, on_progress=None)
                 futures = [threads.submit(_compute_line, *each, silent_execution) for each in arguments]
             for k, line_map in _as_finished(dict(zip(futures, continued_indices, strict=True)), execution):
-                self._put(k, line_map)
+                self._store_line(k, line_map)
                 on_change(False)
         if not execution.is_cancelled:
             self._stride = min(self._stride, stride)
 
-    def _put(self, k: int, line_map: EscapeMap) -> None:
-        """Copy the map of a line, up to any time, into the arrays."""
+    def _store_line(self, k: int, line_map: EscapeMap) -> None:
+        """Keep the map of a line, up to any time, and copy its pixels into the arrays."""
         line = self._lines[k]
         self._line_maps[k] = line_map if self._keeps_states else replace(line_map, batch=None)
         for name, array in self._arrays.items():
@@ -284,6 +285,7 @@ class _LinewiseAnalysis[Analysis: PixelAnalysis]:
                 on_change(True)
 
     def _analyse_line(self, line: Line, execution: Execution) -> Analysis:
+        """Return the analysis of one line, with the arrays of the line."""
         return run_to_frame(self._begin(line.extract(self._map), line.place), execution)
 
     def progress(self) -> float:

@@ -76,7 +76,8 @@ class EscapeMap(MapResult):
         Side, in pixels, of the squares that each contain a started pixel; 1 if all pixels have been started, and for a map that
         is filled block by block.
     horizon
-        Time up to which orbits are integrated in the current stage, dimensionless; t_max in the last stage.
+        Time up to which orbits are integrated in the current stage, dimensionless; t_max in the last stage. Frames along a
+        parameter have the time that all lines have reached, 0 at first.
     progress
         Share of the work done, 0 to 1. An undecided orbit counts by the share of t_max up to which it is integrated.
     complete
@@ -215,8 +216,8 @@ class EscapeMap(MapResult):
         names, window = ("fate", "escape_time", "crossings", "evidence"), self.spec.find_window()
         if self.stride == 1:
             return {name: getattr(self, name) for name in names}, window
-        pixels = np.ix_(*(np.unique(representative_indices(size, self.stride)) for size in self.fate.shape))
-        arrays = {name: getattr(self, name)[pixels] for name in names}
+        grid = np.ix_(*(np.unique(representative_indices(size, self.stride)) for size in self.fate.shape))
+        arrays = {name: getattr(self, name)[grid] for name in names}
         rows, columns = arrays["fate"].shape
         x_high = window.x_low + window.width * columns * self.stride / self.fate.shape[1]
         ordinate_high = window.ordinate_low + window.height * rows * self.stride / self.fate.shape[0]

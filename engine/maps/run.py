@@ -92,9 +92,9 @@ class MapRun:
         # Energy errors of orbits that an earlier map has finished, because their states are not stored; NaN for other orbits.
         self._earlier_errors: np.ndarray | None = None
         if resume is not None:
-            self._continue(resume)
+            self._continue_from(resume)
 
-    def _continue(self, earlier: EscapeMap) -> None:
+    def _continue_from(self, earlier: EscapeMap) -> None:
         """Copy the outcomes of an earlier map, and the states of the orbits that a larger t_max can change."""
         assert earlier.batch is not None
         continued_pixels = earlier.continued_pixels
@@ -129,13 +129,13 @@ class MapRun:
 
     def _refinements(self) -> Iterator[tuple[np.ndarray, int]]:
         """Yield (pixels, stride) of each refinement, coarse to fine. The last refinement contains all pixels."""
-        numbers = np.arange(self._started.size).reshape(self.shape)
+        pixel_numbers = np.arange(self._started.size).reshape(self.shape)
         stride = 1 if self._started.all() else self.stride
         while stride > 1:
             rows, columns = (np.unique(representative_indices(size, stride)) for size in self.shape)
-            yield self._mirror.find_first_images(numbers[np.ix_(rows, columns)].ravel()), stride
+            yield self._mirror.find_first_images(pixel_numbers[np.ix_(rows, columns)].ravel()), stride
             stride //= 2
-        yield self._mirror.find_first_images(numbers.ravel()), 1
+        yield self._mirror.find_first_images(pixel_numbers.ravel()), 1
 
     def _find_starts(self, execution: Execution) -> None:
         """Find the initial states of all pixels that have not been started, except second mirror images."""

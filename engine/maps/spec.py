@@ -97,7 +97,7 @@ class MapSpec:
     use_evidence: bool = True
     backward: bool = False
 
-    # `__init__` accepts more types than the fields have, and converts them. This declaration tells type checkers so.
+    # `__init__` accepts more types than the fields have, and converts them. This declaration is for type checkers.
     if TYPE_CHECKING:
 
         def __init__(

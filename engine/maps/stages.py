@@ -24,7 +24,7 @@ Pause = Callable[[float], float]
 """A function that returns the pause in seconds after a frame, given the time in seconds since the start of the computation."""
 
 OnChange = Callable[[bool], None]
-"""A function to call whenever pixels may have changed. Its argument tells whether a stage has ended."""
+"""A function to call whenever pixels may have changed. Its argument is True at the end of a stage."""
 
 
 class Frame(Protocol):

@@ -81,6 +81,7 @@ class BasinEntropy(RecordedResult):
         return f"{s_b_text}; {s_bb_text}. {self._describe_conclusion()}"
 
     def _describe_conclusion(self) -> str:
+        """Return what S_bb implies for the boundary, in a sentence."""
         if self.beyond_ln2:
             return "S_bb > ln 2: at this scale the boundary is not smooth."
         if self.labels < 3:
@@ -132,7 +133,7 @@ def compute_basin_entropy(labels: Any, valid: Any = None, *, box: int = DEFAULT_
     if min(labels.shape) < 2:
         raise ValueError(f"labels of shape {labels.shape}: must have at least two rows and two columns")
     box = checked_count("box", box, 2, min(labels.shape))
-    boxes = _tile(labels, box)[_tile(valid, box).all(axis=1)]
+    boxes = _split_into_boxes(labels, box)[_split_into_boxes(valid, box).all(axis=1)]
     entropies, label_counts = _box_entropies(boxes)
     on_boundary = label_counts > 1
     s_b, s_b_error = _mean_and_error(entropies)
@@ -143,7 +144,7 @@ def compute_basin_entropy(labels: Any, valid: Any = None, *, box: int = DEFAULT_
     )  # fmt: skip
 
 
-def _tile(image: np.ndarray, box: int) -> np.ndarray:
+def _split_into_boxes(image: np.ndarray, box: int) -> np.ndarray:
     """Return the pixels of each complete box, of shape (boxes, box²)."""
     rows, columns = (side // box for side in image.shape)
     tiles = image[: rows * box, : columns * box].reshape(rows, box, columns, box)
@@ -172,4 +173,5 @@ def _mean_and_error(entropies: np.ndarray) -> tuple[float, float]:
 
 
 def _format_mean(value: float, error: float) -> str:
+    """Return a mean in words, with its standard error if there is one."""
     return f"{value:.3f}" if math.isnan(error) else f"{value:.3f} ± {error:.3f}"

@@ -83,14 +83,11 @@ def fit_decay_laws(
     if not isinstance(statistics, EscapeStatistics):
         statistics = compute_statistics(read_starts("statistics", statistics))
     t_max = _checked_horizon(statistics, t_max)
-    if window is not None:
-        limits = checked_array("window", window)
-        if limits.shape != (2,) or not 0.0 < limits[0] < limits[1] <= t_max:
-            raise ValueError(f"window={short_repr(window)}: must be (t_low, t_high) with 0 < t_low < t_high ≤ t_max={t_max:g}")
-    t_high = t_max if window is None else float(window[1])
+    t_low, t_high = (math.nan, t_max) if window is None else _checked_window(window, t_max)
     all_times = np.unique(statistics.escape_times)
     times = all_times[(all_times > 0.0) & (all_times <= t_high)]
-    t_low = _choose_t_low(times, t_high) if window is None else float(window[0])
+    if window is None:
+        t_low = _choose_t_low(times, t_high)
     # Without a window, t_low is NaN, and all escapes are counted.
     sample = _Sample(t_low, t_high, times[times > (t_low if np.isfinite(t_low) else 0.0)])
     counts = (sample.times.size, all_times.size, statistics.undecided)
@@ -106,6 +103,14 @@ def _checked_horizon(statistics: EscapeStatistics, t_max: float | None) -> float
     if horizon > statistics.t_max:
         raise ValueError(f"t_max={t_max:g}: must be at most {statistics.t_max:g}, the integration time of the statistics")
     return horizon
+
+
+def _checked_window(window: tuple[float, float], t_max: float) -> tuple[float, float]:
+    """Return a window as floats; ValueError unless 0 < t_low < t_high ≤ t_max."""
+    limits = checked_array("window", window)
+    if limits.shape != (2,) or not 0.0 < limits[0] < limits[1] <= t_max:
+        raise ValueError(f"window={short_repr(window)}: must be (t_low, t_high) with 0 < t_low < t_high ≤ t_max={t_max:g}")
+    return float(window[0]), float(window[1])
 
 
 @dataclass(frozen=True, eq=False)

@@ -132,6 +132,7 @@ class DecayLaws(RecordedResult):
         return f"{self._describe_doubt(self.exponential, self.power_law)} ({data}): exponential {kappa}; power law {gamma}."
 
     def _describe_missing_fit(self) -> str:
+        """Return the reason why there is no fit, in a sentence."""
         if self.undecided:
             return f"No fit: {format_count(self.undecided, 'orbit is', 'orbits are')} undecided, so late escapes are missing."
         if self.escapes > 2 * MIN_ESCAPES:
@@ -142,6 +143,7 @@ class DecayLaws(RecordedResult):
         )
 
     def _describe_doubt(self, exponential: LawFit, power_law: LawFit) -> str:
+        """Return the reason why neither law is preferred, as the beginning of a sentence."""
         possible = [fit.law for fit in (exponential, power_law) if fit.plausible]
         if len(possible) == 2:
             return "The data do not decide between the two laws"

@@ -84,8 +84,8 @@ class ExitMatching(OrbitResult):
 def compute_exit_matching(entrances: Any, outcomes: Measurable | Starts) -> ExitMatching:
     """Count entering orbits by the exit through which they enter and the exit through which they leave.
 
-    If orbits forget how they entered before they leave, the shares are the same for all entrances: the shares of the exits in the
-    flux. Differences are due to orbits that pass quickly along the tubes that connect entrances and exits. This is called
+    If the exits of orbits are independent of their entrances, the shares are the same for all entrances: those of the exits in
+    the flux. Differences are due to orbits that pass quickly along the tubes that connect entrances and exits. This is called
     "dynamical matching" (Collins, Kramer, Carpenter, Ezra & Wiggins 2014, J. Chem. Phys. 141, 034111).
 
     Parameters

@@ -123,11 +123,13 @@ class UncertaintyExponent(RecordedResult):
         )
 
     def _describe_limit(self) -> str:
+        """Return the end of a sentence on an extreme α, 0 or 1, in the interval; empty if the interval contains neither."""
         if self.high >= 1.0:
             return "; a smooth boundary, α = 1, is also possible"
         return "; a boundary that fills the plane, α = 0, is also possible" if self.low <= 0.0 else ""
 
     def _describe_obstacle(self) -> str:
+        """Return the reason why there is no exponent."""
         pairs, uncertain = int(self.pairs.sum()), int(self.uncertain.sum())
         if not pairs:
             return "no pair of starts lies inside"
@@ -172,7 +174,7 @@ def fit_uncertainty(separations: Any, pairs: Any, uncertain: Any) -> Uncertainty
     """
     epsilon, n, k = _checked_counts(separations, pairs, uncertain)
     law = _find_law(epsilon, n, k)
-    used = np.isin(np.arange(epsilon.size), law.used)
+    used = np.isin(np.arange(epsilon.size), law.indices)
     if not law.holds:
         return UncertaintyExponent(epsilon, n, k, used, np.nan, np.nan, np.nan, np.nan, law.misfit)
     low, high = law.exponent - law.half_width, law.exponent + law.half_width
@@ -180,6 +182,7 @@ def fit_uncertainty(separations: Any, pairs: Any, uncertain: Any) -> Uncertainty
 
 
 def _checked_counts(separations: Any, pairs: Any, uncertain: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return ε, n and k as arrays (m,); ValueError if they are not as `fit_uncertainty` takes them."""
     epsilon = checked_array("separations", separations).copy()
     if epsilon.ndim != 1 or not np.all((epsilon > 0.0) & np.isfinite(epsilon)) or np.unique(epsilon).size < epsilon.size:
         raise ValueError(f"separations={short_repr(separations)}: must be a sequence of different finite numbers above 0")
@@ -195,14 +198,14 @@ def _checked_counts(separations: Any, pairs: Any, uncertain: Any) -> tuple[np.nd
 
 @dataclass(frozen=True, eq=False)
 class _Law:
-    """The most likely power law for the shares at the separations `used` (indices), and its goodness of fit.
+    """The most likely power law for the shares at the separations with these `indices`, and its goodness of fit.
 
     `half_width` is that of the 95 % interval of the exponent, `bend` the quadratic term in standard errors, and `misfit` χ² per
     degree of freedom. The law is `plausible` if the shares do not scatter too much about it. It `holds` if an exponent can be
     claimed.
     """
 
-    used: np.ndarray
+    indices: np.ndarray
     exponent: float = np.nan
     half_width: float = np.nan
     amplitude: float = np.nan
@@ -227,7 +230,7 @@ def _find_law(epsilon: np.ndarray, n: np.ndarray, k: np.ndarray) -> _Law:
             inner = tail[epsilon[tail] * TRANSITION_FACTOR <= epsilon[tail[0]] * (1.0 + _ROUNDING)]
             law = _fit_law(_select_by_expected_pairs(inner, epsilon, n, k), epsilon, n, k)
             if law is None:
-                return _Law(last_attempt.used)
+                return _Law(last_attempt.indices)
             if law.plausible:
                 return replace(law, holds=True)
             last_attempt = law
@@ -246,18 +249,18 @@ def _select_by_expected_pairs(indices: np.ndarray, epsilon: np.ndarray, n: np.nd
 
 def predict_shares(epsilon: np.ndarray, n: np.ndarray, k: np.ndarray) -> np.ndarray:
     """Return f of the most likely power law at each separation; at least two of the k must be above 0, and all k below n."""
-    design = _powers(np.log(epsilon), 1)
+    design = _scaled_powers(np.log(epsilon), 1)
     return np.exp(design @ _maximise_likelihood(design, n, k)[0])
 
 
-def _fit_law(used: np.ndarray, epsilon: np.ndarray, n: np.ndarray, k: np.ndarray) -> _Law | None:
-    """Fit a power law to the separations `used` (indices); return None if they are too few or cover too short a range."""
+def _fit_law(indices: np.ndarray, epsilon: np.ndarray, n: np.ndarray, k: np.ndarray) -> _Law | None:
+    """Fit a power law to the separations with these indices; return None if they are too few or cover too short a range."""
     from scipy import special
 
-    if used.size < MIN_SEPARATIONS or np.ptp(np.log10(epsilon[used])) < MIN_DECADES:
+    if indices.size < MIN_SEPARATIONS or np.ptp(np.log10(epsilon[indices])) < MIN_DECADES:
         return None
-    x, n, k = np.log(epsilon[used]), n[used], k[used]
-    design = _powers(x, 1)
+    x, n, k = np.log(epsilon[indices]), n[indices], k[indices]
+    design = _scaled_powers(x, 1)
     (level, slope), covariance = _maximise_likelihood(design, n, k)
     share = np.exp(design @ [level, slope])
     degrees_of_freedom = x.size - 2
@@ -268,7 +271,7 @@ def _fit_law(used: np.ndarray, epsilon: np.ndarray, n: np.ndarray, k: np.ndarray
     # Half-width of the interval in units of the binomial standard error.
     factor = max(special.ndtri(probability), special.stdtrit(degrees_of_freedom, probability) * np.sqrt(misfit))
     return _Law(
-        used=used,
+        indices=indices,
         exponent=exponent,
         half_width=float(factor * np.sqrt(covariance[1, 1]) / np.ptp(x)),
         amplitude=float(np.exp(level - exponent * x.mean())),
@@ -280,14 +283,14 @@ def _fit_law(used: np.ndarray, epsilon: np.ndarray, n: np.ndarray, k: np.ndarray
 
 def _measure_bend(x: np.ndarray, n: np.ndarray, k: np.ndarray) -> float:
     """Return the quadratic term of log f in x, in standard errors that include the scatter about the fitted parabola."""
-    design = _powers(x, 2)
+    design = _scaled_powers(x, 2)
     coefficients, covariance = _maximise_likelihood(design, n, k)
     share = np.exp(design @ coefficients)
     scatter = np.sum((k - n * share) ** 2 / (n * share * (1.0 - share))) / (x.size - 3)
     return float(coefficients[2] / np.sqrt(covariance[2, 2] * max(scatter, 1.0)))
 
 
-def _powers(x: np.ndarray, degree: int) -> np.ndarray:
+def _scaled_powers(x: np.ndarray, degree: int) -> np.ndarray:
     """Return powers of x, shifted to mean 0 and scaled to a range of length 1, of shape (m, degree + 1)."""
     return np.vander((x - x.mean()) / np.ptp(x), degree + 1, increasing=True)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Protocol
@@ -153,10 +154,11 @@ def checked_dataset(name: str, value: Any, arrays: Collection[str], legal: str) 
     legal
         Description of what is legal, for messages.
     """
+    # Any other value counts as a dataset without arrays.
     dataset: Any = with_present_names(value) if hasattr(value, "data_vars") else {}
-    missing = [array for array in arrays if array not in dataset]
-    if "fate" in missing:
+    if "fate" not in dataset:
         raise ValueError(f"{name}={short_repr(value)}: must be {legal}")
+    missing = [array for array in arrays if array not in dataset]
     if missing:
         raise ValueError(f"{name}: a dataset of a map without {', '.join(missing)}; must have all arrays of the map")
     if dataset["fate"].ndim > 2:
@@ -175,12 +177,14 @@ def _read_dataset(dataset: xr.Dataset) -> Starts:
     if fate.ndim == 1:
         return starts
     ordinate, x = (np.asarray(dataset[dimension].values) for dimension in dataset["fate"].dims)
-    return replace(starts, axes=(x, ordinate), pixel_area=_spacing(x) * _spacing(ordinate))
+    x_low, x_high, ordinate_low, ordinate_high = made_by.get("window", (math.nan,) * 4)
+    pixel_area = _pixel_size(x, x_low, x_high) * _pixel_size(ordinate, ordinate_low, ordinate_high)
+    return replace(starts, axes=(x, ordinate), pixel_area=pixel_area)
 
 
-def _spacing(centres: np.ndarray) -> float:
-    """Return the distance of neighbouring pixel centres; 0 for a single pixel."""
-    return float(np.ptp(centres)) / max(centres.size - 1, 1)
+def _pixel_size(centres: np.ndarray, low: float, high: float) -> float:
+    """Return the distance of pixel centres; for a single pixel, the distance of the edges of the window."""
+    return float(np.ptp(centres)) / (centres.size - 1) if centres.size > 1 else high - low
 
 
 def exit_labels(fate: np.ndarray, *, bounded: bool) -> tuple[np.ndarray, np.ndarray]:

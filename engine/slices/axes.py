@@ -47,7 +47,7 @@ class Coordinate(Enum):
     @property
     def parity(self) -> int | None:
         """1 if x → −x leaves the coordinate unchanged, −1 if its sign changes, None otherwise."""
-        return {"x": -1, "px": -1, "beta": -1, "theta": None, "v": 1}.get(self.value, 1)
+        return {"x": -1, "px": -1, "beta": -1, "theta": None}.get(self.value, 1)
 
     @property
     def is_free(self) -> bool:

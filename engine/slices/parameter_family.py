@@ -31,7 +31,8 @@ _HALVINGS = 12
 _NEWTON_STEPS = 20
 # Number of values along the axis at which `find_members` finds potentials.
 _SCAN_VALUES = 112
-# Largest last step of Newton's method that has converged, as a share of the distance from the origin.
+# Largest last step of Newton's method that has converged, as a share of the distance from the origin, and largest relative
+# rounding error of the distance of a node.
 _TOLERANCE = 1e-12
 # Largest distance by which Newton's method may move a saddle, as a share of the distance to the nearest other saddle.
 _LARGEST_MOVE = 0.5
@@ -129,8 +130,8 @@ class ParameterFamily:
             if value in members:
                 return members[value]
         nodes = sorted(self._nodes)
-        above = next(index for index, node in enumerate(nodes) if node > value)
-        low, high = nodes[above - 1], nodes[above]
+        upper_index = next(index for index, node in enumerate(nodes) if node > value)
+        low, high = nodes[upper_index - 1], nodes[upper_index]
         member = self._interpolate_member(value, low, high)
         if member is None:
             nearest_node = min(low, high, key=lambda node: (abs(node - value), node))

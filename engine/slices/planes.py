@@ -46,9 +46,9 @@ def checked_slice(value: Any) -> Slice:
     """Return a slice, given as a `Slice` or as the title or the key of a named slice: "(x, px)" or "x_px"."""
     if isinstance(value, Slice):
         return next((plane for plane in Plane if _fields(plane) == _fields(value)), value)
-    for plane in Plane if isinstance(value, str) else ():
-        if value in (plane.title, plane.key):
-            return plane
+    planes_by_name = {name: plane for plane in Plane for name in (plane.title, plane.key)}
+    if isinstance(value, str) and value in planes_by_name:
+        return planes_by_name[value]
     raise ValueError(f"plane={short_repr(value)}: must be a Slice or one of {', '.join(plane.key for plane in Plane)}")
 
 

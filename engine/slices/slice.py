@@ -65,6 +65,23 @@ class Slice:
         ) -> None: ...
 
     def __post_init__(self) -> None:
+        self._check_types()
+        used = [axis for axis in self.axes if isinstance(axis, Coordinate)] + [coordinate for coordinate, _ in self.fixed]
+        if self.solved is None:
+            object.__setattr__(self, "solved", default_solved(self.axes, used))
+        check_coordinates(self.axes, used, self.fixed, self.decided)
+        legal_signs = (1,) if self.decided is Coordinate.SPEED else (1, -1)
+        if self.sign not in legal_signs:
+            raise ValueError(f"sign={short_repr(self.sign)}: must be {' or '.join(map(str, legal_signs))}")
+        values = {coordinate: checked_number(f"fixed {coordinate.key}", value) for coordinate, value in self.fixed}
+        if self.decided is Coordinate.SPEED and not any(angle in used for angle in ANGLES):
+            values[Coordinate.THETA] = 0.0
+        # Zeros are left out, so that equal slices compare equal. An angle of 0 stays, because it shows which angle is fixed.
+        pairs = sorted(((c, value) for c, value in values.items() if value or c in ANGLES), key=lambda pair: pair[0].key)
+        object.__setattr__(self, "fixed", tuple(pairs))
+
+    def _check_types(self) -> None:
+        """Raise ValueError for a field of a wrong type. `fixed` becomes a tuple of pairs."""
         for name, axis in zip(("abscissa", "ordinate"), self.axes, strict=True):
             if not isinstance(axis, Axis):
                 raise ValueError(f"{name}={short_repr(axis)}: must be a Coordinate, a Direction or a ParameterAxis")
@@ -75,19 +92,6 @@ class Slice:
             raise ValueError(f"fixed={short_repr(self.fixed)}: must be ((coordinate, value), …)") from None
         for coordinate, _ in self.fixed:
             check_type("fixed", coordinate, Coordinate)
-        used = [axis for axis in self.axes if isinstance(axis, Coordinate)] + [coordinate for coordinate, _ in self.fixed]
-        if self.solved is None:
-            object.__setattr__(self, "solved", default_solved(self.axes, used))
-        check_coordinates(self.axes, used, self.fixed, self.decided)
-        if self.sign not in (1, -1) or (self.decided is Coordinate.SPEED and self.sign < 0):
-            legal = "1" if self.decided is Coordinate.SPEED else "1 or -1"
-            raise ValueError(f"sign={short_repr(self.sign)}: must be {legal}")
-        values = {coordinate: checked_number(f"fixed {coordinate.key}", value) for coordinate, value in self.fixed}
-        if self.decided is Coordinate.SPEED and not any(angle in used for angle in ANGLES):
-            values[Coordinate.THETA] = 0.0
-        # Zeros are left out, so that equal slices compare equal. An angle of 0 stays, because it shows which angle is fixed.
-        pairs = sorted(((c, value) for c, value in values.items() if value or c in ANGLES), key=lambda pair: pair[0].key)
-        object.__setattr__(self, "fixed", tuple(pairs))
 
     def __repr__(self) -> str:
         fixed = "".join(f"({coordinate}, {value!r}), " for coordinate, value in self.fixed)

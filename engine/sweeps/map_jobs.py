@@ -68,6 +68,7 @@ def _find_shorter_map(job: Job[EscapeMap], cache: ResultCache) -> EscapeMap | No
 
 
 def _measure_point(point: SweepPoint, escape_map: EscapeMap, *, execution: Execution) -> xr.Dataset:
+    """Return the measures at one value of a sweep. The job manager passes the map in place of its job."""
     return compute_point(point, escape_map=escape_map, execution=execution)
 
 

@@ -26,6 +26,7 @@ from engine.measures.measure import HIGH_TEMPLATE, LOW_TEMPLATE, NO_CURVE, Bars,
 from engine.measures.power_law_fit import UncertaintyExponent
 from engine.measures.wada import compute_wada_test
 from engine.propagation.fates import Fate, renumber
+from engine.slices.axes import highest_energy
 from engine.slices.window import Window
 from engine.sweeps.measured_map import MeasuredMap, SweepPoint
 from engine.trajectories.flux import EscapeFlux, compute_flux
@@ -79,7 +80,7 @@ def _read_decay_rate(laws: DecayLaws) -> tuple[float, float, float]:
 def _find_exponent(measured: MeasuredMap) -> UncertaintyExponent | None:
     """Return the exponent; None if no exit over a saddle is open."""
     spec = measured.spec
-    if not spec.potential.well.open_channels(spec.common_energy or 0.0):
+    if not spec.potential.well.open_channels(highest_energy(spec.energy)):
         return None
     return compute_uncertainty_exponent(spec, work=measured.effort * WORK, execution=measured.execution)
 

@@ -96,18 +96,25 @@ def _open(path: str | os.PathLike[str]) -> Any:
         raise ValueError(
             f"path={os.fspath(path)}: is a folder without {_ZARR_FILE}; must be a NetCDF file or a Zarr store of format 3"
         )
+    with _open_netcdf(path) as dataset:
+        return _read(path, dataset.load())
+
+
+def _open_netcdf(path: str | os.PathLike[str]) -> xr.Dataset:
+    """Return the dataset of a NetCDF file, read on access; an OSError names the path."""
+    # The import is slow and seldom needed.
+    import xarray as xr
+
     with open(path, "rb") as file:
         if file.read(len(_HDF5_SIGNATURE)) == _HDF5_SIGNATURE:
             require_package("h5netcdf", "files")
     try:
-        dataset = xr.open_dataset(path)
+        return xr.open_dataset(path)
     except OSError as error:
         raise OSError(f"path={os.fspath(path)}: cannot be read as a NetCDF file: {error}") from error
     except ValueError:
         # No engine of xarray recognises the file.
         raise OSError(f"path={os.fspath(path)}: cannot be read as a NetCDF file: its format is unknown") from None
-    with dataset as opened:
-        return _read(path, opened.load())
 
 
 def _read(path: str | os.PathLike[str], dataset: xr.Dataset) -> Any:

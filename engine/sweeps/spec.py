@@ -85,7 +85,7 @@ class SweepSpec:
     energy: float | None = None
     refine: int = 0
 
-    # `__init__` accepts more types than the fields have, and converts them. This declaration tells type checkers so.
+    # `__init__` accepts more types than the fields have, and converts them. This declaration is for type checkers.
     if TYPE_CHECKING:
 
         def __init__(

@@ -133,6 +133,7 @@ def _consolidate(path: Path) -> None:
 
 
 def _sync_to_disk(file: Path) -> None:
+    """Write a file from the cache of the operating system to the disk."""
     if file.is_file():
         with file.open("rb+") as opened:
             os.fsync(opened.fileno())

@@ -78,8 +78,8 @@ class End(Kind):
     side
         The side of the circle on which orbits have ended: −1 inside, 1 outside.
     clause, syntax, spellings
-        For the clause after a formula: pattern of the parameters, description of the clause in errors, and other spellings of
-        `word`.
+        For the clause after a formula: pattern of the parameters, in which a name has at most 40 characters; description of the
+        clause in errors; other spellings of `word`.
     most_clauses
         Largest number of clauses of this kind after a formula.
     attribute

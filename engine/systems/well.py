@@ -74,6 +74,7 @@ class Well(ReadOnlyArrays):
 
     @cached_property
     def _points_and_indices(self) -> np.ndarray:
+        """x, y and index of each critical point, of shape (n, 3)."""
         return read_only(stored_points("critical_points", self.form, self.form.find_critical_points))
 
     @cached_property
@@ -143,6 +144,7 @@ class Well(ReadOnlyArrays):
         return read_only(directions)
 
     def _unstable_direction(self, saddle: np.ndarray) -> np.ndarray:
+        """Return the unit vector along the unstable direction of a saddle, away from the origin."""
         _, eigenvectors = np.linalg.eigh(hessian_matrix(self.form, *saddle))
         # The first eigenvector belongs to the negative eigenvalue.
         unstable = eigenvectors[:, 0]

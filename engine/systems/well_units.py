@@ -13,14 +13,15 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
+# Key of the metadata of fields whose values have a unit.
+_UNIT = "unit"
+
 
 def _quantity(length: int, time: int, mass: int = 0) -> dict[str, tuple[int, int, int]]:
     """Return the metadata of a field: the powers of length, time and mass in the unit of its value, for `WellUnits.restore`."""
     return {_UNIT: (length, time, mass)}
 
 
-# Key of the metadata of fields whose values have a unit.
-_UNIT = "unit"
 # Metadata of fields with these quantities.
 LENGTH, TIME, AREA = _quantity(1, 0), _quantity(0, 1), _quantity(2, 0)
 RATE, MOMENTUM, ENERGY = _quantity(0, -1), _quantity(1, -1, 1), _quantity(2, -2, 1)

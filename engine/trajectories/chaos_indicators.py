@@ -145,6 +145,7 @@ def evaluate_indicators(orbit: Orbit, digits: BirkhoffDigits | None = None) -> t
 
 
 def _evaluate(indicator: Indicator, orbit: Orbit, digits: _Digits) -> IndicatorVerdict:
+    """Return the conclusion of one indicator."""
     judgement: _Judgement
     if orbit.fate == Fate.BOUNDED:
         judgement = indicator.judge(orbit, digits)
@@ -156,6 +157,7 @@ def _evaluate(indicator: Indicator, orbit: Orbit, digits: _Digits) -> IndicatorV
 
 
 def _describe_escape_without_chaos(orbit: Orbit) -> str:
+    """Return a sentence for an escaping orbit without a sign of chaos."""
     # The first word: "escapes" of "escapes through exit 1".
     verb = outcome_of(orbit.fate, orbit.outcomes).present.partition(" ")[0]
     return f"No sign of chaos before the orbit {verb} at t = {format_time(orbit.escape_time)}."
@@ -196,6 +198,7 @@ def _growth_limit(t_end: float, time_unit: float) -> float:
 
 
 def _judge_sali(orbit: Orbit, digits: _Digits) -> _Judgement:
+    """Return the verdict on a bounded orbit from its SALI at the end."""
     value, t_end = float(orbit.sali[-1]), float(orbit.t[-1])
     if is_chaotic(value):
         verdict, reason = Verdict.CHAOTIC, f"{format_number(CHAOS_THRESHOLD)} or below: the two deviation vectors are aligned"
@@ -209,6 +212,7 @@ def _judge_sali(orbit: Orbit, digits: _Digits) -> _Judgement:
 
 
 def _judge_exponent(orbit: Orbit, digits: _Digits) -> _Judgement:
+    """Return the verdict on a bounded orbit from the growth of its first deviation vector."""
     t_end, log_growth = _measure_growth(orbit)
     if t_end < MIN_GROWTH_TIME * orbit.time_unit:
         verdict, reason = _undecided_too_short(t_end)
@@ -231,10 +235,12 @@ def _judge_growth(log_growth: float, power: float, t_end: float, time_unit: floa
 
 
 def _no_sign(t_end: float, reason: str) -> tuple[Verdict, str]:
+    """Return the verdict that there is no sign of chaos, with the reason."""
     return Verdict.NO_SIGN, f"{reason}: no sign of chaos until t = {format_time(t_end)}"
 
 
 def _undecided_too_short(t_end: float) -> tuple[Verdict, str]:
+    """Return the verdict on an orbit that is too short, with the reason."""
     return Verdict.UNDECIDED, f"but t = {format_time(t_end)} is too short to tell"
 
 
@@ -248,6 +254,7 @@ def _fit_growth_power(orbit: Orbit) -> float:
 
 
 def _judge_halves(orbit: Orbit, digits: _Digits) -> _Judgement:
+    """Return the verdict on a bounded orbit from the averages over its halves."""
     value, t_end = orbit.digits_of_halves, float(orbit.t[-1])
     if t_end < MIN_REGULAR_TIME * orbit.time_unit:
         verdict, reason = _undecided_too_short(t_end)
@@ -259,10 +266,12 @@ def _judge_halves(orbit: Orbit, digits: _Digits) -> _Judgement:
 
 
 def _digits_of_longest_window(orbit: Orbit, digits: _Digits) -> float:
+    """Return the digits for the longest window; NaN without windows."""
     return float(digits.digits[-1]) if digits is not None and digits.digits.size else float("nan")
 
 
 def _judge_digits(orbit: Orbit, digits: _Digits) -> _Judgement:
+    """Return the verdict on a bounded orbit from the averages over the two longest windows."""
     if digits is None or not digits.digits.size:
         return Verdict.UNDECIDED, f"No windows to compare: {_reason_without_windows(orbit)}."
     window, value = float(digits.windows[-1]), float(digits.digits[-1])

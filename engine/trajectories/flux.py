@@ -81,7 +81,7 @@ class EscapeFlux(RecordedResult):
 
     @property
     def shares(self) -> np.ndarray:
-        """(n,) share of each exit in the flux; also in the escapes, if orbits forget their start before they leave."""
+        """(n,) share of each exit in the flux; also in the escapes, if the exits of orbits are independent of their starts."""
         return self.flux / self.total if self.flux.size else self.flux
 
     @property

@@ -77,6 +77,7 @@ class OrbitVerdict(OrbitResult):
         return self._describe_fate() + reason
 
     def _describe_fate(self) -> str:
+        """Describe the fate, the evidence and the character in one sentence."""
         crossings, time = f"{format_count(self.crossings, 'upward crossing')} of y = 0", format_time(self.t_end)
         if self.fate >= 1:
             manner = f"after {crossings}" if self.crossings else "directly, without crossing y = 0 upward"

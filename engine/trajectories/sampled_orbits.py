@@ -142,15 +142,15 @@ def sample_orbits(potential: Potential, states: Any, times: Any, *, execution: E
 def _sample_orbit(potential: Potential, start: np.ndarray, times: np.ndarray) -> tuple[np.ndarray, Outcomes]:
     """Return the states of one orbit at m times, of shape (4, m), and its outcome, in units of the well."""
     curves = exit_curves(potential, float(potential.energy(start)))
-    recorded = record_orbit(potential, start, curves, times[-1], SERIAL_EXECUTION)
+    orbit_steps = record_orbit(potential, start, curves, times[-1], SERIAL_EXECUTION)
     path = np.full((_COMPONENTS, times.size), np.nan)
-    if len(recorded.steps):
-        count = int(np.searchsorted(times, recorded.t_end, side="right"))
-        path[:, :count] = sample_path(potential.well.kernels, recorded.steps, times[:count])
+    if len(orbit_steps.steps):
+        count = int(np.searchsorted(times, orbit_steps.t_end, side="right"))
+        path[:, :count] = sample_path(potential.well.kernels, orbit_steps.steps, times[:count])
     else:
         # An orbit that starts outside has a state at t = 0 only.
         path[:, times == 0.0] = start[:, None]
-    return path, recorded.outcomes
+    return path, orbit_steps.outcomes
 
 
 def _join_orbits(potential: Potential, states: np.ndarray, times: np.ndarray, results: list[Any]) -> SampledOrbits:

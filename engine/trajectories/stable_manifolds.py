@@ -108,9 +108,9 @@ class StableManifolds(Result):
 
     def describe(self) -> str:
         """Return the numbers of arcs and points in one sentence."""
-        images = sorted({arc.image for arc in self.arcs})
-        label = "images" if len(images) > 1 else "image"
-        image_text = f"{label} {', '.join(map(str, images))}" if images else "no image"
+        image_numbers = sorted({arc.image for arc in self.arcs})
+        label = "images" if len(image_numbers) > 1 else "image"
+        image_text = f"{label} {', '.join(map(str, image_numbers))}" if image_numbers else "no image"
         points = format_whole(sum(arc.x.size for arc in self.arcs))
         note = ", some of them truncated spirals" if self.truncated else ""
         return f"Stable manifolds of the Lyapunov orbits, {image_text}: {len(self.arcs)} arcs of {points} points{note}."
@@ -202,17 +202,17 @@ def _find_all_arcs(
     computed_channels = [channel for channel in orbits if channel <= mirror_channels[channel]]
     # Each thread mostly waits for the tiles of its channel.
     with ThreadPoolExecutor(max(len(computed_channels), 1)) as threads:
-        results = threads.map(lambda channel: _find_arcs(orbits[channel], images, spacing, execution), computed_channels)
-        arcs = dict(zip(computed_channels, results, strict=True))
-    truncated = any(is_truncated for _, is_truncated in arcs.values())
-    return [arc for channel in orbits for arc in _arcs_of(channel, arcs, int(mirror_channels[channel]))], truncated
+        results = list(threads.map(lambda channel: _find_arcs(orbits[channel], images, spacing, execution), computed_channels))
+    truncated = any(is_truncated for _, is_truncated in results)
+    arcs_by_channel = {channel: arcs for channel, (arcs, _) in zip(computed_channels, results, strict=True)}
+    return [arc for channel in orbits for arc in _arcs_of(channel, arcs_by_channel, int(mirror_channels[channel]))], truncated
 
 
-def _arcs_of(channel: int, arcs: dict[int, tuple[list[ManifoldArc], bool]], mirror_channel: int) -> list[ManifoldArc]:
-    """Return the arcs of a channel, if necessary mirrored from the arcs of its mirror channel."""
-    if channel in arcs:
-        return arcs[channel][0]
-    return [_mirrored(arc, channel) for arc in arcs[mirror_channel][0]]
+def _arcs_of(channel: int, arcs_by_channel: dict[int, list[ManifoldArc]], mirror_channel: int) -> list[ManifoldArc]:
+    """Return the arcs of a channel; if they are not computed, those of its mirror channel, mirrored."""
+    if channel in arcs_by_channel:
+        return arcs_by_channel[channel]
+    return [_mirrored(arc, channel) for arc in arcs_by_channel[mirror_channel]]
 
 
 def _mirrored(arc: ManifoldArc, channel: int) -> ManifoldArc:

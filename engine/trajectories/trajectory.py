@@ -148,6 +148,7 @@ class Orbit(OrbitResult):
 
     @property
     def _required_potential(self) -> Potential:
+        """The potential; ValueError if the orbit has none."""
         if self.potential is None:
             raise ValueError("this orbit has no potential; must be one of `integrate_orbit`")
         return self.potential
@@ -200,11 +201,11 @@ def _integrate(potential: Potential, start: np.ndarray, t_max: float, execution:
     """Apply `integrate_orbit` in units of the well."""
     energy = float(potential.energy(start))
     curves, exits_unknown = exit_curves_if_known(potential, energy)
-    recorded = record_orbit(potential, start, curves, t_max, execution)
-    times, (x, y, px, py), sali, exponent = _sample_orbit(potential, start, recorded, execution)
+    orbit_steps = record_orbit(potential, start, curves, t_max, execution)
+    times, (x, y, px, py), sali, exponent = _sample_orbit(potential, start, orbit_steps, execution)
     arrays = (times, x, y, px, py, sali, exponent, x * x + y * y)
     # The columns of one orbit are arrays of length 1, in this order.
-    fate, escape_time, crossings, energy_error = (values[0].item() for values in recorded.outcomes.columns().values())
+    fate, escape_time, crossings, energy_error = (values[0].item() for values in orbit_steps.outcomes.columns().values())
     evidence = _find_evidence(potential, energy, fate)
     numbers = fate, escape_time, crossings, energy_error, energy, evidence, potential.well.exact_time_unit
     return Orbit(*arrays, *numbers, exits_unknown=exits_unknown)
@@ -218,10 +219,10 @@ def _find_evidence(potential: Potential, energy: float, fate: int) -> Evidence:
 
 
 def _sample_orbit(
-    potential: Potential, start: np.ndarray, recorded: OrbitSteps, execution: Execution
+    potential: Potential, start: np.ndarray, orbit_steps: OrbitSteps, execution: Execution
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Return times (n,), path (4, n), SALI (n,) and Lyapunov exponent (n,) from start to end, all in units of the well."""
-    steps, t_end = recorded.steps, recorded.t_end
+    steps, t_end = orbit_steps.steps, orbit_steps.t_end
     if t_end == 0.0:
         # The deviation vectors are orthonormal, so SALI is √2.
         return np.zeros(1), start[:, None].copy(), np.full(1, np.sqrt(2.0)), np.full(1, np.nan)

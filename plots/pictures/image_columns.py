@@ -155,7 +155,7 @@ def pixel_coding(outcomes: Sequence[Outcome]) -> dict[str, Any]:
     codes = np.arange(FIRST_CLASS + len(PAPER.ends), dtype=np.uint8)
     return {
         "outcomes": [[int(fate), code] for fate, code in _OUTCOME_CODES.items()],
-        "first": FIRST_CLASS,
+        "firstClass": FIRST_CLASS,
         "ends": end_places(outcomes),
         "words": end_words(outcomes),
         "leastCrossings": _LEAST_CROSSINGS.tolist(),

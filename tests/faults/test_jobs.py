@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.job_clients.error_messages import sentence
+from app.job_clients.error_messages import error_sentence
 from engine import CASES, MapSpec, Plane, compute_map
 from engine.jobs.job import Job, Queue
 from engine.jobs.manager import Jobs
@@ -60,7 +60,7 @@ def test_failing_kernel_ends_only_its_job(error: Exception, good_calls: int) -> 
 
 
 def test_internal_errors_are_not_shown_on_the_page() -> None:
-    text = sentence(RuntimeError("/home/somebody/secret.py: line 3"))
+    text = error_sentence(RuntimeError("/home/somebody/secret.py: line 3"))
     assert "secret" not in text
     assert text.endswith(".")
 

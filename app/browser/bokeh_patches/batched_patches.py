@@ -1,8 +1,8 @@
-"""One message for all changes that a callback makes to a document.
+"""Sending of all changes that a callback makes to a document in one message.
 
 This replaces ``bokeh.server.session.ServerSession._send_pending_patches``, which sends a message for each change, and
 collects all models of the document for each message. The first frame of a map has 17 changes. As separate messages they take
-16 ms; as one message they take 3 ms, and the browser paints once. The protocol allows any number of changes in a message. Bokeh
+16 ms. As one message they take 3 ms, and the browser paints once. The protocol allows any number of changes in a message. Bokeh
 also serializes in a thread and waits for this thread, which gains nothing while threads compete for the interpreter lock.
 
 The change for upstream is ``batched_patches.patch``.
@@ -43,10 +43,11 @@ def serialize_batches(pending: Sequence[Any]) -> list[tuple[Any, Any]]:
     Pairs of a prepared message and its connections, in order.
     """
     runs = itertools.groupby(pending, key=lambda patch: (id(patch.event.document), patch.connections))
-    return [_serialize([*patches]) for _, patches in runs]
+    return [_serialize(list(patches)) for _, patches in runs]
 
 
 def _serialize(patches: list[Any]) -> tuple[Any, Any]:
+    """Return a message with the changes of patches of the same document for the same connections, and these connections."""
     first = patches[0]
     document: Document = first.event.document
     with patch_curdoc(document):

@@ -1,4 +1,4 @@
-"""Files that the browser saves or copies."""
+"""Components that make the browser save a file or copy an image."""
 
 from __future__ import annotations
 
@@ -30,15 +30,15 @@ class ImageCopier(JSComponent):
     Parameters
     ----------
     on_wanted
-        Handles a click, without the session's lock, and must lead to a call of `send`.
+        Called after a click, without the session's lock. It must lead to a call of `send`.
     on_copied
-        Takes whether the browser has copied the image.
+        Called with whether the browser has copied the image.
     **options
         Parameters of the component.
     """
 
-    label = param.String(default="Copy image")
-    disabled = param.Boolean(default=False)
+    label = param.String(default="Copy image", doc="text of the button")
+    disabled = param.Boolean(default=False, doc="whether the button is disabled")
 
     _esm = Path(__file__).with_name("image_copier.js")
 

@@ -1,6 +1,6 @@
 // @ts-check
-/** Time for which the address of a file is kept, in ms. */
-const KEPT_MS = 60000
+/** Time after which the address of a file is revoked, in ms. The browser must have begun to save the file by then. */
+const KEPT_MS = 60_000
 
 /**
  * Saves each file that the server sends in the download folder of the browser.

@@ -12,7 +12,7 @@ export function render({model, el}) {
   model.on("disabled", follow)
   follow()
   el.append(button)
-  /** @type {((image: ArrayBuffer | null) => void) | null} */
+  /** Passes the image to the clipboard; null unless a copy is in progress. @type {((image: ArrayBuffer | null) => void) | null} */
   let deliver = null
   button.addEventListener("click", async () => {
     if (deliver) return

@@ -20,14 +20,14 @@ class OrbitList(JSComponent):
     Parameters
     ----------
     on_choose
-        Takes the place of the chosen orbit, without the session's lock.
+        Called with the index of the orbit that the visitor chooses. The call does not hold the session's lock.
     **options
         Parameters of the component.
     """
 
-    label = param.String(default="Orbits")
+    label = param.String(default="Orbits", doc="name of the list for screen readers")
     rows = param.List(item_type=str, doc="text that describes each orbit, as a tooltip and for screen readers")
-    chosen = param.Integer(default=0, bounds=(0, None), doc="place of the chosen orbit")
+    chosen = param.Integer(default=0, bounds=(0, None), doc="index of the chosen orbit")
 
     _esm = Path(__file__).with_name("orbit_list.js")
 
@@ -38,22 +38,23 @@ class OrbitList(JSComponent):
     def _handle_msg(self, message: Any) -> None:
         # A browser can send anything: unexpected messages are ignored.
         match message:
-            case {"chosen": int(place)} if not isinstance(place, bool) and 0 <= place < len(self.rows):
-                self._on_choose(place)
+            case {"chosen": int(index)} if not isinstance(index, bool) and 0 <= index < len(self.rows):
+                self._on_choose(index)
 
 
 class OrbitPlayer(JSComponent):
-    """A button to play and pause, and a slider. Both change the time in steps, and the browser reports each time.
+    """A button to play and pause, and a slider. Both change the time in steps, and the browser sends each step.
 
     Parameters
     ----------
     on_time
-        Takes each time that the player shows, without the session's lock; None at the start, and without an interval.
+        Called with each time that the player shows; None at the start, and without an interval. The call does not hold the
+        session's lock.
     **options
         Parameters of the component.
     """
 
-    label = param.String(default="Time along the orbits")
+    label = param.String(default="Time along the orbits", doc="name of the slider for screen readers")
     steps = param.Integer(default=600, doc="number of steps of the interval")
     pause = param.Integer(default=50, doc="time between two steps, in ms")
     begin = param.Number(default=0.0, doc="start of the interval of time")

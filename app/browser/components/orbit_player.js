@@ -2,52 +2,52 @@
 import {number} from "../modules/numbers.js"
 
 /**
- * A button and a slider for the time along the orbits. Steps from `begin` to `end` are played in a loop, and each step is sent.
+ * A button and a slider for the time along the orbits. The steps from `begin` to `end` are played in a loop, and each is sent.
  *
  * @param {{model: any, el: HTMLElement}} component
  */
 export function render({model, el}) {
-  const [button, rail, text] = [
+  const [button, slider, text] = [
     document.createElement("button"),
     document.createElement("input"),
     document.createElement("output"),
   ]
   el.classList.add("orbit-player")
-  el.append(button, rail, text)
+  el.append(button, slider, text)
   button.type = "button"
-  Object.assign(rail, {type: "range", min: 0, max: model.steps, step: 1})
-  rail.setAttribute("aria-label", model.label)
+  Object.assign(slider, {type: "range", min: 0, max: model.steps, step: 1})
+  slider.setAttribute("aria-label", model.label)
   /** @type {number | undefined} */
   let timer
   const write = (/** @type {number} */ step) => {
     const time = model.begin + ((model.end - model.begin) * step) / model.steps
-    rail.valueAsNumber = step
+    slider.valueAsNumber = step
     text.textContent = `t = ${number(time, 5)}`
-    rail.setAttribute("aria-valuetext", text.textContent)
+    slider.setAttribute("aria-valuetext", text.textContent)
   }
-  const go = (/** @type {number} */ step) => {
+  const goTo = (/** @type {number} */ step) => {
     write(step)
-    model.send_msg({step: rail.valueAsNumber, begin: model.begin, end: model.end})
+    model.send_msg({step: slider.valueAsNumber, begin: model.begin, end: model.end})
   }
-  const play = (/** @type {boolean} */ on) => {
+  const setPlaying = (/** @type {boolean} */ isPlaying) => {
     clearInterval(timer)
-    timer = on ? window.setInterval(() => go((rail.valueAsNumber + 1) % (model.steps + 1)), model.pause) : undefined
-    button.className = on ? "pause" : "play"
-    button.setAttribute("aria-label", on ? "Pause the orbits" : "Play the orbits")
+    timer = isPlaying ? window.setInterval(() => goTo((slider.valueAsNumber + 1) % (model.steps + 1)), model.pause) : undefined
+    button.className = isPlaying ? "pause" : "play"
+    button.setAttribute("aria-label", isPlaying ? "Pause the orbits" : "Play the orbits")
   }
-  // Go to the beginning of another interval, and continue to play.
+  // Show the beginning of another interval. A running animation continues from there.
   const follow = () => {
     const isEmpty = model.begin === model.end
-    for (const input of [button, rail]) input.disabled = isEmpty
-    if (isEmpty) play(false)
+    for (const input of [button, slider]) input.disabled = isEmpty
+    if (isEmpty) setPlaying(false)
     write(0)
   }
-  button.addEventListener("click", () => play(timer === undefined))
-  rail.addEventListener("input", () => go(rail.valueAsNumber))
+  button.addEventListener("click", () => setPlaying(timer === undefined))
+  slider.addEventListener("input", () => goTo(slider.valueAsNumber))
   model.on(["begin", "end"], follow)
   model.on("lifecycle:remove", () => clearInterval(timer))
-  play(false)
+  setPlaying(false)
   follow()
-  // A player that returns to the page is at the beginning.
-  if (!rail.disabled) go(0)
+  // A player that is shown again is at the beginning, which the server does not know yet.
+  if (!slider.disabled) goTo(0)
 }

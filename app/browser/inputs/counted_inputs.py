@@ -1,4 +1,4 @@
-"""Inputs that count their values, so the browser ignores older values from the server."""
+"""Inputs that number the values they send, so that the browser can ignore older values from the server."""
 
 from __future__ import annotations
 
@@ -12,11 +12,12 @@ from panel.custom import JSComponent
 
 from app.browser.javascript import component_code
 
-SHOWN = "energyshown"
-"""Browser event with the energy that the pictures show before the server has received it."""
+ENERGY_SHOWN_EVENT = "energyshown"
+"""Browser event with an energy that the pictures show before the server has received it."""
 
 LONGEST_TYPED = 4000
-"""Largest length of a typed text, in characters: above the limit for formulas, because the box cuts texts without a message."""
+"""Largest length of a typed text, in characters. The box cuts longer texts silently, so this is larger than the limit for
+formulas, whose message is then shown."""
 
 
 def _code(name: str) -> str:
@@ -27,22 +28,25 @@ def _code(name: str) -> str:
 class CountedInput(JSComponent):
     """An input whose browser part uses `CountedValue` in counted_value.js.
 
-    Bokeh's widgets would show each value of the server at once, even over a value that is being typed. Panel would drop a typed
-    value while an earlier action that sets another value is waiting.
+    Bokeh's widgets would show each value from the server at once, even over a value that is being typed. While an earlier action
+    that sets another value is pending, Panel would discard a typed value.
 
     Parameters
     ----------
     on_value
-        Takes each legal value of the visitor, and whether the value is final, without the session's lock.
+        Called with each legal value that the visitor enters and with whether the value is final. The call does not hold the
+        session's lock.
     value
         The initial value.
     **options
         Parameters of the component.
     """
 
-    label = param.String()
-    disabled = param.Boolean()
-    shown = param.Dict(default={}, doc="value, and number of the visitor's values that the server knew when it set the value")
+    label = param.String(doc="text beside the input")
+    disabled = param.Boolean(doc="whether the input accepts no values")
+    shown = param.Dict(
+        default={}, doc="shown value, and number of values that the server had received from the browser when it set this value"
+    )
 
     def __init__(self, on_value: Callable[[Any, bool], None], value: Any, **options: Any) -> None:
         super().__init__(shown={"value": value, "count": 0}, **options)
@@ -57,28 +61,28 @@ class CountedInput(JSComponent):
         """Show a value, unless the browser has a newer one."""
         self.shown = self.shown | {"value": value}
 
-    def _checked(self, value: Any) -> Any:
-        """Return the value in a message; None for an illegal value."""
+    def _legal_value(self, value: Any) -> Any:
+        """Return the value from a message, within the limits of the input; None if it is illegal."""
         raise NotImplementedError
 
     def _handle_msg(self, message: Any) -> None:
         # A browser can send anything: unexpected messages are ignored.
         match message:
-            case {"value": sent, "count": int(count), "done": bool(done)}:
-                value = self._checked(sent)
+            case {"value": sent_value, "count": int(count), "done": bool(is_final)}:
+                value = self._legal_value(sent_value)
                 # The browser shows the last legal value in place of an illegal value.
                 self.shown = {"value": self.value if value is None else value, "count": count}
                 if value is not None:
-                    self._on_value(value, done)
+                    self._on_value(value, is_final)
 
 
 class NumberBox(CountedInput):
-    """A box for a number with a label.
+    """A labelled box for a number.
 
     Parameters
     ----------
     on_number
-        Takes each final number, without the session's lock.
+        Called with each final number, without the session's lock.
     number
         The initial number.
     **options
@@ -86,14 +90,14 @@ class NumberBox(CountedInput):
     """
 
     step = param.Number(default=0.1, doc="step of the arrow keys and buttons")
-    shown_event = param.String(doc="browser event with a number to show that the server has not received")
+    shown_event = param.String(doc="browser event with a number to show before the server has received it; empty for none")
 
     _esm = _code("number_box")
 
     def __init__(self, on_number: Callable[[float], None], number: float, **options: Any) -> None:
-        super().__init__(lambda value, done: on_number(value), number, **options)
+        super().__init__(lambda value, is_final: on_number(value), number, **options)
 
-    def _checked(self, value: Any) -> float | None:
+    def _legal_value(self, value: Any) -> float | None:
         return _finite_number(value)
 
 
@@ -103,56 +107,57 @@ class EnergySlider(CountedInput):
     Parameters
     ----------
     on_release
-        Takes each energy that the visitor chooses, without the session's lock.
+        Called with each energy at which the visitor releases the slider, without the session's lock.
     energy
         The initial energy.
     **options
         Parameters of the component.
     """
 
-    note = param.String(doc="text in place of name and number")
-    low = param.Number(default=0.0, doc="left end")
-    high = param.Number(default=1.0, doc="right end")
-    decimals = param.Integer(default=3, doc="decimals of the energies that can be chosen")
+    note = param.String(doc="text in place of the label and the number; empty for none")
+    low = param.Number(default=0.0, doc="energy at the left end")
+    high = param.Number(default=1.0, doc="energy at the right end")
+    decimals = param.Integer(default=3, doc="number of decimals of the energies that can be chosen")
 
     _esm = _code("energy_slider")
 
     def __init__(self, on_release: Callable[[float], None], energy: float, **options: Any) -> None:
-        super().__init__(lambda value, done: on_release(value), energy, label="Energy h", **options)
+        super().__init__(lambda value, is_final: on_release(value), energy, label="Energy h", **options)
 
-    def _checked(self, value: Any) -> float | None:
+    def _legal_value(self, value: Any) -> float | None:
         number = _finite_number(value)
         return None if number is None or self.disabled else min(max(number, self.low), self.high)
 
 
 class ParameterSlider(CountedInput):
-    """A slider with a box for its number. The number is final when the slider is released, a part is left, or Enter is pressed.
+    """A slider with a box for its number.
 
+    The number is final when the slider is released, when the slider or the box loses focus, or when Enter is pressed in the box.
     For a number beyond an end of the slider, the thumb is at that end.
     """
 
-    low = param.Number(doc="left end of the slider")
-    high = param.Number(doc="right end of the slider")
-    lowest = param.Number(doc="smallest number of the box")
-    highest = param.Number(doc="largest number of the box")
-    step = param.Number(default=0.01)
+    low = param.Number(doc="number at the left end of the slider")
+    high = param.Number(doc="number at the right end of the slider")
+    lowest = param.Number(doc="smallest legal number of the box")
+    highest = param.Number(doc="largest legal number of the box")
+    step = param.Number(default=0.01, doc="step of the slider and of the box")
 
     _esm = _code("parameter_slider")
 
-    def _checked(self, value: Any) -> float | None:
+    def _legal_value(self, value: Any) -> float | None:
         number = _finite_number(value)
         return number if number is not None and self.lowest <= number <= self.highest else None
 
 
 class FormulaBox(CountedInput):
-    """A box for a formula. The text is final when Enter is pressed or the box is left."""
+    """A box for a formula. The text is final when Enter is pressed or the box loses focus."""
 
     placeholder = param.String(doc="text in an empty box")
     longest = param.Integer(default=LONGEST_TYPED, doc="largest length of the text, in characters")
 
     _esm = _code("formula_box")
 
-    def _checked(self, value: Any) -> str | None:
+    def _legal_value(self, value: Any) -> str | None:
         return value if isinstance(value, str) and len(value) <= self.longest else None
 
 

@@ -1,7 +1,7 @@
 // @ts-check
 /**
- * The value of an input. Sent values are numbered. A value from the server whose number is smaller than the last sent number
- * is older than the value in the input, and is ignored.
+ * The value of an input. Sent values are numbered, and the server returns the number of the last value that it has received.
+ * While this number is smaller than that of the last sent value, values from the server are older, and are ignored.
  */
 export class CountedValue {
   /**
@@ -13,47 +13,48 @@ export class CountedValue {
     this.model = model
     this.read = read
     this.write = write
+    /** Number of the last sent value. */
     this.count = model.shown.count
     /** Whether the input has a value that is not sent yet. */
-    this.unsent = false
+    this.isUnsent = false
     /** Whether the last value is final. */
-    this.done = true
+    this.isFinal = true
   }
 
   /** Show the value from the server, unless the input has a newer value. */
   follow() {
-    if (!this.unsent && this.model.shown.count >= this.count) this.write(this.model.shown.value)
+    if (!this.isUnsent && this.model.shown.count >= this.count) this.write(this.model.shown.value)
   }
 
   /** Begin a change of the value, which is sent when it is final. */
   begin() {
-    this.unsent = true
-    this.done = false
+    this.isUnsent = true
+    this.isFinal = false
   }
 
   /** Send a change of the value at once. */
   change() {
-    this.done = false
+    this.isFinal = false
     this.send()
   }
 
   /** Send the changed value as final. */
   finish() {
-    if (this.done) return
-    this.done = true
+    if (this.isFinal) return
+    this.isFinal = true
     this.send()
   }
 
   /** Drop a change that was begun. */
   cancel() {
-    this.unsent = false
-    this.done = true
+    this.isUnsent = false
+    this.isFinal = true
     this.follow()
   }
 
-  /** Send the value with its number. */
+  /** Send the value of the input with its number. */
   send() {
-    this.unsent = false
-    this.model.send_msg({value: this.read(), count: ++this.count, done: this.done})
+    this.isUnsent = false
+    this.model.send_msg({value: this.read(), count: ++this.count, done: this.isFinal})
   }
 }

@@ -2,7 +2,8 @@
 import {CountedValue} from "./counted_value.js"
 
 /**
- * A box for a formula, as high as its text. Each change is sent. The text is final when Enter is pressed or the box is left.
+ * A box for a formula, as high as its text. Each change is sent. The text is final when Enter is pressed or the box
+ * loses focus.
  *
  * @param {{model: any, el: HTMLElement}} component
  */

@@ -1,9 +1,9 @@
 // @ts-check
-import {hear} from "../modules/energy_events.js"
+import {listen} from "../modules/energy_events.js"
 import {CountedValue} from "./counted_value.js"
 
 /**
- * A box for a number, which is sent when the box is left or Enter is pressed.
+ * A box for a number, which is sent when the box loses focus or Enter is pressed.
  *
  * @param {{model: any, el: HTMLElement}} component
  */
@@ -31,9 +31,9 @@ export function render({model, el}) {
   input.addEventListener("blur", finish)
   // Enter without a change of the number fires no change event.
   input.addEventListener("keydown", event => event.key === "Enter" && finish())
-  // Show a number of the page that the server has not received yet.
-  const show = (/** @type {number} */ number) => !value.unsent && write(Number(number.toPrecision(10)))
-  if (model.shown_event) model.on("lifecycle:remove", hear(model.shown_event, show))
+  // Show a number that the server has not received yet, without the rounding errors in its last digits.
+  const show = (/** @type {number} */ number) => !value.isUnsent && write(Number(number.toPrecision(10)))
+  if (model.shown_event) model.on("lifecycle:remove", listen(model.shown_event, show))
   model.on(["step", "disabled", "shown"], follow)
   follow()
 }

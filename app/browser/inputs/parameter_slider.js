@@ -3,40 +3,40 @@ import {CountedValue} from "./counted_value.js"
 
 /**
  * A slider with a box for its number, which may lie beyond the ends of the slider. Each number is sent. A number is final when
- * the slider or the box is left, the slider is released, or Enter is pressed.
+ * the slider is released, when the slider or the box loses focus, or when Enter is pressed in the box.
  *
  * @param {{model: any, el: HTMLElement}} component
  */
 export function render({model, el}) {
   const label = document.createElement("label")
-  const [rail, box] = [document.createElement("input"), document.createElement("input")]
+  const [slider, box] = [document.createElement("input"), document.createElement("input")]
   el.classList.add("parameter-slider")
-  label.htmlFor = rail.id = "rail"
+  label.htmlFor = slider.id = "rail"
   label.textContent = model.label
-  Object.assign(rail, {type: "range", min: model.low, max: model.high, step: model.step})
+  Object.assign(slider, {type: "range", min: model.low, max: model.high, step: model.step})
   Object.assign(box, {type: "number", min: model.lowest, max: model.highest, step: model.step, className: "bk-input"})
   box.setAttribute("aria-label", `${model.label}, number`)
-  el.append(label, rail, box)
+  el.append(label, slider, box)
   const write = (/** @type {HTMLInputElement} */ input, /** @type {number} */ number) => {
     if (input.valueAsNumber !== number) input.valueAsNumber = number
   }
-  const writeBoth = (/** @type {number} */ number) => [rail, box].forEach(input => write(input, number))
+  const writeBoth = (/** @type {number} */ number) => [slider, box].forEach(input => write(input, number))
   const value = new CountedValue(model, () => box.valueAsNumber, writeBoth)
   // While a number is typed, the text may not be a number yet.
   const isLegal = () => Number.isFinite(box.valueAsNumber) && !box.validity.rangeUnderflow && !box.validity.rangeOverflow
-  rail.addEventListener("input", () => {
-    write(box, rail.valueAsNumber)
+  slider.addEventListener("input", () => {
+    write(box, slider.valueAsNumber)
     value.change()
   })
   box.addEventListener("input", () => {
     if (!isLegal()) return
-    write(rail, box.valueAsNumber)
+    write(slider, box.valueAsNumber)
     value.change()
   })
   box.addEventListener("blur", () => {
     if (!isLegal()) box.valueAsNumber = model.shown.value
   })
-  for (const event of ["pointerup", "pointercancel", "blur"]) rail.addEventListener(event, () => value.finish())
+  for (const event of ["pointerup", "pointercancel", "blur"]) slider.addEventListener(event, () => value.finish())
   box.addEventListener("blur", () => value.finish())
   box.addEventListener("keydown", event => event.key === "Enter" && value.finish())
   model.on("shown", () => value.follow())

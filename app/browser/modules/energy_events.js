@@ -14,7 +14,7 @@
  * @param {string} event
  * @param {number} [energy]
  */
-export function tell(event, energy) {
+export function dispatch(event, energy) {
   document.dispatchEvent(new CustomEvent(event, {detail: energy}))
 }
 
@@ -24,7 +24,7 @@ export function tell(event, energy) {
  * @param {string} event
  * @param {(energy: number) => void} take
  */
-export function hear(event, take) {
+export function listen(event, take) {
   const listener = (/** @type {Event} */ each) => take(/** @type {CustomEvent} */ (each).detail)
   document.addEventListener(event, listener)
   return () => document.removeEventListener(event, listener)

@@ -1,17 +1,17 @@
 // @ts-check
 /** Connects the component on the page (`app/views/panels/engine_component.py`) with the modules. */
 
-import {hear, tell} from "./energy_events.js"
+import {dispatch, listen} from "./energy_events.js"
 import {Card} from "./gestures/card.js"
 import {Frames} from "./workers/frames.js"
-import {lightPixels} from "./painting/legend.js"
+import {highlightPixels} from "./painting/legend.js"
 import {Overlay} from "./painting/overlay.js"
-import {Player} from "./gestures/player.js"
+import {EnergyPlayer} from "./gestures/player.js"
 import {Pool, workerCount} from "./workers/pool.js"
 import {setPresent} from "./gestures/present.js"
 import {Preview} from "./gestures/preview.js"
 
-/** The smallest module with a vector instruction. */
+/** A minimal WebAssembly module with a vector instruction, to test whether the browser supports these. */
 // prettier-ignore
 const SIMD = Uint8Array.of(
   0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3,
@@ -19,22 +19,24 @@ const SIMD = Uint8Array.of(
 )
 
 /**
- * Start previews, the card and the animation for a component.
+ * Start the previews, the card and the animation of the energy.
  *
- * @param {any} model
- * @param {HTMLElement} el
+ * @param {any} model  of the component
+ * @param {HTMLElement} el  element of the component
  */
 export function start(model, el) {
-  lightPixels()
+  highlightPixels()
   if (!WebAssembly.validate(SIMD)) {
     // Without vector instructions, the last map stays until the next map arrives, and the energy cannot be played.
-    const refuse = () => model.command.name === "play" && model.send_msg({energy: model.command.energy})
-    model.on("command", refuse)
-    refuse()
+    const endAnimation = () => {
+      if (model.command.name === "play") model.send_msg({energy: model.command.energy})
+    }
+    model.on("command", endAnimation)
+    endAnimation()
     return
   }
-  const page = Bokeh.documents.find((/** @type {any} */ each) => each.get_model_by_name("maps"))
-  const find = (/** @type {string} */ name) => page.get_model_by_name(name)
+  const bokehDocument = Bokeh.documents.find((/** @type {any} */ each) => each.get_model_by_name("maps"))
+  const find = (/** @type {string} */ name) => bokehDocument.get_model_by_name(name)
   // Sources of different pictures have the same names.
   const findSource = (/** @type {string} */ picture, /** @type {string} */ name) =>
     find(picture)
@@ -42,13 +44,13 @@ export function start(model, el) {
       .find((/** @type {any} */ source) => source?.name === name)
   const kernels = WebAssembly.compileStreaming(fetch(new URL("./kernels.wasm", import.meta.url)))
   const pool = new Pool(() => new Worker(new URL("./workers/worker.js", import.meta.url), {type: "module"}))
-  const frames = new Frames(pool, workerCount(), (view, pixels, moving) => preview.show(view, pixels, moving))
+  const frames = new Frames(pool, workerCount(), (view, pixels, isMoving) => preview.show(view, pixels, isMoving))
   /** @type {Preview} */
   const preview = new Preview(find, findSource, frames, new Overlay(el))
-  const player = new Player(
+  const player = new EnergyPlayer(
     energy => {
       preview.showEnergy(energy)
-      tell("energyshown", energy)
+      dispatch("energyshown", energy)
     },
     energy => {
       preview.release()
@@ -61,9 +63,9 @@ export function start(model, el) {
     () => find("maps").data,
     () => model.view,
   )
-  hear("energydragged", energy => preview.showEnergy(energy))
-  hear("energyreleased", () => preview.release())
-  // The last system and its compiled modules.
+  listen("energydragged", energy => preview.showEnergy(energy))
+  listen("energyreleased", () => preview.release())
+  // The last system from the server, and its compiled modules.
   /** @type {{system: import("./engine/system.js").System, modules: import("./engine/integrator.js").Modules} | null} */
   let compiled = null
   const updatePresent = () => {
@@ -102,5 +104,6 @@ export function start(model, el) {
   receiveView()
   void receiveSystem()
   if (model.command.name === "play") runCommand()
-  tell("energyasked")
+  // If the slider is held already, it answers with its energy.
+  dispatch("energyasked")
 }

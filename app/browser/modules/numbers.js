@@ -20,18 +20,13 @@ export function count(value) {
   return groupDigits(String(Math.round(value)).replace("-", "−"))
 }
 
-/**
- * Write a share of 1 as a percentage.
- *
- * @param {number} value
- * @param {number} [digits]
- */
-export function percent(value, digits = 3) {
-  return `${number(100 * value, digits)}\u202f%`
+/** Write a share of 1 as a percentage with three significant digits. @param {number} value */
+export function percent(value) {
+  return `${number(100 * value, 3)}\u202f%`
 }
 
-/** A share of 1, as a percentage with one decimal. @param {number} value */
-export function share(value) {
+/** Write a share of 1 as a percentage with one decimal. @param {number} value */
+export function percentWithDecimal(value) {
   return `${(100 * value).toFixed(1)}\u202f%`
 }
 
@@ -50,7 +45,7 @@ function withPower(value, digits) {
   return `${String(Number(mantissa)).replace("-", "−")} × 10${superscript}`
 }
 
-/** Separate groups of three digits. @param {string} text */
+/** Separate groups of three digits before the decimal point. @param {string} text */
 function groupDigits(text) {
   return text.replace(/^(−?)(\d{4,})/, (_, sign, digits) => sign + digits.replace(/\B(?=(\d{3})+$)/g, "\u202f"))
 }

@@ -1,4 +1,4 @@
-"""Log records as lines of text or JSON. Input of users in a message cannot forge a record."""
+"""Log records as lines of text or JSON. Text from users in a message cannot forge another record."""
 
 from __future__ import annotations
 
@@ -18,8 +18,9 @@ LONGEST_MESSAGE = 400
 
 # Number of first characters of a session's id in the log.
 _SESSION_CHARACTERS = 8
-# Number of last characters of a shortened message, which contain the visitor's address.
+# Number of last characters of a shortened message. In a message about a request, they contain the visitor's address.
 _LAST_CHARACTERS = 60
+_ELLIPSIS = " … "
 _TRACEBACK_INDENT = "    "
 
 
@@ -34,7 +35,7 @@ def short_session_id() -> str | None:
 
 
 def add_session_id(record: logging.LogRecord) -> bool:
-    """Filter that adds the current session to each record, and passes all records."""
+    """Filter that adds the short id of the current session to each record, and passes all records."""
     if session := short_session_id():
         record.session = session
     return True
@@ -44,8 +45,8 @@ def shorten_message(record: logging.LogRecord) -> bool:
     """Filter that shortens long messages by omitting their middle, and passes all records."""
     message = record.getMessage()
     if len(message) > LONGEST_MESSAGE:
-        beginning = message[: LONGEST_MESSAGE - _LAST_CHARACTERS - 3]
-        record.msg, record.args = f"{beginning} … {message[-_LAST_CHARACTERS:]}", None
+        beginning = message[: LONGEST_MESSAGE - _LAST_CHARACTERS - len(_ELLIPSIS)]
+        record.msg, record.args = beginning + _ELLIPSIS + message[-_LAST_CHARACTERS:], None
     return True
 
 
@@ -109,6 +110,7 @@ def set_up_logs(log_format: LogFormat, counter: logging.Handler, loggers: Iterab
             handler.setFormatter(JsonLineFormatter() if log_format is LogFormat.JSON else TextFormatter())
             handler.addFilter(add_session_id)
             handler.addFilter(shorten_message)
+            # Panel's handler writes to stdout.
             if isinstance(handler, logging.StreamHandler) and handler.stream is sys.stdout:
                 handler.setStream(sys.stderr)
         logger.addHandler(counter)

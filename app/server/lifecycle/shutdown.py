@@ -1,4 +1,4 @@
-"""Graceful shutdown: notify the pages, cancel all jobs and end the process within seconds."""
+"""Graceful shutdown: the pages are notified, all jobs are cancelled, and the process ends within seconds."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from app.views.components.notice import show_lasting_notice
 
 RESTART_NOTICE = "The server is restarting. Reload this page in a minute: its address holds the view."
 
-# Time in which messages reach the pages and a proxy notices that the server is not ready, in seconds.
+# Time for messages to reach the pages, and for a proxy to notice that the server is not ready, in seconds.
 _GRACE_SECONDS = 0.5
 # Longest time until the process ends, in seconds. Computations check for cancellation every 50 ms or so.
 _EXIT_DELAY_SECONDS = 4.0
@@ -41,7 +41,7 @@ def stop_on_signals(state: ProcessState, stop_loop: Callable[[], None]) -> None:
     for number in _SIGNALS:
         # A shell starts background jobs with SIGINT ignored. They must continue to ignore it.
         if signal.getsignal(number) is not signal.SIG_IGN:
-            signal.signal(number, _leave_to_thread)
+            signal.signal(number, _ignore_signal)
     receiver, sender = socket.socketpair()
     sender.setblocking(False)
     signal.set_wakeup_fd(sender.detach(), warn_on_full_buffer=False)
@@ -72,8 +72,8 @@ def finish_shutdown(state: ProcessState) -> None:
         os._exit(0)
 
 
-def _leave_to_thread(number: int, frame: Any) -> None:
-    """Do nothing: `_wait_for_signal` handles the signal."""
+def _ignore_signal(number: int, frame: Any) -> None:
+    """Do nothing: the thread that runs `_wait_for_signal` handles the signal."""
 
 
 def _wait_for_signal(receiver: socket.socket, stop: Callable[[], None]) -> None:
@@ -95,7 +95,7 @@ def _notify_pages(state: ProcessState) -> None:
 
 
 def _exit_later() -> None:
-    """End the process after `_EXIT_DELAY_SECONDS`. No file can be truncated, because the server writes no files."""
+    """End the process after `_EXIT_DELAY_SECONDS`. No file can be truncated: files of the cache are written atomically."""
     timer = threading.Timer(_EXIT_DELAY_SECONDS, os._exit, [0])
     timer.daemon = True
     timer.start()

@@ -34,6 +34,7 @@ log = logging.getLogger(f"bokeh.{__name__}")
 def prepare_for_orbits(potential: Potential) -> None:
     """Compile the kernels of single orbits, or load them from the cache."""
     start = start_states(potential, SECTION, potential.well.energy_at(0.5), np.zeros(1), np.zeros(1))[0]
+    # Any short orbit compiles the kernels.
     call_after_maps(lambda: integrate_orbit(potential, start, 10.0 * potential.units.time))
 
 
@@ -42,13 +43,13 @@ def prepare_for_layers(potential: Potential) -> None:
     execution = DEFAULT_EXECUTION.in_this_thread()
     # A count of 1 is enough to compile the kernels.
     settings = {name: 1 for name, layer in LAYERS.items() if layer.count is not None}
-    # Some layers concern orbits that escape, and others bounded orbits: below the escape energy, all orbits are bounded.
+    # Some layers concern escaping orbits, which exist above the escape energy only, and others concern bounded orbits.
     for spec in (small_map(potential, potential.well.energy_at(multiple)) for multiple in (0.5, 1.01)):
         jobs = [layer.job(spec, settings) for layer in LAYERS.values() if not layer.refusal(spec)]
         call_after_maps(*(partial(run_job, job, execution, {}) for job in jobs))
 
 
-_PURPOSES: Mapping[str, Callable[[Potential], None]] = {
+_PREPARATIONS: Mapping[str, Callable[[Potential], None]] = {
     "maps": prepare_for_maps,
     "evidence": prepare_for_evidence,
     "orbits": prepare_for_orbits,
@@ -59,7 +60,7 @@ _PURPOSES: Mapping[str, Callable[[Potential], None]] = {
 def _prepare_cases(*purposes: str) -> dict[str, Callable[[], object]]:
     """Return the steps that prepare all cases of the paper for some purposes."""
     return {
-        f"the kernels of case {name} for {purpose}": partial(_PURPOSES[purpose], potential)
+        f"the kernels of case {name} for {purpose}": partial(_PREPARATIONS[purpose], potential)
         for purpose in purposes
         for name, potential in CASES.items()
     }
@@ -73,7 +74,7 @@ STEPS: Mapping[str, Callable[[], object]] = {
     "the histograms": histograms.prepare,
     "the integrators of the catalogue, to be compiled when they are needed": reserve_catalogue,
 }
-"""Functions that compile kernels or load them from the disk cache, in the order of need, by what they prepare."""
+"""Functions that compile kernels or load them from the disk cache, by what they prepare, in the order in which it is needed."""
 
 
 def start_warmup(state: ProcessState, steps: Mapping[str, Callable[[], object]] = STEPS) -> threading.Thread:
@@ -82,19 +83,19 @@ def start_warmup(state: ProcessState, steps: Mapping[str, Callable[[], object]] 
     A failed step ends the thread and sets `state.kernels_failed`. A shutdown ends the thread before the next step.
     """
     # A daemon thread does not keep the process alive: a compilation cannot be cancelled.
-    thread = threading.Thread(target=_warm_up, args=(state, steps), name="warmup", daemon=True)
+    thread = threading.Thread(target=_warm_up_server, args=(state, steps), name="warmup", daemon=True)
     thread.start()
     return thread
 
 
-def warm_up(steps: Mapping[str, Callable[[], object]] = STEPS) -> None:
-    """Run the steps in this thread, for example to fill the kernel cache of a container image."""
-    for name, step in steps.items():
+def warm_up() -> None:
+    """Run the steps in this thread, to fill the kernel cache of a container image."""
+    for name, step in STEPS.items():
         log.info("preparing %s", name)
         step()
 
 
-def _warm_up(state: ProcessState, steps: Mapping[str, Callable[[], object]]) -> None:
+def _warm_up_server(state: ProcessState, steps: Mapping[str, Callable[[], object]]) -> None:
     for name, step in steps.items():
         if state.stopping.is_set():
             return

@@ -11,13 +11,13 @@ import panel as pn
 from bokeh.models import CustomJSTickFormatter
 
 from app.browser.javascript import callback_code
-from app.browser.module_files import NUMBERS
+from app.browser.module_files import NUMBERS_MODULE
 from app.views.components.plots import CHART_BORDERS, chart_hover, style_chart
 from plots.pictures.charts import Chart, Frame, Series, Shape
 from plots.pictures.holoviews_elements import axis_options, chart_elements
 from plots.pictures.palette import MEASURED
 
-_TICK = callback_code(NUMBERS, "number(tick)")
+_TICK = callback_code(NUMBERS_MODULE, "number(tick)")
 # Largest number of labels of a logarithmic axis.
 _MOST_TICKS = 5
 # Width of a histogram over its height.

@@ -17,7 +17,7 @@ from bokeh.models.dom import HTML
 from bokeh.plotting import figure
 
 from app.browser.javascript import callback_code
-from app.browser.module_files import NUMBERS
+from app.browser.module_files import NUMBERS_MODULE
 from app.state.help_texts import title_with_help
 from engine import Window
 from plots.pictures.axis_labels import find_offset
@@ -25,7 +25,7 @@ from plots.pictures.histories import find_decades
 
 _OFFSET_LABEL_CODE = callback_code(Path(__file__).with_name("offset_ticks.js"), "offsetLabel(tick, base, unit)")
 
-HOVER_FORMATS = {name: callback_code(NUMBERS, f"{name}(value)") for name in ("number", "count", "percent")}
+HOVER_FORMATS = {name: callback_code(NUMBERS_MODULE, f"{name}(value)") for name in ("number", "count", "percent")}
 """JavaScript that formats a `value`: as a number of four digits, a whole number in groups of digits, or a percentage."""
 
 # A value in a hover text, with the name of its format.
@@ -182,19 +182,19 @@ class LaterGlyphs:
 
     def __init__(self, add: Callable[[figure], object]) -> None:
         self._add = add
-        self._plots: list[figure] = []
+        self._waiting_plots: list[figure] = []
         self._is_drawn = False
 
-    def expect(self, plot: figure) -> None:
-        """Take a figure for the glyphs, which are added at once if other figures have them, otherwise by `draw`."""
+    def add_figure(self, plot: figure) -> None:
+        """Add the glyphs to a figure, at once if other figures have them, otherwise when `draw` is called."""
         if self._is_drawn:
             self._add(plot)
         else:
-            self._plots.append(plot)
+            self._waiting_plots.append(plot)
 
     def draw(self) -> None:
         """Add the glyphs to the figures that lack them, and to later figures."""
-        plots, self._plots, self._is_drawn = self._plots, [], True
+        plots, self._waiting_plots, self._is_drawn = self._waiting_plots, [], True
         document = plots[0].document if plots else None
         # With the models frozen, Bokeh searches the page once for all new models.
         with document.models.freeze() if document is not None else nullcontext():

@@ -75,9 +75,9 @@ class MapCurves:
             _draw_lines(plot, self._level_source, "equipotential", 1.0)
             _draw_lines(plot, self._critical_source, "critical_equipotential", 1.5)
         _draw_lines(plot, self._limit_source, "limiting_curve", 2.0 if full else 1.0)
-        self._exit_lines.expect(plot)
+        self._exit_lines.add_figure(plot)
         if full:
-            self._exit_numbers.expect(plot)
+            self._exit_numbers.add_figure(plot)
 
     def _add_exit_lines(self, plot: figure) -> None:
         plot.add_glyph(self._exit_source, MultiLine(line_color=LIGHT.halo, line_width=5))

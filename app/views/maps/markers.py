@@ -45,7 +45,7 @@ class Markers:
     def draw(self, plot: figure, *, sections: bool) -> None:
         """Add a figure to mark. Only with `sections`, section points are drawn, because painting them takes time."""
         for kind in ("starts", "box", *(["sections"] if sections else [])):
-            self._glyphs_by_kind[kind].expect(plot)
+            self._glyphs_by_kind[kind].add_figure(plot)
 
     def _add_sections(self, plot: figure) -> None:
         plot.add_glyph(self._sections, Scatter(size=3, fill_color=self._colour, line_color=None), level="annotation")

@@ -44,7 +44,7 @@ class Overlays:
         """Add a figure of a picture, over which layers will be drawn."""
         for layer in _DRAWN_LAYERS.values():
             if layer.over_picture(picture) is not None:
-                self._glyphs_by_layer[layer.name].expect(plot)
+                self._glyphs_by_layer[layer.name].add_figure(plot)
 
     def begin(self, spec: MapSpec) -> None:
         """Remove the curves of another map."""

@@ -75,7 +75,7 @@ class PictureGrid:
         self._set_class("stale", stale)
 
     def _choose(self, name: str | None) -> None:
-        # The largest picture comes from `_place`: the picker follows the page.
+        # With None, or with the largest picture, the picker only follows the page.
         if name is not None and name != self._largest_picture:
             with pn.io.hold():
                 self._state.focus = name

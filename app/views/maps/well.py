@@ -50,7 +50,7 @@ class WellView:
         self.plot = map_figure("well", TITLE, *self._ranges)
         self._outlines.draw(self.plot, full=True)
         self._orbit_glyphs = LaterGlyphs(self._add_orbits)
-        self._orbit_glyphs.expect(self.plot)
+        self._orbit_glyphs.add_figure(self.plot)
         self.pane = FigurePane(self.plot)
         state.param.watch(lambda event: self._outline(), "palette")
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import panel as pn
 
-from app.browser.inputs.counted_inputs import SHOWN, EnergySlider, NumberBox
+from app.browser.inputs.counted_inputs import ENERGY_SHOWN_EVENT, EnergySlider, NumberBox
 from app.state.system_review import review_catalogue_entry
 from app.state.view import allowed_resolutions, allowed_t_max
 from app.state.view_state import ViewState
@@ -106,7 +106,7 @@ class Controls:
             self._take_energy,
             state.energy,
             label="Exact h",
-            shown_event=SHOWN,
+            shown_event=ENERGY_SHOWN_EVENT,
             sizing_mode="stretch_width",
             css_classes=["half", "exact-energy"],
             margin=(0, 0, 0, 10),

@@ -16,6 +16,9 @@ LARGEST_CODE = 40_000
 SHARES = 4
 """Number of equal shares of the limit; an account may use one share."""
 
+# Advice at the end of messages.
+_ADVICE = "choose a potential with the same powers of x and y as an earlier one, or one of the catalogue"
+
 _account: ContextVar[Hashable] = ContextVar("account", default=None)
 
 
@@ -80,21 +83,18 @@ class CompiledOperations:
         if sum(used for used, _ in self._counted_codes()) + count > limit:
             raise CompiledCodeLimitError(
                 "the integrators of as many different potentials are compiled as this program may keep until its next start; "
-                f"{_SAME_POWERS}"
+                f"{_ADVICE}"
             )
         own_count = sum(used for used, owner in self._counted_codes() if owner == account)
         if account is not None and own_count + count > limit // SHARES:
             raise CompiledCodeLimitError(
-                f"your address has compiled the integrators of as many different potentials as it may; {_SAME_POWERS}"
+                f"your address has compiled the integrators of as many different potentials as it may; {_ADVICE}"
             )
 
     def _counted_codes(self) -> Iterator[tuple[int, Hashable]]:
         """Return the operations and the account of each code that is not reserved."""
         return (entry for code, entry in self._entries.items() if code not in self._reserved)
 
-
-# Advice at the end of messages.
-_SAME_POWERS = "choose a potential with the same powers of x and y as an earlier one, or one of the catalogue"
 
 compiled_operations = CompiledOperations()
 """The operations of this process."""

@@ -83,39 +83,39 @@ def sample_path(
     for begin in range(0, len(steps), _CHUNK):
         execution.raise_if_cancelled()
         chunk = np.ascontiguousarray(steps[begin : begin + _CHUNK].T)
-        jets = np.empty((2, ORDER + 1, chunk.shape[1]))
-        kernels.jets(chunk.shape[1], *chunk[:4], *jets)
+        series = np.empty((2, ORDER + 1, chunk.shape[1]))
+        kernels.jets(chunk.shape[1], *chunk[:4], *series)
         in_chunk = slice(*np.searchsorted(row, [begin, begin + chunk.shape[1]]))
         chunk_row = row[in_chunk] - begin
-        path[:, in_chunk] = _evaluate(jets, chunk_row, times[in_chunk] - chunk[4, chunk_row])
+        path[:, in_chunk] = _evaluate(series, chunk_row, times[in_chunk] - chunk[4, chunk_row])
     return path
 
 
 def advance_states(kernels: ModuleType, states: np.ndarray, durations: np.ndarray) -> np.ndarray:
     """Return `states` (n, 4) after `durations` (n,) of at most one integrator step, with one series each."""
-    jets = np.empty((2, ORDER + 1, len(states)))
-    kernels.jets(len(states), *(np.ascontiguousarray(column) for column in states.T), *jets)
-    return _evaluate(jets, np.arange(len(states)), durations).T
+    series = np.empty((2, ORDER + 1, len(states)))
+    kernels.jets(len(states), *(np.ascontiguousarray(column) for column in states.T), *series)
+    return _evaluate(series, np.arange(len(states)), durations).T
 
 
-def _evaluate(jets: np.ndarray, row: np.ndarray, tau: np.ndarray) -> np.ndarray:
+def _evaluate(series: np.ndarray, row: np.ndarray, tau: np.ndarray) -> np.ndarray:
     """Return the states (4, n) that `evaluate_series` computes."""
     states = np.empty((4, row.size))
-    evaluate_series(jets, row, tau, states)
+    evaluate_series(series, row, tau, states)
     return states
 
 
 @kernel
-def evaluate_series(jets, row, tau, states):
-    """Set `states` (4, n) to x, y, px, py at times tau (n,) after the start of the steps `row` (n,) of jets (2, ORDER + 1, m)."""
-    order = jets.shape[1] - 1
+def evaluate_series(series, row, tau, states):
+    """Set `states` (4, n) to x, y, px, py at times tau (n,) after the start of steps `row` (n,) of series (2, ORDER + 1, m)."""
+    order = series.shape[1] - 1
     for n in range(row.size):
         for axis in range(2):
-            value = jets[axis, order, row[n]]
+            value = series[axis, order, row[n]]
             slope = 0.0
             for k in range(order - 1, -1, -1):
                 slope = slope * tau[n] + value
-                value = value * tau[n] + jets[axis, k, row[n]]
+                value = value * tau[n] + series[axis, k, row[n]]
             states[axis, n] = value
             states[axis + 2, n] = slope
 
@@ -127,20 +127,20 @@ def find_crossings(kernels: ModuleType, path: np.ndarray, times: np.ndarray) -> 
     # Between samples on the same side, an orbit can cross y = 0 twice if it first approaches y = 0 and then recedes.
     turns = (y[:-1] * y[1:] > 0.0) & (y[:-1] * py[:-1] < 0.0) & (y[1:] * py[1:] > 0.0)
     first_samples = np.flatnonzero(rises | turns)
-    jets = np.empty((2, ORDER + 1, first_samples.size))
-    kernels.jets(first_samples.size, *(np.ascontiguousarray(row[first_samples]) for row in path), *jets)
-    return _locate_crossings(jets, times[first_samples + 1] - times[first_samples])
+    series = np.empty((2, ORDER + 1, first_samples.size))
+    kernels.jets(first_samples.size, *(np.ascontiguousarray(row[first_samples]) for row in path), *series)
+    return _locate_crossings(series, times[first_samples + 1] - times[first_samples])
 
 
 @kernel
-def _locate_crossings(jets, durations):
+def _locate_crossings(series, durations):
     """Return x and px (m, 2) at upward crossings within `durations` (n,) of the starts of n series."""
-    x_jet, y_jet = jets[0], jets[1]
+    x_series, y_series = series[0], series[1]
     # Two crossings in one interval are rare, and three do not occur.
     points = np.empty((1, 2 * durations.size, 3))
     counts = np.zeros(1, np.int64)
     for i in range(durations.size):
-        append_crossings(x_jet, y_jet, i, 1.0, 0.0, durations[i], points, counts, 0)
+        append_crossings(x_series, y_series, i, 1.0, 0.0, durations[i], points, counts, 0)
     return points[0, : counts[0], :2].copy()
 
 

@@ -29,8 +29,8 @@ class Ensemble(NamedTuple):
         (ROWS, n) x, y, px, py, t, size and remainders at the end of the current step; before the first step, at the start.
     begin
         (n,) time at which the current step begins.
-    jets
-        (2, ORDER + 1, n) series of x and y in the current step.
+    series
+        (2, ORDER + 1, n) coefficients of the series of x and y in the current step.
     leaving
         (n,) int8: number of the exit through which the current step, or an earlier step, leaves the interior; 0 for none.
     escape_time
@@ -43,7 +43,7 @@ class Ensemble(NamedTuple):
 
     ends: np.ndarray
     begin: np.ndarray
-    jets: np.ndarray
+    series: np.ndarray
     leaving: np.ndarray
     escape_time: np.ndarray
     last_time: np.ndarray
@@ -104,7 +104,7 @@ def place_ensemble(time, ensemble, places, channels):
         # After an orbit has failed, the size of its last step is NaN.
         is_far = time > ensemble.last_time[orbit] or not tau <= ensemble.ends[SIZE_ROW, orbit]
         for axis in range(2):
-            places[axis, orbit] = np.nan if is_far else series_value(ensemble.jets[axis], orbit, tau)
+            places[axis, orbit] = np.nan if is_far else series_value(ensemble.series[axis], orbit, tau)
 
 
 @kernel
@@ -133,8 +133,8 @@ def reverse_ensemble(time, ensemble, channels, states):
             continue
         tau = time - ensemble.begin[orbit]
         for axis in range(2):
-            states[count, axis] = series_value(ensemble.jets[axis], orbit, tau)
-            states[count, axis + 2] = -series_slope(ensemble.jets[axis], orbit, tau)
+            states[count, axis] = series_value(ensemble.series[axis], orbit, tau)
+            states[count, axis + 2] = -series_slope(ensemble.series[axis], orbit, tau)
         count += 1
     return count
 
@@ -176,8 +176,8 @@ def _is_late(ensemble, orbit, time):
 def _keep_step(now, new, flags, x_jet, y_jet, i, beyond, gates, curves, ensemble, orbit):
     """Make the step of lane i, with its events, the current step of its orbit in the ensemble."""
     for k in range(ORDER + 1):
-        ensemble.jets[0, k, orbit] = x_jet[k, i]
-        ensemble.jets[1, k, orbit] = y_jet[k, i]
+        ensemble.series[0, k, orbit] = x_jet[k, i]
+        ensemble.series[1, k, orbit] = y_jet[k, i]
     for row in range(ROWS):
         ensemble.ends[row, orbit] = new[row, i]
     size = new[SIZE_ROW, i]

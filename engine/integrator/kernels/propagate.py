@@ -120,10 +120,10 @@ def _make_buffer(lanes):
 
 
 @kernel
-def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget, least, exits, orbits, trace):
+def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget, least_active, exits, orbits, trace):
     """Propagate the orbits numbered `todo` until they escape, pass `horizon`, or `budget` steps of lanes are taken.
 
-    The kernel also ends when no orbits wait and fewer than `least` are active, because they would not fill the lanes. With
+    The kernel also ends when no orbits wait and fewer than `least_active` are active, because they would not fill the lanes. With
     `final`, the horizon is t_max: events of the last, partial step are located, and an orbit still inside becomes BOUNDED.
     Without `final`, such an orbit stays NOT_COMPUTED. Returns the total number of steps of all orbits.
 
@@ -139,7 +139,7 @@ def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget,
     active = min(LANES, todo.shape[0])
     next_orbit, taken, traced, left = active, 0, 0, budget
     _begin_lanes(orbits, todo, active, now, lane_orbit, crossed)
-    while active > 0 and left > 0 and (active >= least or next_orbit < todo.shape[0]):
+    while active > 0 and left > 0 and (active >= least_active or next_orbit < todo.shape[0]):
         if traced < trace.shape[0]:
             _trace_step(now, trace, traced)
             traced += 1

@@ -63,7 +63,10 @@ def launch_from_radius(x, y, speed, angle):
 
 @subroutine
 def _place(motion, points, i, start):
-    """Set the coordinates of a start (COORDINATES,); the momentum that the energy determines is set later."""
+    """Set the coordinates of a start (COORDINATES,) at point i of `points` (axes, n); motion: as in `find_starts`.
+
+    The momentum that the energy determines is set later.
+    """
     for column in range(COORDINATES):
         start[column] = motion[0, column]
         for axis in range(points.shape[0]):

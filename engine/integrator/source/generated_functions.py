@@ -60,6 +60,8 @@ def lane_loop(
 ) -> GeneratedFunction:
     """Return a kernel that, for each lane, reads inputs from arrays, runs a straight-line program and writes its results.
 
+    The values in `writes` become the results of the program.
+
     reads, constants: places of the inputs, by name; writes: values of the program, or source, by place; rows: lengths of the rows
     of arrays with a fixed length. Constants are read before the loop. In the loop, the compiler would check each for overlap
     with every array that the loop writes, and beyond about 100 checks it vectorises nothing. Rows of a fixed length need no

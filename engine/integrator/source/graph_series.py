@@ -33,7 +33,23 @@ _ROOT = 0.5
 
 
 class GraphSeries:
-    """Appends the operations for the series of all nodes of a graph along an orbit to a program."""
+    """Appends the operations for the series of all nodes of a graph along an orbit to a program.
+
+    Attributes
+    ----------
+    program, graph
+        The program and the graph, whose first two results are the slopes of V.
+    name
+        Name of the graph in keys (name, number) of the table.
+    rotates
+        Whether the frame rotates.
+    remainders
+        {kind: value}: the rounding errors of the nodes of kinds "x" and "y".
+    x, y
+        The coefficients of x and y.
+    series
+        The coefficients of each node.
+    """
 
     def __init__(
         self,

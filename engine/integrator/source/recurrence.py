@@ -208,11 +208,11 @@ def _step(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
     h = _step_size(program, x, y, structure)
     x_end, px_end, x_remainder = _end_of_step(x, h, remainders.get("x"))
     y_end, py_end, y_remainder = _end_of_step(y, h, remainders.get("y"))
-    hidden = flag_hidden_crossings(y, y_end, h) if structure.can_hide_crossings else program.constant(0)
-    gates, gate = flag_gates(structure.setting, program, (x, y), (x_end, y_end), h)
+    hidden_flag = flag_hidden_crossings(y, y_end, h) if structure.can_hide_crossings else program.constant(0)
+    gate_places, gate_flag = flag_gates(structure.setting, program, (x, y), (x_end, y_end), h)
     t_end = program.input("t0") + h
     end = x_end, y_end, px_end, py_end
-    flags = hidden + gate + where(t_end <= program.input("horizon"), 0, OVERSHOOT)
+    flags = hidden_flag + gate_flag + where(t_end <= program.input("horizon"), 0, OVERSHOOT)
     writes = {
         Place("crossed"): where((y[0] < 0.0) & (y_end >= 0.0) & flags.equals(0), 1, 0),
         Place("flag"): flags,
@@ -222,7 +222,7 @@ def _step(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
     reads = {**_start_in("now"), "t0": Place("now", TIME_ROW)}
     if remainders:
         reads |= {"x_remainder": Place("now", REMAINDER_ROW), "y_remainder": Place("now", REMAINDER_ROW + 1)}
-    constants = {name: Place("gates", *place) for name, place in gates.items()}
+    constants = {name: Place("gates", *place) for name, place in gate_places.items()}
     return lane_loop(program, arguments, reads, writes, constants, rows=dict.fromkeys(("now", "new"), LANES))
 
 

@@ -61,14 +61,14 @@ def flag_gates(
     count = setting.channels + len(setting.sides)
     # Suffixes of the names of inputs, with their columns.
     columns = {"x": 0, "y": 1, "": 2}
-    sources = {f"g{k}{name}": (k, column) for k in range(count) for name, column in columns.items()}
+    places = {f"g{k}{name}": (k, column) for k in range(count) for name, column in columns.items()}
     flag = program.constant(0)
     rows = [[program.input(f"g{k}{name}") for name in columns] for k in range(count)]
     lines, circles = rows[: setting.channels], rows[setting.channels :]
     if not setting.needs_whole_steps:
         for g_x, g_y, g in lines:
             flag = where(g_x * end[0] + g_y * end[1] > g, GATE, flag)
-        return sources, flag
+        return places, flag
     start = series[0][0], series[1][0]
     # All points of the step are within this distance of its chord.
     sag = _sag(series[0], h) + _sag(series[1], h)
@@ -81,4 +81,4 @@ def flag_gates(
         edge = radius + (sag + half_chord) if side < 0 else where(radius > sag, radius - sag, 0.0)
         for square in squares:
             flag = where(square < edge * edge if side < 0 else square > edge * edge, NEAR, flag)
-    return sources, flag
+    return places, flag

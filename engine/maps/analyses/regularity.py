@@ -142,7 +142,7 @@ class _RegularityClassification:
             yield partial(self._find_chaotic, min(self._time + _INTERVAL, self._spec.t_max), execution)
         if self._spec.t_max >= MIN_REGULAR_TIME:
             yield partial(self._compare_halves, execution)
-        yield self._judge_rest
+        yield self._judge_remaining
 
     def _find_chaotic(self, time: float, execution: Execution) -> None:
         """Integrate the deviation vectors up to `time`, and judge orbits by their smallest SALI."""
@@ -166,7 +166,7 @@ class _RegularityClassification:
         digits = count_agreeing_digits(self._spec.potential, starts, 0.5 * self._spec.t_max, execution=execution)
         self._judge(digits >= REGULAR_DIGITS, Regularity.REGULAR)
 
-    def _judge_rest(self) -> None:
+    def _judge_remaining(self) -> None:
         """Judge all remaining orbits as without a sign of chaos."""
         self._judge(np.ones(self._pixels.size, bool), Regularity.NO_SIGN_OF_CHAOS)
 

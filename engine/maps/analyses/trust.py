@@ -98,6 +98,7 @@ class TrustMap(PixelAnalysis):
         return f"Of the pixels inside, {tested} were tested{so_far} and {doubtful} are doubtful."
 
     def _share(self, *codes: Trust) -> float:
+        """Return the share of the pixels with these codes among the interior pixels."""
         return code_share(self.trust[self.trust != Trust.NOT_APPLICABLE], *codes)
 
 
@@ -245,6 +246,7 @@ class TrustTest:
             self._update_codes()
 
     def _propagate_rerun(self, horizon: float, execution: Execution, rerun: Rerun) -> None:
+        """Integrate the undecided orbits of one rerun to the horizon."""
         propagate_batch(
             self.spec.potential, self._curves, rerun.batch, self._undecided, horizon,
             final=horizon == self.spec.t_max, tolerance=rerun.tolerance, execution=execution,

@@ -118,7 +118,7 @@ def compute_uncertainty_exponent(
     pairs = checked_count("pairs", pairs, 10, _MAX_PAIRS)
     separations = checked_count("separations", separations, 5, _MAX_SEPARATIONS)
     seed = checked_count("seed", seed, 0, 2**63 - 1)
-    # Type checkers know the type of `work` and would report that this check cannot fail; an `object` prevents this.
+    # With the declared type of `work`, type checkers would report that this check cannot fail; an `object` prevents this.
     given_work: object = work
     if not isinstance(given_work, numbers.Real) or not work > 0.0:
         raise ValueError(f"work={short_repr(work)}: must be above 0")
@@ -150,15 +150,8 @@ def _space_separations(spec: MapSpec, count: int) -> np.ndarray:
 class _PairSampler:
     """Draws and integrates pairs of starts, and counts their outcomes at each of m separations, in units of the well."""
 
-    def __init__(
-        self,
-        spec: MapSpec,
-        separations: np.ndarray,
-        seed: int,
-        execution: Execution,
-    ) -> None:
-        self.spec, self.separations = spec, separations
-        self.execution = execution
+    def __init__(self, spec: MapSpec, separations: np.ndarray, seed: int, execution: Execution) -> None:
+        self.spec, self.separations, self.execution = spec, separations, execution
         self.horizon = min(spec.t_max, HORIZON)
         # Each separation has its own generator, so that its pairs do not depend on the other separations.
         self.random = [np.random.default_rng([seed, index]) for index in range(separations.size)]

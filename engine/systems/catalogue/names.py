@@ -63,12 +63,12 @@ class ByName[Value](Mapping[str, Value]):
     def _find_similar(self, name: str) -> list[str]:
         """Return up to three names with similar spelling, the most similar first."""
         # Names by the plain spelling of the name and of its title.
-        spellings = {_plain(text): known for known in self._names for text in (known, self._titles.get(known, known))}
-        matches = difflib.get_close_matches(_plain(name), spellings, n=3, cutoff=_SMALLEST_SIMILARITY)
+        spellings = {_plain_spelling(text): known for known in self._names for text in (known, self._titles.get(known, known))}
+        matches = difflib.get_close_matches(_plain_spelling(name), spellings, n=3, cutoff=_SMALLEST_SIMILARITY)
         return list(dict.fromkeys(spellings[match] for match in matches))
 
 
-def _plain(name: str) -> str:
+def _plain_spelling(name: str) -> str:
     """Return the letters and digits of a name in lower case, without accents."""
     decomposed = unicodedata.normalize("NFKD", name.casefold())
     return "".join(letter for letter in decomposed if letter.isalnum())

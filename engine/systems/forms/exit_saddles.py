@@ -23,8 +23,8 @@ _END_DISTANCE = 1e-4
 # Distance from the origin at which a descent counts as infinite, in units of the distance of the outermost critical point.
 _INFINITE_DISTANCE = 10.0
 
-# Rise of V in a step of a descent above which the step has passed a curve where V is infinite, in units of the largest magnitude
-# of V at a critical point.
+# Rise of V in a step of a descent above which the step has passed a curve where V is infinite, in units of the magnitude of V
+# before the step plus the largest magnitude at a critical point.
 _LARGEST_RISE = 1e-6
 
 # Length of a step below which a descent has come to rest, in units of the distance of the nearest critical point.
@@ -151,24 +151,24 @@ class _Descent:
 
     def _follow(self, solver_class: Any, flow: Flow, saddle: int, side: float) -> int | None:
         """Descend along a flow with one of SciPy's solvers, and return the result of `_descend`; None if no end is reached."""
-        other_points = np.delete(np.arange(len(self.points)), saddle)
-        distance = _START_DISTANCE * self._distances(self.points[saddle])[other_points].min()
+        other_indices = np.delete(np.arange(len(self.points)), saddle)
+        distance = _START_DISTANCE * self._distances(self.points[saddle])[other_indices].min()
         start = self.points[saddle] + side * distance * self.unstable_directions[saddle]
         # There is no final time, because a descent in a flat valley can take arbitrarily long.
         tolerances = {"rtol": _RELATIVE_ERROR, "atol": _RELATIVE_ERROR * self.length}
         # The first step chosen by LSODA can be too long for its corrector to converge.
         first_step = _FIRST_STEP * distance / np.hypot(*flow(0.0, start))
         solver = solver_class(flow, 0.0, start, np.inf, first_step=first_step, **tolerances)
-        steps_left_at_end = max(self.steps_left - _MOST_STEPS_ALONG_LINE, 0)
-        while self.steps_left > steps_left_at_end and solver.status == "running":
+        fewest_steps_left = max(self.steps_left - _MOST_STEPS_ALONG_LINE, 0)
+        while self.steps_left > fewest_steps_left and solver.status == "running":
             self.steps_left -= 1
             previous_place = solver.y
             solver.step()
             if solver.status == "failed":
                 break
-            distances = self._distances(solver.y)[other_points]
+            distances = self._distances(solver.y)[other_indices]
             if distances.min() < _END_DISTANCE * self.length:
-                return int(other_points[np.argmin(distances)])
+                return int(other_indices[np.argmin(distances)])
             step_length = float(np.hypot(*(solver.y - previous_place)))
             # A line at rest elsewhere is at a critical point outside the searched region. The list does not contain this point.
             is_at_rest = step_length < _REST_STEP * self.length
@@ -182,4 +182,5 @@ class _Descent:
         return high - low > self.largest_rise + _LARGEST_RISE * abs(low)
 
     def _distances(self, place: np.ndarray) -> np.ndarray:
+        """Return the distances of all critical points from a place, of shape (n,)."""
         return np.hypot(*(self.points - place).T)

@@ -96,8 +96,7 @@ class PolynomialForm:
 
     def gradient(self, x: Any, y: Any) -> tuple[Any, Any]:
         """Return (V_x, V_y)."""
-        along_x, along_y = self.slopes
-        return evaluate(along_x, x, y), evaluate(along_y, x, y)
+        return tuple(evaluate(slope, x, y) for slope in self.slopes)
 
     def hessian(self, x: Any, y: Any) -> tuple[Any, Any, Any]:
         """Return (V_xx, V_xy, V_yy)."""

@@ -20,6 +20,7 @@ from engine.systems.outcomes import End, end_kinds
 SEPARATOR = ";"
 """The character between the formula and the clauses."""
 
+# At most 12 names of at most 21 characters.
 _EXITS = re.compile(r"\s*exits\s+(?P<names>\w[\w ]{0,20}(?:,\s*\w[\w ]{0,20}){0,11})$")
 _WELL = re.compile(r"\s*well\s*\((?P<x>[^,;]*),(?P<y>[^,;]*)\)\s*$")
 _MASSES = re.compile(r"\s*masses\s*\((?P<x>[^,;]*),(?P<y>[^,;]*)\)\s*$")

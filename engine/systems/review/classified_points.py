@@ -44,6 +44,7 @@ def classify_points(potential: Potential) -> tuple[CriticalPoint, ...]:
 
 
 def _kind(potential: Potential, x: float, y: float, index: float) -> PointKind:
+    """Return the kind of a critical point with an index, see `Well.critical_indices`."""
     if index == 0.0:
         return PointKind.DEGENERATE
     if index < 0.0:
@@ -73,7 +74,7 @@ def find_new_origin(potential: Potential, points: tuple[CriticalPoint, ...]) -> 
     Axes can be moved only once, and neither in a rotating frame nor with an escape radius.
     """
     nearest = next(iter(minima_of(points)), None)
-    is_moved = any(potential.origin)
-    if nearest is None or nearest is point_at_origin(points) or is_moved or potential.rotation:
+    can_move = not any(potential.origin) and not potential.rotation and potential.escape_radius is None
+    if not can_move or nearest is None or nearest is point_at_origin(points):
         return None
-    return (nearest.x, nearest.y) if potential.escape_radius is None else None
+    return nearest.x, nearest.y

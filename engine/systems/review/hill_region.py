@@ -28,6 +28,7 @@ _CACHE_SIZE = 256
 def is_open_without_saddle(potential: Potential, points: np.ndarray) -> bool:
     """Return whether the Hill region at an energy far above those of all critical points (n, 2) extends far beyond them."""
     bottom = float(potential.value(0.0, 0.0))
+    # Without other critical points, the range is 0, and the unit of energy takes its place.
     energy_range = float(np.abs(potential.value(*points.T) - bottom).max(initial=0.0)) or potential.units.energy
     return is_open_below(potential, bottom + _OPEN_ENERGY_FACTOR * energy_range, points)
 
@@ -70,7 +71,7 @@ def is_open_below(potential: Potential, energy: float, points: np.ndarray) -> bo
 
 def _connected_to_origin(allowed: np.ndarray) -> np.ndarray:
     """Return the part of a region on a polar grid (radii, angles) that is connected to the innermost circle."""
-    # `scipy.ndimage.label` gives the same result, but its import takes ten times as long.
+    # `scipy.ndimage.label` gives the same result, but its import takes ten times as long as this function.
     allowed = allowed.copy()
     allowed[0] = True
     connected = np.zeros_like(allowed)

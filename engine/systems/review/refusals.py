@@ -16,7 +16,7 @@ from engine.systems.review.hill_region import is_open_below, is_open_without_sad
 from engine.systems.review.singularity_check import singularity_refusal
 
 MOST_CHANNELS = 16
-"""Largest number of exit channels that the kernels of the Lyapunov orbit search support."""
+"""Largest number of exit channels of a potential. The kernels support more."""
 
 
 def find_points_or_refusal(potential: Potential) -> tuple[tuple[CriticalPoint, ...], str | None]:

@@ -29,7 +29,8 @@ def check_defined(potential: Potential) -> None:
 def singularity_refusal(potential: Potential) -> str | None:
     """Return a sentence if orbits can reach a point where V is not defined; otherwise None.
 
-    Without an escape radius, only the origin is tested, because orbits do not reach points beyond the exits.
+    Without an escape radius, only the origin is tested: orbits do not reach points beyond the exits, and other points inside the
+    well are assumed to be regular.
     """
     if potential.escape_radius is None:
         return _origin_refusal(potential)

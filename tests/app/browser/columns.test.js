@@ -18,7 +18,7 @@ const coding = {
     [-3, 0],
     [0, 4],
   ]),
-  first: 5,
+  firstClass: 5,
   ends: [0, 1, 2, 3],
   words: [],
   leastCrossings: [0, 1, 2, 3, 11],

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict"
 import {mock, test} from "node:test"
 
-import {Frames, LEAST_SIDE, mirroredAxes, Picture} from "../../../app/browser/modules/workers/frames.js"
+import {Frames, LEAST_SIDE, mirroredAxes, PixelCollector} from "../../../app/browser/modules/workers/frames.js"
 import {X_PX as slice} from "./x_px.js"
 
 const window = {xLow: -1, xHigh: 1, ordinateLow: -1, ordinateHigh: 1}
@@ -11,8 +11,8 @@ const scene = (/** @type {number} */ energy) => ({slice, energy, window, mostPix
 const view = {...scene(0.3), columns: 3, rows: 3, horizon: 30}
 
 test("half of a symmetric picture is computed, the other half has the mirror images of the channels", () => {
-  const picture = new Picture(system, view)
-  const parts = picture.deal(2)
+  const picture = new PixelCollector(system, view)
+  const parts = picture.divide(2)
   assert.deepEqual(
     parts.map(({rows}) => [...rows]),
     [[0], [1]],

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict"
 import {mock, test} from "node:test"
 
-import {Player} from "../../../app/browser/modules/gestures/player.js"
+import {EnergyPlayer} from "../../../app/browser/modules/gestures/player.js"
 
 /** @type {((now: number) => void) | null} */
 let callback = null
@@ -17,7 +17,7 @@ globalThis.cancelAnimationFrame = () => {
 /** @param {number} energy */
 function startPlayer(energy) {
   const [show, end] = [mock.fn(), mock.fn()]
-  const player = new Player(show, end)
+  const player = new EnergyPlayer(show, end)
   player.start(energy, 0, 1)
   const tick = (/** @type {number} */ ms) => callback?.(performance.now() + ms)
   const shown = () => show.mock.calls.map(call => call.arguments[0])

@@ -5,7 +5,7 @@ import {Ensemble} from "../../../app/browser/modules/engine/ensemble.js"
 import {Exits} from "../../../app/browser/modules/engine/exits.js"
 import {Integrator} from "../../../app/browser/modules/engine/integrator.js"
 import {findAllEnds} from "../../../app/browser/modules/engine/orbits.js"
-import {follow} from "../../../app/browser/modules/engine/path.js"
+import {followOrbit} from "../../../app/browser/modules/engine/path.js"
 import {reversedInTime} from "../../../app/browser/modules/engine/system.js"
 import {input, modules} from "./read_input.js"
 
@@ -16,7 +16,7 @@ const {tolerance} = system.layout
 const exits = new Exits(integrator, [energy])
 
 function firstFreeByte() {
-  return integrator.temporarily(() => integrator.array("int8", [1]).passed[0])
+  return integrator.temporarily(() => integrator.array("int8", [1]).kernelArguments[0])
 }
 
 function preview() {
@@ -27,7 +27,7 @@ function preview() {
 
 function card() {
   const paths = states.map((/** @type {number[]} */ state) =>
-    integrator.temporarily(() => follow(integrator, integrator.array("float64", [1, 4], state), exits, energy, horizon)),
+    integrator.temporarily(() => followOrbit(integrator, integrator.array("float64", [1, 4], state), exits, energy, horizon)),
   )
   const all = (/** @type {"channel" | "time" | "crossings"} */ name) =>
     paths.map((/** @type {import("../../../app/browser/modules/engine/path.js").Path} */ path) => path[name])

@@ -14,7 +14,7 @@ from app.runtime.capacity import (
     LEAST_CORES,
     Capacity,
     ProcessorTimes,
-    count_page,
+    page_weight,
 )
 from app.runtime.fair_share import FairShare
 from tests.app.clock import Clock
@@ -130,11 +130,11 @@ def test_one_visitor_cannot_fill_the_server_for_others_but_may_use_all_of_it_alo
 def test_an_idle_page_counts_less_and_an_abandoned_page_nothing() -> None:
     clock = Clock()
     share = FairShare(clock.monotonic)
-    assert count_page(share, connected=False) == count_page(share, connected=True) == 1.0
+    assert page_weight(share, connected=False) == page_weight(share, connected=True) == 1.0
     clock.now += CONNECTION_SECONDS
-    assert count_page(share, connected=False) == 0.0
-    assert count_page(share, connected=True) == 1.0
+    assert page_weight(share, connected=False) == 0.0
+    assert page_weight(share, connected=True) == 1.0
     clock.now += ACTING_SECONDS
-    assert count_page(share, connected=True) == IDLE_WEIGHT
+    assert page_weight(share, connected=True) == IDLE_WEIGHT
     share.charge(0.01)
-    assert count_page(share, connected=True) == 1.0
+    assert page_weight(share, connected=True) == 1.0

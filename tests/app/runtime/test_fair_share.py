@@ -49,7 +49,7 @@ def test_only_the_steps_of_a_coroutine_count() -> None:
 
     async def scenario() -> None:
         begun, other = asyncio.Event(), asyncio.Event()
-        task = asyncio.ensure_future(share.count(work(begun, other)))
+        task = asyncio.ensure_future(share.charge_for(work(begun, other)))
         await begun.wait()
         clock.now += 1.0
         other.set()
@@ -80,9 +80,9 @@ def test_a_counted_coroutine_can_fail_and_be_cancelled() -> None:
 
     async def scenario() -> None:
         with pytest.raises(OSError, match="no"):
-            await FairShare().count(fail())
+            await FairShare().charge_for(fail())
         begun = asyncio.Event()
-        task = asyncio.ensure_future(FairShare().count(wait(begun)))
+        task = asyncio.ensure_future(FairShare().charge_for(wait(begun)))
         await begun.wait()
         task.cancel()
         with pytest.raises(asyncio.CancelledError):

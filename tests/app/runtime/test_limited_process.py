@@ -52,15 +52,15 @@ def recurse() -> None:
 
 @pytest.mark.parametrize("function", [compute_forever, fill_memory, recurse])
 def test_a_call_beyond_a_limit_is_refused_and_the_next_one_is_answered(limited: LimitedProcess, function: object) -> None:
-    before = limited.stopped
+    before = limited.stopped_calls
     with pytest.raises(LimitError, match=r"^reviewing this formula needs more than 1 s or 512 MB; "):
         limited(function)  # type: ignore[arg-type]
-    assert limited.stopped == before + 1
+    assert limited.stopped_calls == before + 1
     assert limited(partial(divmod, 7, 2)) == (3, 1)
 
 
 def test_a_call_that_gets_no_processor_is_refused_and_the_next_one_is_answered() -> None:
-    process = LimitedProcess(seconds=1, patience=20.0)
+    process = LimitedProcess(seconds=1, longest_wait=20.0)
     assert process(partial(divmod, 7, 2)) == (3, 1)
     with pytest.raises(LimitError, match=r"^reviewing this formula takes too long while the machine is busy; "):
         process(signal.pause)
@@ -81,7 +81,7 @@ def test_a_call_that_nobody_waits_for_ends_before_its_limit() -> None:
     abandoned.set()
     with pytest.raises(CancelledError):
         process(compute_forever, abandoned)
-    assert process.stopped == 0
+    assert process.stopped_calls == 0
     assert process(partial(divmod, 7, 2)) == (3, 1)
     process.close()
 
@@ -103,7 +103,7 @@ def test_a_call_that_ends_its_process_is_followed_by_another_process_before_the_
 
 
 def test_a_process_that_cannot_begin_is_reported_as_such() -> None:
-    process = LimitedProcess(task="compiling this", patience=0.0)
+    process = LimitedProcess(task="compiling this", longest_wait=0.0)
     with pytest.raises(LimitError, match=r"^compiling this could not begin: "):
         process(os.getpid)
     process.close()
@@ -122,10 +122,10 @@ def test_a_call_does_not_wait_for_a_call_in_another_process(tmp_path: Path) -> N
 
 
 def test_errors_of_the_function_are_raised(limited: LimitedProcess) -> None:
-    before = limited.stopped
+    before = limited.stopped_calls
     with pytest.raises(FormulaError, match="character 4: ") as caught:
         limited(partial(parse_formula, "x +"))
-    assert (caught.value.position, limited.stopped) == (3, before)
+    assert (caught.value.position, limited.stopped_calls) == (3, before)
 
 
 def test_the_review_of_a_formula_is_the_same_in_this_process(limited: LimitedProcess) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.runtime.loop_watch import HIGH_SECONDS, LONGEST_SECONDS, TICK_SECONDS, LoadMonitor
+from app.runtime.loop_watch import HIGH_SECONDS, LONGEST_HIGH_SECONDS, TICK_SECONDS, LoadMonitor
 from tests.app.clock import Clock
 
 
@@ -33,4 +33,4 @@ def test_persistent_high_load_is_interrupted() -> None:
         tick(monitor, clock, TICK_SECONDS + 2.0 * HIGH_SECONDS)
         high.append(monitor.is_high())
     assert high[0]
-    assert 1 <= high.count(False) <= 40 * (TICK_SECONDS + 2.0 * HIGH_SECONDS) / LONGEST_SECONDS
+    assert 1 <= high.count(False) <= 40 * (TICK_SECONDS + 2.0 * HIGH_SECONDS) / LONGEST_HIGH_SECONDS

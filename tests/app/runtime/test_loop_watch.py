@@ -83,7 +83,7 @@ def test_the_thread_names_the_function_that_delays_the_tick() -> None:
     metrics, stopping = ServerMetrics(), threading.Event()
     load = LoadMonitor()
     watch = LoopWatch(load, metrics.loop_delays)
-    watcher = threading.Thread(target=watch.watch, args=[stopping])
+    watcher = threading.Thread(target=watch.sample_stacks, args=[stopping])
     watch.tick()
     watcher.start()
 

@@ -39,7 +39,7 @@ def test_gauges_show_the_current_state() -> None:
     read = state.metrics.registry.get_sample_value
     assert read("escape_explorer_cache_limit_bytes") == 1234
     assert read("escape_explorer_kernels_ready") == 0
-    state.capacity.cores, state.capacity.loop = 0.5, 0.3
+    state.capacity.cores, state.capacity.loop_share = 0.5, 0.3
     assert read("escape_explorer_cores") == 0.5
     assert read("escape_explorer_capacity_taken") == 0.3
     assert read("escape_explorer_crowded") == 0

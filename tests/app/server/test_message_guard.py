@@ -12,10 +12,10 @@ from bokeh.document import Document
 from app.server.browser_rules import RefusedMessageError
 from app.server.message_guard import (
     BYTES_PER_MESSAGE,
+    LARGEST_BURST,
     LARGEST_FRAGMENT,
     MESSAGES_PER_SECOND,
-    MOST_AT_ONCE,
-    REFUSED_COUNTS,
+    REFUSAL_WEIGHT,
     MessageGuard,
     UnacceptableConnectionError,
 )
@@ -98,9 +98,9 @@ def test_unexpected_binary_parts_close_the_connection(before: int) -> None:
 @pytest.mark.parametrize(
     ("count", "kind", "content"),
     [
-        (MOST_AT_ONCE + 1, "PATCH-DOC", PATCH),
-        (MOST_AT_ONCE // REFUSED_COUNTS + 1, "PUSH-DOC", PATCH),
-        (2 * MOST_AT_ONCE * BYTES_PER_MESSAGE // LARGEST_FRAGMENT, "PATCH-DOC", "x" * (LARGEST_FRAGMENT - 10)),
+        (LARGEST_BURST + 1, "PATCH-DOC", PATCH),
+        (LARGEST_BURST // REFUSAL_WEIGHT + 1, "PUSH-DOC", PATCH),
+        (2 * LARGEST_BURST * BYTES_PER_MESSAGE // LARGEST_FRAGMENT, "PATCH-DOC", "x" * (LARGEST_FRAGMENT - 10)),
     ],
     ids=["messages", "refused messages", "large messages"],
 )
@@ -115,6 +115,6 @@ def test_floods_close_the_connection_also_after_a_quiet_hour(count: int, kind: s
 def test_a_steady_rate_below_the_limit_is_no_flood() -> None:
     clock = Clock()
     guard = MessageGuard(clock.monotonic)
-    for _ in range(2 * MOST_AT_ONCE):
+    for _ in range(2 * LARGEST_BURST):
         send(guard)
         clock.now += 1.1 / MESSAGES_PER_SECOND

@@ -125,6 +125,21 @@ def test_other_messages_do_not_wait(count: int, debt: float, state: ProcessState
     assert delayed_messages(state) == 0
 
 
+def test_a_value_that_becomes_illegal_while_its_message_waits_for_the_turn_is_refused(state: ProcessState) -> None:
+    next_turn = state.next_turn
+
+    async def scenario(channel: Channel, document: Document) -> None:
+        async def narrow_the_slider() -> None:
+            await document.session_context.session.with_document_locked(setattr, slider_of(document), "end", 3)
+            await next_turn()
+
+        state.next_turn = narrow_the_slider
+        await move_slider(channel, document)
+        assert slider_of(document).value == 0
+
+    run(1, scenario)
+
+
 @pytest.mark.parametrize("limit", ["pages_per_address", "most_sessions"])
 def test_websockets_beyond_the_limits_are_closed(limit: str, state: ProcessState) -> None:
     state.settings = replace(state.settings, **{limit: 2})

@@ -17,7 +17,7 @@ from tornado.httputil import HTTPHeaders, HTTPServerRequest, RequestStartLine
 
 from app.server.admission import LONGEST_LINK
 from app.server.limited_http_server import LIMITS
-from app.server.session_tokens import brings_own_token, issue_token, may_begin_session, use_token
+from app.server.session_tokens import has_signed_token, issue_token, may_begin_session, use_token
 from tests.app.server.login import server_with_login
 
 OTHER_KEY = b"the key of another server, long enough"
@@ -52,8 +52,8 @@ def _encode(raw: bytes) -> str:
 def test_token_is_signed_with_the_key_of_bokeh_if_there_is_one(application: BokehTornado) -> None:
     signed = BokehTornado({"/app": Application()}, secret_key=OTHER_KEY, sign_sessions=True)
     token = issue_token(signed, request(), {})
-    assert brings_own_token(signed, socket_request(token))
-    assert not brings_own_token(application, socket_request(token))
+    assert has_signed_token(signed, socket_request(token))
+    assert not has_signed_token(application, socket_request(token))
 
 
 @pytest.mark.parametrize(
@@ -77,7 +77,7 @@ def test_other_tokens_are_refused_and_not_inflated(token: str, application: Boke
     asked = socket_request(token)
     tracemalloc.start()
     try:
-        assert not brings_own_token(application, asked)
+        assert not has_signed_token(application, asked)
         assert tracemalloc.get_traced_memory()[1] < INFLATED / 10
     finally:
         tracemalloc.stop()
@@ -87,7 +87,7 @@ def test_other_tokens_are_refused_and_not_inflated(token: str, application: Boke
 def test_tokens_in_other_places_are_refused(offered: str | None, application: BokehTornado) -> None:
     token = issue_token(application, request(), {})
     headers = {} if offered is None else {"Sec_WebSocket_Protocol": offered.format(token)}
-    assert not brings_own_token(application, request("/app/ws", **headers))
+    assert not has_signed_token(application, request("/app/ws", **headers))
 
 
 def test_token_contains_the_parameters_of_the_link_only(application: BokehTornado) -> None:

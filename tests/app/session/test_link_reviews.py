@@ -146,6 +146,17 @@ def test_entries_of_the_browsers_history_are_reviewed_in_another_process(called:
     assert not called
 
 
+def test_the_known_review_of_a_refused_entry_is_not_awaited() -> None:
+    async def check(explorer: Explorer) -> None:
+        for _ in ("first visit", "second visit"):
+            explorer.notice.clear()
+            explorer.links.navigate("?" + urlencode({"case": TYPED, "V": "-x^2 - y^2"}), 0, 0)
+            await wait_until_said(explorer, "Ignored the potential in the link")
+            assert "Reviewing" not in explorer.maps.progress.text.object
+
+    with_page({}, check)
+
+
 def test_a_choice_made_during_a_review_is_kept() -> None:
     async def check(explorer: Explorer) -> None:
         explorer.controls.case.value = "III"

@@ -52,3 +52,8 @@ def test_areas_are_in_units_of_the_axes_for_maps_and_their_datasets() -> None:
     of_map, of_dataset = compute_islands(frame), compute_islands(frame.to_xarray())
     assert of_map.area == pytest.approx(np.pi * 0.04, rel=0.02)
     assert of_dataset.area == pytest.approx(of_map.area, rel=1e-9)
+
+
+def test_the_dataset_of_a_single_column_of_pixels_has_the_area_of_its_map() -> None:
+    frame = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.02, (1, 20), t_max=100.0))
+    assert 0.0 < compute_islands(frame.to_xarray()).area == pytest.approx(compute_islands(frame).area, rel=1e-9)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -77,6 +78,14 @@ def test_a_measure_that_is_not_defined_gives_no_number() -> None:
             for _, value, attributes in quantity.variables(None).values():
                 assert np.isnan(value)
                 assert attributes.keys() == {"long_name", "units"}
+
+
+def test_the_exponent_of_a_map_over_energies_is_measured_where_an_exit_opens_among_them() -> None:
+    spec = MapSpec(CASES["II"], Plane.X_H, (0.2, 0.3), (20, 20), t_max=100.0)
+    exponent = measure_map(compute_map(spec), "uncertainty_exponent")
+    assert 0.0 < exponent.exponent < 1.0
+    closed = replace(spec, energy=(0.1, 0.16))
+    assert measure_map(compute_map(closed), "uncertainty_exponent") is None
 
 
 def test_curves_have_the_numbers_of_the_table(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,7 +5,7 @@
 export const SAMPLES = 101
 
 /**
- * Values of a function on a grid over a window, in which lines of any level can be found.
+ * Values of a function on a grid of `SAMPLES` × `SAMPLES` points over a window, in which lines of any level can be found.
  *
  * @typedef {object} Grid
  * @property {import("./starts.js").Window} window
@@ -33,7 +33,7 @@ export function levelLines({window, values}, level) {
     for (let column = 0; column < SAMPLES - 1; column++) joinCell(values, level, row * SAMPLES + column, join)
   }
   const pointOn = (/** @type {number} */ edge) => edgePoint(window, values, level, edge)
-  const lines = takeLines(neighbours).map(edges => edges.map(pointOn))
+  const lines = followLines(neighbours).map(edges => edges.map(pointOn))
   return lines.map(line => ({xs: line.map(([x]) => x), ys: line.map(([, y]) => y)}))
 }
 
@@ -42,7 +42,7 @@ export function levelLines({window, values}, level) {
  *
  * @param {Float64Array} values
  * @param {number} level
- * @param {number} corner
+ * @param {number} corner  index of the sample
  * @param {(one: number, other: number) => void} join
  */
 function joinCell(values, level, corner, join) {
@@ -65,7 +65,7 @@ function joinCell(values, level, corner, join) {
  * @param {import("./starts.js").Window} window
  * @param {Float64Array} values
  * @param {number} level
- * @param {number} edge
+ * @param {number} edge  number of the edge, see `levelLines`
  * @returns {[number, number]}
  */
 function edgePoint(window, values, level, edge) {
@@ -83,12 +83,12 @@ function edgePoint(window, values, level, edge) {
 }
 
 /**
- * Follow the lines: first lines with ends, then closed lines. This empties the map of neighbours.
+ * Return the edges of each line in order, first of lines with ends, then of closed lines. This empties the map of neighbours.
  *
- * @param {Map<number, number[]>} neighbours
+ * @param {Map<number, number[]>} neighbours  of each crossed edge
  * @returns {number[][]}
  */
-function takeLines(neighbours) {
+function followLines(neighbours) {
   const lines = []
   const ends = [...neighbours.keys()].filter(edge => neighbours.get(edge)?.length === 1)
   for (const first of [...ends, ...neighbours.keys()]) {

@@ -1,5 +1,5 @@
 // @ts-check
-/** The lines over the pictures of a preview: the limiting curve, and the exits over saddles or at circles. */
+/** The lines over the pictures of a preview: the limiting curve, and the exits, over saddles or at circles. */
 
 import {Exits} from "./exits.js"
 import {levelLines, SAMPLES} from "./contours.js"
@@ -34,7 +34,7 @@ export class LimitingCurves {
 }
 
 /**
- * Return the lowest energy at which a start exists, at points of a lattice over a window, row by row. On a slice with an axis h,
+ * Return the lowest energy at which a start exists, at the points of a grid over a window, row by row. On a slice with an axis h,
  * this energy is relative to the h of the point, so the limiting curve is at 0.
  *
  * @param {import("./integrator.js").Integrator} integrator
@@ -44,8 +44,8 @@ export class LimitingCurves {
 const requiredEnergies = (integrator, slice, window) =>
   integrator.temporarily(() => {
     const required = integrator.array("float64", [SAMPLES, SAMPLES])
-    const described = describeSlice(integrator, slice, 0)
-    integrator.call("find_required_energies", ...described, placeWindow(integrator, window, slice.units), required)
+    const sliceInputs = describeSlice(integrator, slice, 0)
+    integrator.call("find_required_energies", ...sliceInputs, placeWindow(integrator, window, slice.units), required)
     return Float64Array.from(required.values)
   })
 

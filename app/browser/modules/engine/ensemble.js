@@ -1,7 +1,7 @@
 // @ts-check
 /**
- * Many orbits at once, and the exits at which they will end. Each orbit keeps the series of its present step. Its place at a
- * time within the step costs two polynomials; see `engine/integrator/kernels/ensemble.py`.
+ * Many orbits at once, and the exits at which they will end. The Taylor series of the present step of each orbit is kept, so that
+ * its position at a time within the step is the value of two polynomials; see `engine/integrator/kernels/ensemble.py`.
  */
 
 import {Exits} from "./exits.js"
@@ -10,9 +10,10 @@ import {findAllEnds} from "./orbits.js"
 
 /** Time for which orbits are followed beyond an exit, except into a body, in units of the well. */
 const FOLLOWED_BEYOND = 1.5
-/** Number of orbits whose outcomes are found at a time. */
+/** Number of orbits whose outcomes one call of `Outcomes.continue` finds. */
 const PORTION = 256
 
+/** Follows orbits to any time. */
 export class Ensemble {
   /**
    * @param {Integrator} integrator  keeps the arrays of the ensemble in its memory
@@ -35,7 +36,7 @@ export class Ensemble {
       last: integrator.array("float64", [count]),
       section: integrator.array("float64", [2, count]),
     }
-    this.#places = integrator.array("float64", [2, count])
+    this.#positions = integrator.array("float64", [2, count])
     this.#channels = integrator.array("int8", [count])
     this.count = count
     /** The present time, in units of the well. */
@@ -47,17 +48,17 @@ export class Ensemble {
   #exits
   #starts
   #arrays
-  #places
+  #positions
   #channels
 
-  /** x of each orbit at the present time; NaN for an orbit far outside. */
+  /** x of each orbit at the present time, in units of the well; NaN for an orbit far outside. */
   get x() {
-    return this.#places.at(0).values
+    return this.#positions.at(0).values
   }
 
-  /** y of each orbit at the present time. */
+  /** y of each orbit at the present time, in units of the well. */
   get y() {
-    return this.#places.at(1).values
+    return this.#positions.at(1).values
   }
 
   /** Number of the exit at which each orbit has ended so far, 0 for an orbit inside. */
@@ -65,7 +66,7 @@ export class Ensemble {
     return this.#channels.values
   }
 
-  /** Time at which each orbit leaves, as far as it is known. */
+  /** Time at which each orbit leaves, in units of the well, as far as it is known. */
   get escapeTime() {
     return this.#arrays.escapeTime.values
   }
@@ -80,10 +81,10 @@ export class Ensemble {
     return this.#arrays.section.at(1).values
   }
 
-  /** Put all orbits back to their starts. */
+  /** Return all orbits to their starts. */
   restart() {
     this.time = 0
-    this.#integrator.call("begin_ensemble", this.#starts, ...Object.values(this.#arrays), this.#places, this.#channels)
+    this.#integrator.call("begin_ensemble", this.#starts, ...Object.values(this.#arrays), this.#positions, this.#channels)
   }
 
   /**
@@ -100,16 +101,16 @@ export class Ensemble {
     this.#integrator.call("advance_ensemble", step, jets, table, tolerance, time, FOLLOWED_BEYOND, ...exits, ...arrays)
     this.time = time
     // At time 0, no orbit has a step yet.
-    if (time > 0) this.#integrator.call("place_ensemble", time, ...arrays, this.#places, this.#channels)
+    if (time > 0) this.#integrator.call("place_ensemble", time, ...arrays, this.#positions, this.#channels)
   }
 
-  /** Return the spread of the orbits that are still inside, relative to the spread of their starts. */
+  /** Return the ratio of the spread of the orbits that are still inside to the spread of their starts. */
   growth() {
-    return this.#integrator.call("measure_spread", this.#starts, this.#places, this.#channels)
+    return this.#integrator.call("measure_spread", this.#starts, this.#positions, this.#channels)
   }
 
-  /** Return the states of the orbits that are still inside after the first step, with reversed momenta. */
-  reversed() {
+  /** Return the states x, y, px, py of the orbits that are still inside after the first step, with reversed momenta. */
+  reversedStates() {
     return this.#integrator.temporarily(() => {
       const states = this.#integrator.array("float64", [this.count, 4])
       const arrays = Object.values(this.#arrays)
@@ -133,7 +134,7 @@ export class Outcomes {
     this.#exits = new Exits(this.#integrator, [energy])
     this.#states = states
     this.#horizon = horizon
-    /** Number of the exit of each orbit; 0 if it is not known yet, or if the orbit stays until the horizon. */
+    /** Number of the exit at which each orbit ends; 0 if not known yet, or if the orbit stays until the horizon. */
     this.channel = new Uint8Array(states.length / 4)
   }
 

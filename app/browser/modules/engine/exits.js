@@ -1,13 +1,13 @@
 // @ts-check
-/** Exits at given energies in the form of the kernels (see `engine/integrator/kernels/exit_geometry.py`), and points of exits. */
+/** Exits at given energies, in the form that kernels take (`engine/integrator/kernels/exit_geometry.py`), and points on them. */
 
 /**
  * An exit at one energy.
  *
  * @typedef {object} Exit
- * @property {number} number
+ * @property {number} number  from 1
  * @property {boolean} isOpen
- * @property {boolean} isCircle  whether orbits end inside or outside a circle
+ * @property {boolean} isCircle  whether the exit is a circle, not a curve over a saddle
  */
 
 export class Exits {
@@ -21,13 +21,11 @@ export class Exits {
     const {exits, layout} = integrator.system
     this.#integrator = integrator
     this.#columns = layout.exits
-    this.count = exits.length
-    const shape = [energies.length, exits.length]
     /** Values of the exits at each energy, of shape (energies, exits, columns). */
-    this.curves = integrator.array("float64", [...shape, layout.exits.count])
+    this.curves = integrator.array("float64", [energies.length, exits.length, layout.exits.count])
     /** Values of the exits at all energies, of shape (exits, 3). */
     this.gates = integrator.array("float64", [exits.length, 3])
-    exits.forEach((exit, k) => ("row" in exit ? this.#placeCircle(exit, k) : this.#interpolate(exit, k, energies)))
+    exits.forEach((exit, index) => ("row" in exit ? this.#setCircle(exit, index) : this.#interpolate(exit, index, energies)))
   }
 
   #integrator
@@ -37,41 +35,36 @@ export class Exits {
    * Set the values of a circle, which are the same at all energies.
    *
    * @param {import("./system.js").Circle} circle
-   * @param {number} k
+   * @param {number} index  of the exit
    */
-  #placeCircle({row, gate}, k) {
-    for (let index = 0; index < this.curves.shape[0]; index++) this.curves.at(index).at(k).values.set(row)
-    this.gates.at(k).values.set(gate)
+  #setCircle({row, gate}, index) {
+    for (let energyRow = 0; energyRow < this.curves.shape[0]; energyRow++) this.curves.at(energyRow).at(index).values.set(row)
+    this.gates.at(index).values.set(gate)
   }
 
   /**
    * Set the values of an exit over a saddle.
    *
    * @param {import("./system.js").ExitTable} table
-   * @param {number} k
+   * @param {number} index  of the exit
    * @param {ArrayLike<number>} energies
    */
-  #interpolate({shape, saddle}, k, energies) {
+  #interpolate({shape, saddle}, index, energies) {
     const integrator = this.#integrator
-    const table = integrator.exitTables[k] ?? []
+    const table = integrator.exitTables[index] ?? []
     integrator.temporarily(() => {
       const energyArray = integrator.array("float64", [energies.length], energies)
       const code = this.#columns.shapes[shape]
-      integrator.call("interpolate_exit", ...table, saddle, code, energyArray, k, this.curves, this.gates)
+      integrator.call("interpolate_exit", ...table, saddle, code, energyArray, index, this.curves, this.gates)
     })
   }
 
-  /**
-   * Return the exits at an energy, given by its row.
-   *
-   * @param {number} [row]
-   * @returns {Exit[]}
-   */
-  list(row = 0) {
+  /** Return the exits at the first energy. @returns {Exit[]} */
+  list() {
     const {shape, shapes} = this.#columns
-    return this.#integrator.system.exits.map((exit, k) => ({
-      number: k + 1,
-      isOpen: this.curves.at(row).at(k).values[shape] !== shapes.closed,
+    return this.#integrator.system.exits.map((exit, index) => ({
+      number: index + 1,
+      isOpen: this.curves.at(0).at(index).values[shape] !== shapes.closed,
       isCircle: "row" in exit,
     }))
   }

@@ -1,32 +1,36 @@
 // @ts-check
-/** The compiled kernels for a system, and the memory of arrays; see `engine/integrator/portable_kernels.py`. */
+/** The compiled kernels for a system, and their memory with its arrays; see `engine/integrator/portable_kernels.py`. */
 
 /**
- * WebAssembly modules: the kernels, which are the same for all systems, and the functions of systems of one structure.
+ * WebAssembly modules: the kernels, which are the same for all systems, and the functions that systems of a structure share.
  *
  * @typedef {{kernels: WebAssembly.Module, system: WebAssembly.Module}} Modules
  */
 
 /** Unit in which the memory of WebAssembly grows, in bytes. */
-const PAGE = 65536
-/** Space for local variables of kernels, in bytes. */
-const STACK = PAGE
-/** Free space for the arrays that a kernel makes, in bytes. */
-const SLACK = 4 * PAGE
+const PAGE_BYTES = 65536
+/** Space for the local variables of kernels, below all arrays, in bytes. */
+const STACK_BYTES = PAGE_BYTES
+/** Space that stays free for the arrays that a kernel makes, in bytes. */
+const SLACK_BYTES = 4 * PAGE_BYTES
 /** Alignment of the addresses of arrays, in bytes. */
 const ALIGNMENT = 16
 
-/** @typedef {{float64: Float64Array, int64: Int32Array, int8: Int8Array}} Views */
+/**
+ * Types of views of the memory. A 64-bit integer has two entries, of which the first is the lower half.
+ *
+ * @typedef {{float64: Float64Array, int64: Int32Array, int8: Int8Array}} Views
+ */
 
-/** Size of a number in bytes, and type of the view. A view has two entries for a 64-bit integer: the lower half comes first. */
-const KINDS = {
+/** Types of numbers: size in bytes, and type of the view. */
+const NUMBER_TYPES = {
   float64: {bytes: 8, view: Float64Array},
   int64: {bytes: 8, view: Int32Array},
   int8: {bytes: 1, view: Int8Array},
 }
 
 /**
- * An array in the memory of kernels.
+ * An array in the memory of the kernels, in row-major order.
  *
  * @template {keyof Views} K
  */
@@ -43,7 +47,7 @@ export class Numbers {
     this.address = address
     this.shape = shape
     /** The arguments that a kernel takes for the array. */
-    this.passed = [address, ...shape]
+    this.kernelArguments = [address, ...shape]
   }
 
   #memory
@@ -51,14 +55,14 @@ export class Numbers {
   /** @type {Views[K] | null} */
   #view = null
 
-  /** The view of the numbers. Do not keep it, because the memory moves when it grows. */
+  /** The view of the numbers, which is valid until the memory grows. */
   get values() {
     if (this.#view?.buffer !== this.#memory.buffer) this.#view = this.#makeView()
     return this.#view
   }
 
   #makeView() {
-    const {bytes, view} = KINDS[this.#kind]
+    const {bytes, view} = NUMBER_TYPES[this.#kind]
     const length = (product(this.shape) * bytes) / view.BYTES_PER_ELEMENT
     return /** @type {Views[K]} */ (new view(this.#memory.buffer, this.address, length))
   }
@@ -80,7 +84,7 @@ export class Numbers {
    */
   at(index) {
     const [, ...shape] = this.shape
-    const address = this.address + index * product(shape) * KINDS[this.#kind].bytes
+    const address = this.address + index * product(shape) * NUMBER_TYPES[this.#kind].bytes
     return new Numbers(this.#memory, this.#kind, address, shape)
   }
 }
@@ -97,11 +101,11 @@ export class Integrator {
     const {functions, heap} = system.layout
     this.system = system
     this.modules = modules
-    const memory = new WebAssembly.Memory({initial: 1 + (STACK + SLACK) / PAGE})
+    const memory = new WebAssembly.Memory({initial: 1 + (STACK_BYTES + SLACK_BYTES) / PAGE_BYTES})
     const table = new WebAssembly.Table({initial: functions.length + 1, element: "anyfunc"})
     const env = {
       __linear_memory: memory,
-      __stack_pointer: new WebAssembly.Global({value: "i32", mutable: true}, STACK),
+      __stack_pointer: new WebAssembly.Global({value: "i32", mutable: true}, STACK_BYTES),
       __indirect_function_table: table,
       sin: Math.sin,
       cos: Math.cos,
@@ -111,17 +115,17 @@ export class Integrator {
     this.#heap = new Numbers(memory, "int64", heap, [1])
     this.#exports = exportsOf(modules.kernels, env)
     const systemFunctions = exportsOf(modules.system, env)
-    // Address 0 is no function.
+    // Entry 0 stays empty, because address 0 stands for no function.
     functions.forEach((name, k) => name in systemFunctions && table.set(k + 1, systemFunctions[name]))
     /** The addresses of the functions of the system, by name. */
     this.address = Object.fromEntries(functions.map((name, k) => [name, k + 1]))
-    this.#free = STACK
+    this.#free = STACK_BYTES
     this.table = this.array("float64", [system.table.length], system.table)
-    /** The kernel that finds starts beyond an exit, and its first arguments. @type {[string, ...(number | Numbers<any>)[]]} */
-    this.interior = system.polynomial
+    /** The kernel that finds starts beyond an exit, and its first inputs. @type {[string, ...(number | Numbers<any>)[]]} */
+    this.outsideTest = system.polynomial
       ? ["find_outside_polynomial", ...this.#polynomial(system.polynomial)]
       : ["find_outside", this.address.potential_slopes, this.table, system.innerRadius]
-    /** The tables of the exits over saddles; null for circles. */
+    /** The arrays of each exit over a saddle, see `#exitTable`; null for circles. */
     this.exitTables = system.exits.map(exit => ("row" in exit ? null : this.#exitTable(exit)))
   }
 
@@ -139,7 +143,7 @@ export class Integrator {
   }
 
   /**
-   * Return a polynomial in the form that the test of the interior takes.
+   * Return a polynomial as inputs of the kernel that finds starts beyond an exit, with space for intermediate results.
    *
    * @param {import("./system.js").PolynomialTable} polynomial
    */
@@ -155,7 +159,7 @@ export class Integrator {
     ]
   }
 
-  /** @param {import("./system.js").ExitTable} table */
+  /** Return the nodes and the rows of a table as arrays. @param {import("./system.js").ExitTable} table */
   #exitTable({nodes, rows}) {
     return [
       this.array("float64", [nodes.length], nodes),
@@ -173,10 +177,10 @@ export class Integrator {
    */
   array(kind, shape, numbers) {
     const address = this.#free
-    const bytes = product(shape) * KINDS[kind].bytes
+    const bytes = product(shape) * NUMBER_TYPES[kind].bytes
     const end = Math.ceil((address + bytes) / ALIGNMENT) * ALIGNMENT
-    const missing = end + SLACK - this.#memory.buffer.byteLength
-    if (missing > 0) this.#memory.grow(Math.ceil(missing / PAGE))
+    const missing = end + SLACK_BYTES - this.#memory.buffer.byteLength
+    if (missing > 0) this.#memory.grow(Math.ceil(missing / PAGE_BYTES))
     this.#free = end
     const array = new Numbers(this.#memory, kind, address, shape)
     if (numbers) array.values.set(numbers)
@@ -185,7 +189,7 @@ export class Integrator {
   }
 
   /**
-   * Make an array of integers.
+   * Make an array of integers from 0 to 2³² − 1. The upper halves stay 0.
    *
    * @param {ArrayLike<number>} numbers
    */
@@ -197,7 +201,7 @@ export class Integrator {
   }
 
   /**
-   * Call a function, then release the memory of the arrays that the function makes.
+   * Call a function, then release the memory of the arrays that the function has made.
    *
    * @template T
    * @param {() => T} use
@@ -215,15 +219,11 @@ export class Integrator {
    * Call a kernel with numbers and arrays.
    *
    * @param {string} name
-   * @param {(number | Numbers<any>)[]} passed
+   * @param {(number | Numbers<any>)[]} inputs
    * @returns {number}
    */
-  call(name, ...passed) {
-    const numbers = []
-    for (const each of passed) {
-      if (typeof each === "number") numbers.push(each)
-      else numbers.push(...each.passed)
-    }
+  call(name, ...inputs) {
+    const numbers = inputs.flatMap(input => (typeof input === "number" ? [input] : input.kernelArguments))
     // A kernel does not release the arrays that it makes.
     const free = this.#free
     const result = this.#exports[name](...numbers)
@@ -232,5 +232,9 @@ export class Integrator {
   }
 }
 
-/** @type {(module: WebAssembly.Module, env: WebAssembly.ModuleImports) => Record<string, Function>} */
+/**
+ * Return the functions of a module.
+ *
+ * @type {(module: WebAssembly.Module, env: WebAssembly.ModuleImports) => Record<string, Function>}
+ */
 const exportsOf = (module, env) => /** @type {any} */ (new WebAssembly.Instance(module, {env}).exports)

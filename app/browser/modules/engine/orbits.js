@@ -1,5 +1,5 @@
 // @ts-check
-/** Orbits from t = 0, and their outcomes. */
+/** Orbits from t = 0 to a horizon, and their outcomes. */
 
 /** Largest number of steps of all orbits together. */
 const MOST_STEPS = 2 ** 31 - 1
@@ -9,7 +9,8 @@ const MOST_STEPS = 2 ** 31 - 1
  * @typedef {import("./integrator.js").Numbers<"float64">} Floats
  * @typedef {ReturnType<typeof makeOrbits>} Orbits
  *
- * The outcomes of starts: fates, escape times (NaN for orbits that stay), and crossings of the section until then.
+ * The outcomes of starts: fates, escape times in units of the well (NaN for orbits that stay), and numbers of crossings of the
+ * section.
  *
  * @typedef {{fate: Int8Array, time: Float64Array, crossings: Uint16Array}} Ends
  */
@@ -46,15 +47,17 @@ export function makeOrbits(integrator, states) {
 export function propagate(integrator, orbits, exits, rows, {horizon, tolerance, steps}) {
   const {step, jets} = integrator.address
   const {lanes_together} = integrator.system.layout
-  const todo = integrator.integers(Array.from({length: orbits.t.shape[0]}, (_, orbit) => orbit))
+  const orbitIndices = integrator.integers(Array.from({length: orbits.t.shape[0]}, (_, orbit) => orbit))
   // A step of one orbit counts as the steps of all lanes that are computed together.
   const budget = steps ? lanes_together * steps.shape[0] : MOST_STEPS
   const exitsAndOrbits = [exits.gates, exits.curves, rows, ...Object.values(orbits)]
-  // The horizon is final: orbits inside are bounded. The kernel continues with any number of orbits.
-  const [isFinal, least] = [1, 0]
-  const settings = [horizon, isFinal, tolerance, budget, least]
+  // The horizon is final: orbits that are still inside are bounded.
+  const isFinal = 1
+  // The kernel continues with any number of remaining orbits.
+  const leastOrbits = 0
+  const settings = [horizon, isFinal, tolerance, budget, leastOrbits]
   const trace = steps ?? integrator.array("float64", [0, 5])
-  return integrator.call("propagate", step, jets, integrator.table, todo, ...settings, ...exitsAndOrbits, trace)
+  return integrator.call("propagate", step, jets, integrator.table, orbitIndices, ...settings, ...exitsAndOrbits, trace)
 }
 
 /**

@@ -1,5 +1,5 @@
 // @ts-check
-/** The path of the orbit under the cursor, for its card. */
+/** The path of the orbit under the pointer, for its card. */
 
 import {Exits} from "./exits.js"
 import {makeOrbits, propagate} from "./orbits.js"
@@ -24,12 +24,12 @@ const POINTS_PER_STEP = 6
 const STEPS_PER_CALL = 512
 
 /**
- * Return the path of the orbit of a point of a slice. The path ends at the escape, or after a duration. The result is null for a
- * start that is forbidden or beyond an exit.
+ * Return the path of the orbit that starts at a point of a slice. The path ends at the escape, or after a duration. The result is
+ * null for a start that is forbidden or beyond an exit.
  *
  * @param {Integrator} integrator
  * @param {import("./system.js").Slice} slice
- * @param {number} energy  of all starts, unless the energy is an axis
+ * @param {number} energy  in units of the well; ignored if the energy is an axis
  * @param {[number, number]} point  in units of the well
  * @param {number} duration  in units of the well
  * @returns {Path | null}
@@ -41,12 +41,12 @@ export function findPath(integrator, slice, energy, point, duration) {
     const exits = new Exits(integrator, [startEnergy])
     const [energyRow, unusedFate] = [integrator.integers([0]), integrator.array("int8", [1])]
     const {states} = keepInside(integrator, starts, exits, energyRow, unusedFate)
-    return states.shape[0] ? follow(integrator, states, exits, startEnergy, duration) : null
+    return states.shape[0] ? followOrbit(integrator, states, exits, startEnergy, duration) : null
   })
 }
 
 /**
- * Return the path of the orbit of a state inside all exits. The path ends at the escape, or after a duration.
+ * Return the path of the orbit that starts at a state inside all exits. The path ends at the escape, or after a duration.
  *
  * @param {Integrator} integrator
  * @param {Floats} state  x, y, px, py of shape (1, 4); changed in place
@@ -55,7 +55,7 @@ export function findPath(integrator, slice, energy, point, duration) {
  * @param {number} duration  in units of the well
  * @returns {Path}
  */
-export function follow(integrator, state, exits, energy, duration) {
+export function followOrbit(integrator, state, exits, energy, duration) {
   const {address, table, system} = integrator
   const {fates, tolerance} = system.layout
   const [xs, ys] = [[state.values[0]], [state.values[1]]]

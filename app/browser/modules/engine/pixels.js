@@ -6,7 +6,7 @@ import {findEnds} from "./orbits.js"
 import {energyAxis, findStarts, keepInside, placeWindow} from "./starts.js"
 
 /**
- * What a picture shows: a part of a slice at an energy, in units of the page.
+ * What a picture shows: a window of a slice at an energy, in units of the page.
  *
  * @typedef {object} View
  * @property {import("./system.js").Slice} slice
@@ -17,21 +17,23 @@ import {energyAxis, findStarts, keepInside, placeWindow} from "./starts.js"
  * @property {number} rows
  * @property {number} horizon  longest time, in units of the well
  *
- * A part of the pixels of a view: some of the rows, and in them a number of first columns.
+ * A part of the pixels of a view: the first columns of some rows.
  *
  * @typedef {object} Part
- * @property {Uint32Array} rows
- * @property {number} columns
+ * @property {Uint32Array} rows  indices of the rows
+ * @property {number} columns  number of columns
+ *
+ * The outcomes of pixels, row by row.
  *
  * @typedef {object} Pixels
  * @property {Int8Array} fate
  * @property {Float32Array} time  of the escape, in units of the page; NaN without an escape
- * @property {Uint16Array} crossings
+ * @property {Uint16Array} crossings  of the section, until the end of the orbit
  */
 
 /**
- * Integration error of an orbit in a step, in pixels. A preview can take longer steps than an orbit that is followed to t = 1e5.
- * The last coefficients of a step are about as large as the error, in units of the well.
+ * Integration error of an orbit in a step, in pixels. It can be larger than for an orbit that is followed to t = 1e5. The last
+ * coefficients of a step are about as large as the error, in units of the well.
  */
 const ERROR_IN_PIXELS = 1e-6
 /** Largest norm of the last coefficients of a step, in units of the well. */
@@ -60,10 +62,10 @@ function toleranceFor({layout, exits}, {slice, window, columns, rows}) {
  * @param {Part} part
  * @returns {Pixels}
  */
-export const computePixels = (integrator, view, part) => integrator.temporarily(() => compute(integrator, view, part))
+export const computePixels = (integrator, view, part) => integrator.temporarily(() => computePart(integrator, view, part))
 
 /** @type {typeof computePixels} */
-function compute(integrator, view, part) {
+function computePart(integrator, view, part) {
   const {system} = integrator
   const {slice, window, columns, rows, horizon} = view
   const count = part.rows.length * part.columns
@@ -81,7 +83,7 @@ function compute(integrator, view, part) {
 /**
  * Return the energy of each column, or of each row, of a part of a slice with an axis h.
  *
- * @param {number} axis
+ * @param {number} axis  of the energy
  * @param {Float64Array} energies  of the points, row by row
  * @param {Part} part
  */

@@ -12,13 +12,13 @@ import {reversedInTime} from "./system.js"
  * "disc", uniformly on the slice around a point; "exits", on the exits, moving inward; "tubes", at the edge of the tubes of
  * orbits that lead out.
  *
- * @typedef {object} Request
+ * @typedef {object} StartRequest
  * @property {"well" | "view" | "box" | "disc" | "exits" | "tubes"} where
  * @property {number} count
  * @property {number} seed
  * @property {[number, number]} point  middle of the disc, in units of the page
  * @property {[number, number, number, number]} box  xLow, xHigh, ordinateLow, ordinateHigh, in units of the page
- * @property {number} radius  of the disc, as a share of half the window
+ * @property {number} radius  of the disc, as a share of half the width and of half the height of the window
  */
 
 /** Largest number of draws for each start. In a window without an interior, no draw gives a start. */
@@ -27,7 +27,7 @@ const MOST_DRAWS = 200
 /**
  * Return the states x, y, px, py of the starts inside all exits, in units of the well.
  *
- * @param {Request} request
+ * @param {StartRequest} request
  * @param {import("../workers/frames.js").Scene} scene  slice, energy and window
  * @param {Integrator} integrator
  * @returns {Float64Array}
@@ -36,7 +36,7 @@ export const drawStarts = (request, scene, integrator) =>
   integrator.temporarily(() => {
     const energy = scene.energy / integrator.system.units.energy
     if (request.where === "exits") return drawAtExits(integrator, request, energy, false)
-    if (request.where === "tubes") return turnBack(integrator, energy, drawAtExits(integrator, request, energy, true))
+    if (request.where === "tubes") return followBackward(integrator, energy, drawAtExits(integrator, request, energy, true))
     return drawOnSlice(integrator, request, scene, energy)
   })
 
@@ -44,7 +44,7 @@ export const drawStarts = (request, scene, integrator) =>
  * Draw states on the exits, moving inward; with `ofTubes`, states near the edges of the tubes.
  *
  * @param {Integrator} integrator
- * @param {Request} request
+ * @param {StartRequest} request
  * @param {number} energy
  * @param {boolean} ofTubes
  */
@@ -52,29 +52,29 @@ function drawAtExits(integrator, {count, seed}, energy, ofTubes) {
   const {address, table} = integrator
   const states = integrator.array("float64", [count, 4])
   const curves = new Exits(integrator, [energy]).curves.at(0)
-  const options = [curves, energy, Number(ofTubes), integrator.integers([seed]), states]
-  const drawnCount = integrator.call("draw_at_exits", address.potential_value, table, ...options)
+  const inputs = [curves, energy, Number(ofTubes), integrator.integers([seed]), states]
+  const drawnCount = integrator.call("draw_at_exits", address.potential_value, table, ...inputs)
   return Float64Array.from(states.first(drawnCount).values)
 }
 
 /**
- * Return states from which orbits come to the given states: the orbits are followed into the well backward in time.
+ * Return states whose orbits lead to the given states, by following the orbits backward in time into the well.
  *
  * @param {Integrator} integrator
  * @param {number} energy
  * @param {Float64Array} states
  */
-function turnBack({system, modules}, energy, states) {
+function followBackward({system, modules}, energy, states) {
   const ensemble = new Ensemble(new Integrator(reversedInTime(system), modules), energy, states)
   ensemble.advance(system.layout.beforeExit)
-  return ensemble.reversed()
+  return ensemble.reversedStates()
 }
 
 /**
  * Draw points of the slice until enough of them are starts inside.
  *
  * @param {Integrator} integrator
- * @param {Request} request
+ * @param {StartRequest} request
  * @param {import("../workers/frames.js").Scene} scene
  * @param {number} energy
  */
@@ -86,6 +86,7 @@ function drawOnSlice(integrator, request, scene, energy) {
   if (!window) return states.subarray(0, 0)
   const exits = new Exits(integrator, [energy])
   const [area, seed] = [placeWindow(integrator, window, slice.units), integrator.integers([request.seed])]
+  // Numbers of `states` that are set.
   let filled = 0
   for (let draw = 0; draw < MOST_DRAWS && filled < states.length; draw++) {
     integrator.temporarily(() => {
@@ -105,7 +106,7 @@ function drawOnSlice(integrator, request, scene, energy) {
  * Return the rectangle of a request. A disc is the ellipse in this rectangle.
  *
  * @param {Integrator} integrator
- * @param {Request} request
+ * @param {StartRequest} request
  * @param {import("../workers/frames.js").Scene} scene
  * @returns {import("./starts.js").Window | null}
  */

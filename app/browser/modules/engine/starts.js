@@ -1,6 +1,6 @@
 // @ts-check
 /**
- * The starts of the points of a slice, in units of the well; see `Slice` in `system.js`.
+ * The starts at points of a slice, in units of the well; see `Slice` in `system.js`.
  *
  * @typedef {import("./integrator.js").Integrator} Integrator
  * @typedef {import("./integrator.js").Numbers<"float64">} Floats
@@ -15,7 +15,7 @@
  * @property {number} ordinateLow
  * @property {number} ordinateHigh
  *
- * Starts of n points: x, y, px, py of shape (4, n), NaN if forbidden, and energies of shape (n,).
+ * Starts at n points: states x, y, px, py of shape (4, n), NaN if forbidden, and energies of shape (n,).
  *
  * @typedef {{states: Floats, energies: Floats}} Starts
  *
@@ -25,7 +25,7 @@
  */
 
 /**
- * Whether a slice shows positions.
+ * Whether the axes of a slice are x and y.
  *
  * @param {Pick<Slice, "axes">} slice
  */
@@ -39,11 +39,11 @@ export const showsPositions = ({axes}) => axes[0] === "x" && axes[1] === "y"
 export const energyAxis = ({axes}) => axes.indexOf("h")
 
 /**
- * Return a window in units of the well, in the form that kernels take.
+ * Return the edges of a window in units of the well, in the form that kernels take.
  *
  * @param {Integrator} integrator
  * @param {Window} window
- * @param {[number, number]} units
+ * @param {[number, number]} units  of the axes in units of the page
  */
 export function placeWindow(integrator, {xLow, xHigh, ordinateLow, ordinateHigh}, [x, ordinate]) {
   return integrator.array("float64", [4], [xLow / x, xHigh / x, ordinateLow / ordinate, ordinateHigh / ordinate])
@@ -54,24 +54,24 @@ export function placeWindow(integrator, {xLow, xHigh, ordinateLow, ordinateHigh}
  *
  * @param {Integrator} integrator
  * @param {Pick<Slice, "axes" | "motion" | "decided">} slice
- * @param {number} energy  of all starts, unless the energy is an axis
+ * @param {number} energy  of all starts, in units of the well; ignored if the energy is an axis
  * @returns {[number, Floats, Floats, number]}
  */
 export function describeSlice(integrator, {axes, motion, decided}, energy) {
   const columns = motion[0].length
-  const numbers = integrator.array("float64", [motion.length, columns], motion.flat())
-  // The last coordinate is the energy, and the first row is the origin.
-  if (energyAxis({axes}) < 0) numbers.values[columns - 1] = energy
-  return [integrator.address.potential_value, integrator.table, numbers, decided]
+  const motionArray = integrator.array("float64", [motion.length, columns], motion.flat())
+  // The first row is the origin, whose last coordinate is the energy.
+  if (energyAxis({axes}) < 0) motionArray.values[columns - 1] = energy
+  return [integrator.address.potential_value, integrator.table, motionArray, decided]
 }
 
 /**
- * Return the starts of points of a slice.
+ * Return the starts at points of a slice.
  *
  * @param {Integrator} integrator
  * @param {Pick<Slice, "axes" | "motion" | "decided" | "sign">} slice
- * @param {number} energy  of all starts, unless the energy is an axis
- * @param {Floats} points  of shape (axes, n)
+ * @param {number} energy  of all starts, in units of the well; ignored if the energy is an axis
+ * @param {Floats} points  of shape (axes, n), in units of the well
  * @returns {Starts}
  */
 export function findStarts(integrator, slice, energy, points) {
@@ -96,8 +96,8 @@ export function keepInside(integrator, {states, energies}, exits, rows, fate) {
   const [outside, kept] = [integrator.array("int8", [count]), integrator.array("int64", [count])]
   // In the order of the kernel's parameters.
   const inside = {kept, states: integrator.array("float64", [count, 4]), rows: integrator.array("int64", [count])}
-  const [kernel, ...potential] = integrator.interior
-  integrator.call(kernel, ...potential, states.at(0), states.at(1), energies, exits.curves, rows, outside)
+  const [kernel, ...inputs] = integrator.outsideTest
+  integrator.call(kernel, ...inputs, states.at(0), states.at(1), energies, exits.curves, rows, outside)
   const insideCount = integrator.call("select_starts", states, outside, rows, fate, ...Object.values(inside))
   return {kept: kept.first(insideCount), states: inside.states.first(insideCount), rows: inside.rows.first(insideCount)}
 }

@@ -4,7 +4,7 @@
  * page.
  *
  * @typedef {object} System
- * @property {string} key  different for each system
+ * @property {string} key  hash that is different for each system
  * @property {Layout} layout
  * @property {number[]} table  coefficients, in the form that the functions of the structure take
  * @property {number[] | null} backward  table of the system backward in time; null if it is the same table
@@ -28,10 +28,10 @@
  * @property {number} order  of the series
  * @property {number} rows  numbers in the state of an orbit between two steps
  * @property {number} lanes_together  smallest number of orbits (lanes) for which a step is computed
- * @property {number} tolerance  of the steps on the server
+ * @property {number} tolerance  largest norm of the last coefficients of a step on the server
  * @property {number} beforeExit  time before the exit at which orbits at the edge of tubes start
  * @property {number} heap  address at which the start address of the free memory is stored
- * @property {string[]} functions  names of the functions of a structure, in the order of their addresses
+ * @property {string[]} functions  names of the functions of a system, in the order of their addresses
  * @property {Record<"bounded" | "not_computed", number>} fates
  * @property {ExitColumns} exits
  *

@@ -1,7 +1,7 @@
 // @ts-check
 /**
- * The orbit under the cursor, drawn on a card. The card covers the picture of the well, or on a narrow screen a part of the only
- * map. A finger that has rested on a map shows orbits, also while it moves.
+ * The orbit under the pointer, drawn on a card. The card covers the picture of the well, or on a narrow screen a part of the only
+ * map. A finger shows orbits after it has rested on a map, also while it then moves.
  */
 
 import {exitLines, LimitingCurves} from "../engine/curves.js"
@@ -9,18 +9,20 @@ import {Integrator} from "../engine/integrator.js"
 import {findPath} from "../engine/path.js"
 import {windowAt} from "../engine/starts.js"
 import {number} from "../numbers.js"
-import {cover, frames, strokeLine, wellFrame} from "../painting/pictures.js"
+import {cover, mapPictures, strokeLine, wellPicture} from "../painting/pictures.js"
 
 /** Longest time for which an orbit is followed, in units of the well. */
-const LONGEST = 200
+const LONGEST_TIME = 200
 /** Time for which a finger must rest to show orbits instead of moving the picture, in ms. */
 const PRESS_MS = 350
 /** Largest movement of a resting finger, in pixels. */
 const PRESS_PIXELS = 8
 /** Distance from a click within which the card stays hidden, in pixels. */
 const CLICK_PIXELS = 12
-/** Side of the card over the only map, as a share of the side of the map. */
+/** Side of the card over the only map, as a share of the width of the map. */
 const SHARE_OF_MAP = 0.55
+/** Radius of the point that marks the start, in pixels. */
+const START_RADIUS = 3.5
 /** Space around the text, in pixels. */
 const PADDING = 6
 /** Height of the line of text, in pixels. */
@@ -32,31 +34,32 @@ const STYLE = `position:fixed;pointer-events:none;z-index:5;display:none;backgro
  * Describe the outcome of an orbit.
  *
  * @param {Pick<import("../engine/path.js").Path, "channel" | "time" | "crossings">} path
- * @param {number} unit  of time
- * @param {string[]} labels  of the outcomes
+ * @param {number} unit  unit of time of the well, in units of the page
+ * @param {string[]} labels  of the outcomes, exits first
  */
-export function describe({channel, time, crossings}, unit, labels) {
-  const count = crossings === 1 ? "1 crossing" : `${crossings} crossings`
+export function describeOutcome({channel, time, crossings}, unit, labels) {
+  const crossingCount = crossings === 1 ? "1 crossing" : `${crossings} crossings`
   const label = labels[channel - 1] ?? "inside until"
-  return `${label[0].toUpperCase()}${label.slice(1)} ${channel > 0 ? "at " : ""}t = ${number(time * unit)}, ${count}`
+  return `${label[0].toUpperCase()}${label.slice(1)} ${channel > 0 ? "at " : ""}t = ${number(time * unit)}, ${crossingCount}`
 }
 
 /**
- * Return the path of an orbit in units of the page.
+ * Return the points of an orbit in units of the page.
  *
  * @param {Pick<import("../engine/path.js").Path, "x" | "y">} path
- * @param {{length: number}} units  of the well
+ * @param {{length: number}} units  units of the well, in units of the page
  */
-export function pathOf({x, y}, {length}) {
+export function toPageUnits({x, y}, {length}) {
   const [xs, ys] = [x, y].map(values => values.map(value => value * length))
   return {xs, ys}
 }
 
+/** Shows the orbit under the pointer, for as long as the page exists. */
 export class Card {
   /**
-   * @param {HTMLElement} el
+   * @param {HTMLElement} el  gets the card
    * @param {() => import("../workers/frames.js").Scene | null} scene  what the pictures show
-   * @param {() => any} maps  the columns of the maps
+   * @param {() => any} maps  the columns of the data source of the maps
    * @param {() => {colours: string[], labels: string[]}} view  colours and labels of the outcomes
    */
   constructor(el, scene, maps, view) {
@@ -75,7 +78,7 @@ export class Card {
     document.addEventListener("pointerleave", () => this.#hide())
     // The browser would scroll the page, or open a menu, while a finger shows orbits.
     for (const name of ["touchmove", "contextmenu"]) {
-      document.addEventListener(name, event => this.#isPressed && event.preventDefault(), {capture: true, passive: false})
+      document.addEventListener(name, event => this.#isShowing && event.preventDefault(), {capture: true, passive: false})
     }
     document.addEventListener("scroll", () => this.#hide(), {capture: true, passive: true})
   }
@@ -89,7 +92,8 @@ export class Card {
   #integrator = null
   /** @type {{timer: ReturnType<typeof setTimeout>, x: number, y: number} | null} */
   #finger = null
-  #isPressed = false
+  /** Whether a finger shows orbits. */
+  #isShowing = false
   /** Where the mouse was last pressed, until it moves away. @type {{x: number, y: number} | null} */
   #clickPoint = null
 
@@ -104,7 +108,7 @@ export class Card {
   /** Hide the card at a click, or wait until a finger has rested. @param {PointerEvent} event */
   #press(event) {
     this.#lift()
-    const picture = this.#viewAt(event)
+    const picture = this.#mapAt(event)
     if (event.pointerType !== "touch") {
       // A click chooses the orbit, and the page draws it where the card was.
       this.#clickPoint = {x: event.clientX, y: event.clientY}
@@ -113,7 +117,7 @@ export class Card {
     }
     if (!picture) return
     const timer = setTimeout(() => {
-      this.#isPressed = true
+      this.#isShowing = true
       this.#show(picture, event)
     }, PRESS_MS)
     this.#finger = {timer, x: event.clientX, y: event.clientY}
@@ -122,9 +126,9 @@ export class Card {
   /** End the gesture of a finger. */
   #lift() {
     if (this.#finger) clearTimeout(this.#finger.timer)
-    if (this.#isPressed) this.#hide()
+    if (this.#isShowing) this.#hide()
     this.#finger = null
-    this.#isPressed = false
+    this.#isShowing = false
   }
 
   /** Show the orbit under the mouse, or under a finger that has rested. @param {PointerEvent} event */
@@ -132,42 +136,43 @@ export class Card {
     if (event.pointerType === "touch") {
       const finger = this.#finger
       // Bokeh would move the picture.
-      if (this.#isPressed) event.stopPropagation()
-      else if (finger && Math.hypot(event.clientX - finger.x, event.clientY - finger.y) > PRESS_PIXELS) this.#lift()
-      if (!this.#isPressed) return
+      if (this.#isShowing) event.stopPropagation()
+      else if (finger && distance(finger, event) > PRESS_PIXELS) this.#lift()
+      if (!this.#isShowing) return
     }
-    if (this.#clickPoint && Math.hypot(event.clientX - this.#clickPoint.x, event.clientY - this.#clickPoint.y) < CLICK_PIXELS)
-      return
+    if (this.#clickPoint && distance(this.#clickPoint, event) < CLICK_PIXELS) return
     this.#clickPoint = null
     // No card appears while the mouse drags the energy or the window.
     const isDragging = event.buttons && event.pointerType !== "touch"
-    this.#show(isDragging ? undefined : this.#viewAt(event), event)
+    this.#show(isDragging ? undefined : this.#mapAt(event), event)
   }
 
   /**
-   * Return the map at a point of the screen.
+   * Return the map under the pointer; undefined for none.
    *
    * @param {PointerEvent} event
    */
-  #viewAt(event) {
+  #mapAt(event) {
     const onMap = event.composedPath().some(node => node instanceof Element && node.classList.contains("map"))
-    return onMap ? frames().find(({box}) => contains(box, event)) : undefined
+    return onMap ? mapPictures().find(({box}) => contains(box, event)) : undefined
   }
 
   /**
-   * @param {import("../painting/pictures.js").Frame | undefined} picture
+   * Show the orbit that starts at the pointer, or hide the card if there is none.
+   *
+   * @param {import("../painting/pictures.js").Picture | undefined} picture  the map under the pointer
    * @param {PointerEvent} event
    */
   #show(picture, event) {
     const [scene, integrator] = [this.#scene(), this.#integrator]
-    const start = picture && this.#pixelCentre(picture, event)
-    if (!picture || !start || !scene || !integrator) {
+    if (!picture || !scene || !integrator) {
       this.#hide()
       return
     }
+    const start = this.#pixelCentre(picture, event)
     const {units} = scene.slice
     const energy = scene.energy / integrator.system.units.energy
-    const path = findPath(integrator, scene.slice, energy, [start[0] / units[0], start[1] / units[1]], LONGEST)
+    const path = findPath(integrator, scene.slice, energy, [start[0] / units[0], start[1] / units[1]], LONGEST_TIME)
     if (path) this.#draw(picture, event.clientX, path)
     else this.#hide()
   }
@@ -177,11 +182,11 @@ export class Card {
   }
 
   /**
-   * Return the centre of the pixel under the pointer. The grid of pixels continues beyond the image.
+   * Return the centre of the pixel under the pointer, in units of the page. The grid of pixels continues beyond the image.
    *
-   * @param {import("../painting/pictures.js").Frame} picture
+   * @param {import("../painting/pictures.js").Picture} picture
    * @param {PointerEvent} event
-   * @returns {[number, number] | null}
+   * @returns {[number, number]}
    */
   #pixelCentre({box, view}, event) {
     const {x, y, dw, dh, fate} = this.#maps()
@@ -190,53 +195,56 @@ export class Card {
       view.frame.y_scale.invert(event.clientY - box.top + view.frame.bbox.top),
     ]
     const [rows, columns] = fate[0].shape
-    const snap = (
-      /** @type {number} */ value,
-      /** @type {number} */ low,
-      /** @type {number} */ size,
-      /** @type {number} */ count,
-    ) => low + (size * (Math.floor(((value - low) / size) * count) + 0.5)) / count
-    return [snap(point[0], x[0], dw[0], columns), snap(point[1], y[0], dh[0], rows)]
+    return [cellCentre(point[0], x[0], dw[0], columns), cellCentre(point[1], y[0], dh[0], rows)]
   }
 
   /**
-   * @param {import("../painting/pictures.js").Frame} picture  under the pointer
-   * @param {number} pointer  distance of the pointer from the left of the screen
+   * Draw an orbit in the well, with the limiting curve and the exits, and its outcome as text.
+   *
+   * @param {import("../painting/pictures.js").Picture} picture  under the pointer
+   * @param {number} pointerLeft  distance of the pointer from the left of the screen, in pixels
    * @param {import("../engine/path.js").Path} path
    */
-  #draw(picture, pointer, path) {
+  #draw(picture, pointerLeft, path) {
     const [integrator, context] = [this.#integrator, this.#canvas.getContext("2d")]
     if (!integrator || !context) return
     const {system} = integrator
-    const box = placeFor(picture, pointer)
-    const h = path.energy * system.units.energy
-    const window = windowAt(integrator, "x_y", h)
+    const box = placeFor(picture, pointerLeft)
+    const energy = path.energy * system.units.energy
+    const window = windowAt(integrator, "x_y", energy)
     if (!window) return this.#hide()
     cover(this.#canvas, box)
     context.clearRect(0, 0, box.width, box.height)
     const style = getComputedStyle(this.#canvas)
     const [ink, paper] = ["--ui-ink", "--ui-page"].map(name => style.getPropertyValue(name))
-    const draw = (
-      /** @type {{xs: ArrayLike<number>, ys: ArrayLike<number>}} */ line,
-      /** @type {string} */ colour,
-      /** @type {number} */ width,
-    ) => strokeLine(context, window, box, line, colour, width)
-    const limit = this.#limits.trace(integrator, {slice: system.space, window, energy: h})
+    const draw = strokeLine.bind(null, context, window, box)
+    const limit = this.#limits.trace(integrator, {slice: system.space, window, energy})
     for (const line of limit) draw(line, ink, 1.5)
     const {colours, labels} = this.#view()
-    for (const {channel, xs, ys} of exitLines(integrator, h)) draw({xs, ys}, colours[channel - 1], 3)
-    const {xs, ys} = pathOf(path, system.units)
+    for (const {channel, xs, ys} of exitLines(integrator, energy)) draw({xs, ys}, colours[channel - 1], 3)
+    const {xs, ys} = toPageUnits(path, system.units)
     draw({xs, ys}, path.channel > 0 ? colours[path.channel - 1] : ink, 1)
-    const text = describe(path, system.units.time, labels)
     context.fillStyle = ink
     context.beginPath()
     const scale = box.width / (window.xHigh - window.xLow)
-    context.arc((xs[0] - window.xLow) * scale, (window.ordinateHigh - ys[0]) * scale, 3.5, 0, 2 * Math.PI)
+    context.arc((xs[0] - window.xLow) * scale, (window.ordinateHigh - ys[0]) * scale, START_RADIUS, 0, 2 * Math.PI)
     context.fill()
+    this.#writeText(context, describeOutcome(path, system.units.time, labels), box, ink, paper)
+  }
+
+  /**
+   * Write text in the lower left corner, and for screen readers.
+   *
+   * @param {CanvasRenderingContext2D} context
+   * @param {string} text
+   * @param {DOMRect} box
+   * @param {string} ink  colour of the text
+   * @param {string} paper  colour behind the text
+   */
+  #writeText(context, text, box, ink, paper) {
     context.font = "12px system-ui, sans-serif"
-    const [width, height] = [context.measureText(text).width + 2 * PADDING, TEXT_HEIGHT]
     context.fillStyle = paper
-    context.fillRect(0, box.height - height, width, height)
+    context.fillRect(0, box.height - TEXT_HEIGHT, context.measureText(text).width + 2 * PADDING, TEXT_HEIGHT)
     context.fillStyle = ink
     // On a small card the text is compressed.
     context.fillText(text, PADDING, box.height - PADDING, box.width - 2 * PADDING)
@@ -244,20 +252,34 @@ export class Card {
   }
 }
 
-/** @type {(box: DOMRect, event: PointerEvent) => boolean} */
+/**
+ * Return the centre of the cell that contains a value, if `count` cells divide the interval from `low` to `low + size`.
+ *
+ * @type {(value: number, low: number, size: number, count: number) => number}
+ */
+const cellCentre = (value, low, size, count) => low + (size * (Math.floor(((value - low) / size) * count) + 0.5)) / count
+
+/**
+ * Return the distance of the pointer from a point of the screen, in pixels.
+ *
+ * @type {(point: {x: number, y: number}, event: PointerEvent) => number}
+ */
+const distance = ({x, y}, {clientX, clientY}) => Math.hypot(clientX - x, clientY - y)
+
+/** Whether the pointer is in a box. @type {(box: DOMRect, event: PointerEvent) => boolean} */
 const contains = (box, {clientX, clientY}) =>
   clientX >= box.left && clientX <= box.right && clientY >= box.top && clientY <= box.bottom
 
 /**
  * Return the place of the card: over the well, or over the only map on the side away from the pointer.
  *
- * @param {import("../painting/pictures.js").Frame} picture  under the pointer
- * @param {number} pointer  distance of the pointer from the left of the screen
+ * @param {import("../painting/pictures.js").Picture} picture  under the pointer
+ * @param {number} pointerLeft  distance of the pointer from the left of the screen, in pixels
  */
-function placeFor(picture, pointer) {
-  const well = wellFrame()
+function placeFor(picture, pointerLeft) {
+  const well = wellPicture()
   if (well) return well.box
   const {left, top, width} = picture.box
   const side = SHARE_OF_MAP * width
-  return new DOMRect(pointer < left + width / 2 ? left + width - side : left, top, side, side)
+  return new DOMRect(pointerLeft < left + width / 2 ? left + width - side : left, top, side, side)
 }

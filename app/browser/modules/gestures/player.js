@@ -1,15 +1,17 @@
 // @ts-check
-/** Animates the energy, which rises in each frame of the display up to the end of the range. */
+/** The animation of the energy, which rises with each frame of the display up to the end of the range. */
 
 /** Duration of the animation of the whole range, in ms. */
 const SWEEP_MS = 20_000
-/** Smallest number of steps of the range. The step is a power of ten, which keeps the numbers on the page short. */
-const STEPS = 1000
+/** Smallest number of steps of the range. The step is a power of ten, so that the energies have few digits. */
+const LEAST_STEPS = 1000
+/** Largest number of decimals of an energy. */
+const MOST_DECIMALS = 20
 
-export class Player {
+export class EnergyPlayer {
   /**
-   * @param {(energy: number) => void} show
-   * @param {(energy: number) => void} end  takes the last energy
+   * @param {(energy: number) => void} show  shows each energy
+   * @param {(energy: number) => void} end  called with the last energy
    */
   constructor(show, end) {
     this.#show = show
@@ -37,13 +39,14 @@ export class Player {
   start(energy, low, high) {
     if (this.playing) return
     this.#energy = energy >= low && energy < high ? energy : low
-    const decimals = Math.max(Math.ceil(Math.log10(STEPS / (high - low))), 0)
+    const neededDecimals = Math.ceil(Math.log10(LEAST_STEPS / (high - low)))
+    const decimals = Math.min(Math.max(neededDecimals, 0), MOST_DECIMALS)
     let exactEnergy = this.#energy
     let lastTime = performance.now()
     const tick = (/** @type {number} */ now) => {
       exactEnergy = Math.min(exactEnergy + ((high - low) * Math.max(now - lastTime, 0)) / SWEEP_MS, high)
       lastTime = now
-      this.#energy = Math.min(Number(exactEnergy.toFixed(Math.min(decimals, 20))), high)
+      this.#energy = Math.min(Number(exactEnergy.toFixed(decimals)), high)
       this.#show(this.#energy)
       if (exactEnergy >= high) this.stop()
       else this.#frame = requestAnimationFrame(tick)

@@ -14,14 +14,14 @@ import {Outlines} from "../painting/outlines.js"
 import {LEAST_SIDE} from "../workers/frames.js"
 
 /**
- * The view in the description of the server.
+ * The view as the server describes it.
  *
  * @typedef {object} ServerView
  * @property {string} system  key of the system
  * @property {string} plane  name of the slice
  * @property {import("../engine/system.js").Slice | null} slice  null for a slice that only the server can compute
  * @property {number} energy
- * @property {boolean} home  whether the window is the default window
+ * @property {boolean} home  whether the window is the default window of its energy
  * @property {string[]} colours  of the outcomes, exits first
  * @property {string[]} labels  of the outcomes
  * @property {import("../painting/columns.js").Coding} coding
@@ -35,12 +35,16 @@ import {LEAST_SIDE} from "../workers/frames.js"
  */
 
 /**
- * While the energy changes, an edge of the window moves only if it is off by more than this share of the side: painting axes
- * takes longer than painting pixels. The margin of the default window around the interior is wider.
+ * While the energy changes, the window follows only if one of its edges is off by more than this share of the side, because
+ * painting axes takes longer than painting pixels. The margin of the default window around the interior is wider.
  */
 const NEAR_EDGE = 0.02
 
-/** @type {(one: import("../engine/starts.js").Window, other: import("../engine/starts.js").Window) => boolean} */
+/**
+ * Whether each edge of a window is within `NEAR_EDGE` of the same edge of another window.
+ *
+ * @type {(one: import("../engine/starts.js").Window, other: import("../engine/starts.js").Window) => boolean}
+ */
 const isNear = (one, other) => {
   const isNearEdge = (/** @type {number} */ a, /** @type {number} */ b, /** @type {number} */ side) =>
     Math.abs(a - b) <= NEAR_EDGE * side
@@ -65,8 +69,8 @@ export class Preview {
     this.#frames = frames
     this.#maps = new Local(find("maps"), ["data"], () => this.#follow())
     const onMove = () => this.#followRange()
-    this.#x = new Local(ranges.x_range, ["start", "end"], onMove)
-    this.#y = new Local(ranges.y_range, ["start", "end"], onMove)
+    this.#xRange = new Local(ranges.x_range, ["start", "end"], onMove)
+    this.#yRange = new Local(ranges.y_range, ["start", "end"], onMove)
     this.#ranges = () => [ranges.x_range, ranges.y_range]
     this.#outlines = new Outlines(name => findSource("basins", name))
     this.#well = new Outlines(name => findSource("well", name))
@@ -77,13 +81,13 @@ export class Preview {
   #frames
   #overlay
   #maps
-  #x
-  #y
+  #xRange
+  #yRange
   #ranges
   #outlines
   #well
   #status
-  #curves = new LimitingCurves()
+  #mapCurves = new LimitingCurves()
   #wellCurves = new LimitingCurves()
   /** @type {import("../engine/system.js").System | null} */
   #system = null
@@ -93,8 +97,12 @@ export class Preview {
   #view = null
   /** Energy of the slider or of the player, until the server has received it. @type {number | null} */
   #energy = null
-  /** Default window at this energy; null if the ranges keep their window. @type {import("../engine/starts.js").Window | null} */
-  #window = null
+  /**
+   * Default window at the energy, which is shown together with its pixels; null if the ranges keep their window.
+   *
+   * @type {import("../engine/starts.js").Window | null}
+   */
+  #defaultWindow = null
   /** Whether the energy is being dragged or played. */
   #isHeld = false
   /** Whether a call of `#follow` waits for the end of the task. */
@@ -120,7 +128,7 @@ export class Preview {
   setView(view) {
     const viewChanged = this.#view && (view.system !== this.#view.system || view.plane !== this.#view.plane)
     this.#view = view
-    if (!this.#isHeld) this.#energy = this.#window = null
+    if (!this.#isHeld) this.#energy = this.#defaultWindow = null
     if (viewChanged) this.#restore()
   }
 
@@ -136,8 +144,8 @@ export class Preview {
     const followsDefault = view?.home && view.system === integrator?.system.key
     const isServerEnergy = view && sameEnergy(energy, view.energy)
     const defaultWindow = followsDefault && integrator && !isServerEnergy ? windowAt(integrator, view.plane, energy) : null
-    if (!defaultWindow || !isNear(defaultWindow, this.#present)) this.#window = defaultWindow
-    if (isServerEnergy) for (const range of [this.#x, this.#y]) range.restore()
+    if (!defaultWindow || !isNear(defaultWindow, this.#currentWindow)) this.#defaultWindow = defaultWindow
+    if (isServerEnergy) for (const range of [this.#xRange, this.#yRange]) range.restore()
     this.#follow()
   }
 
@@ -148,20 +156,20 @@ export class Preview {
 
   /** The scene to show; null if the browser cannot compute it. @returns {import("../workers/frames.js").Scene | null} */
   get scene() {
-    const [view, system, window] = [this.#view, this.#system, this.#present]
+    const [view, system, window] = [this.#view, this.#system, this.#currentWindow]
     if (!view?.slice || !system || view.system !== system.key) return null
     if (!(window.xLow < window.xHigh && window.ordinateLow < window.ordinateHigh)) return null
     const energy = this.#energy ?? view.energy
-    const axis = energyAxis(view.slice)
-    const highest = axis < 0 ? energy : axis === 0 ? window.xHigh : window.ordinateHigh
+    // Without an axis of energy, the index is −1.
+    const highest = [window.xHigh, window.ordinateHigh][energyAxis(view.slice)] ?? energy
     if (!coversEnergy(system, highest / system.units.energy)) return null
     return {slice: view.slice, energy, window, mostPixels: view.resolution}
   }
 
   /** The window on the page, or about to be shown. @returns {import("../engine/starts.js").Window} */
-  get #present() {
+  get #currentWindow() {
     const [x, y] = this.#ranges()
-    return this.#window ?? {xLow: x.start, xHigh: x.end, ordinateLow: y.start, ordinateHigh: y.end}
+    return this.#defaultWindow ?? {xLow: x.start, xHigh: x.end, ordinateLow: y.start, ordinateHigh: y.end}
   }
 
   /** Columns of the other view, if the server compares two views pixel by pixel; otherwise null. */
@@ -202,28 +210,28 @@ export class Preview {
    *
    * @param {import("../engine/pixels.js").View} view
    * @param {import("../engine/pixels.js").Pixels} pixels
-   * @param {boolean} moving  whether another preview may follow in the next frame
+   * @param {boolean} isMoving  whether another preview may follow in the next frame
    */
-  show(view, pixels, moving) {
+  show(view, pixels, isMoving) {
     const [integrator, server] = [this.#integrator, this.#view]
     if (!integrator || !server) return
     const {system} = integrator
     this.#shownView = view
     const columns = pixelColumns(server.coding, view, pixels, this.#maps.server.data, this.#compared)
-    const limit = this.#curves.trace(integrator, view)
+    const limit = this.#mapCurves.trace(integrator, view)
     const coloured = exitLines(integrator, view.energy).map(exit => ({...exit, colour: server.colours[exit.channel - 1]}))
     const exits = showsPositions(view.slice) ? coloured : []
     const well = this.#traceWell(integrator, view)
     // Each change of a range repaints all pictures, so ranges change only together with the pixels.
-    if (this.#window) {
-      this.#x.show({start: view.window.xLow, end: view.window.xHigh})
-      this.#y.show({start: view.window.ordinateLow, end: view.window.ordinateHigh})
+    if (this.#defaultWindow) {
+      this.#xRange.show({start: view.window.xLow, end: view.window.xHigh})
+      this.#yRange.show({start: view.window.ordinateLow, end: view.window.ordinateHigh})
     }
     // The text of a stopped map stays.
     if (!this.#status.server.css_classes?.includes("stopped")) {
       this.#status.show({text: `Preview up to t = ${view.horizon * system.units.time}`})
     }
-    if (moving && this.#isHeld) {
+    if (isMoving && this.#isHeld) {
       this.#overlay.show({
         energy: view.energy,
         window: view.window,
@@ -256,7 +264,7 @@ export class Preview {
     this.#frames.stop()
     this.#shownView = null
     this.#overlay.hide()
-    for (const local of [this.#maps, this.#outlines, this.#well, this.#status, this.#x, this.#y]) local.restore()
+    for (const local of [this.#maps, this.#outlines, this.#well, this.#status, this.#xRange, this.#yRange]) local.restore()
   }
 }
 

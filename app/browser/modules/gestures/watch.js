@@ -1,41 +1,41 @@
 // @ts-check
-/** The player of an ensemble: controls, particles over the well and the section, counters, and the chart of survival. */
+/** The player of an ensemble: its controls, particles over the well and the section, counters, and the chart of survival. */
 
 import {Ensemble, Outcomes} from "../engine/ensemble.js"
 import {Integrator} from "../engine/integrator.js"
 import {drawStarts} from "../engine/random_starts.js"
 import {energyAxis, windowAt} from "../engine/starts.js"
-import {count as whole, number, share} from "../numbers.js"
-import {cover, frames, onMoved, wellFrame} from "../painting/pictures.js"
+import {count as whole, number, percentWithDecimal} from "../numbers.js"
+import {cover, mapPictures, onMoved, wellPicture} from "../painting/pictures.js"
 import {drawSurvival} from "../painting/survival_chart.js"
 import {onPresent, present} from "./present.js"
 
 /** Longest time of the player, in units of the well. */
-const LONGEST = 100
-/** Time of the first frame after the start at the logarithmic pace, in units of the well. */
+const LONGEST_TIME = 100
+/** Time from which the logarithmic pace begins, in units of the well. */
 const FIRST_TIME = 0.5
 /** Number of steps of the slider of time. */
-const STEPS = 1000
-/** Playing time by which the button "Step" advances the ensemble. */
+const SLIDER_STEPS = 1000
+/** Playing time by which the button "Step" advances the ensemble, in seconds. */
 const STEP_SECONDS = 0.05
 /** Side of a particle, in pixels. */
-const SIDE = 2.5
-/** Share of the opacity of a trail that remains after a frame. */
-const TRAIL = 0.88
-/** Number of frames from one update of the counters to the next. */
-const FRAMES_PER_NUMBER = 6
-/** Opacity of the layer between the map and the passages of the section. */
+const PARTICLE_SIDE = 2.5
+/** Factor of the opacity of a trail from one frame to the next. */
+const TRAIL_OPACITY = 0.88
+/** Number of frames from one update of the numbers to the next, while the ensemble plays. */
+const FRAMES_PER_UPDATE = 6
+/** Opacity of the layer over the map, on which the crossings of the section are painted. */
 const COVER_OPACITY = 0.85
 /** Time in each frame for finding the outcomes of orbits, in ms. */
 const OUTCOMES_MS = 6
-/** Largest playing time of a frame. Frames of a hidden page take longer. */
+/** Largest playing time of a frame, in ms. Frames of a hidden page take longer. */
 const LONGEST_FRAME_MS = 100
 /** Style of the canvases over the pictures. */
 const STYLE = "position:fixed;pointer-events:none;z-index:1;display:none"
 
 /**
- * The paces. Each function takes the time of the last frame and the seconds since then, and returns the new time. Times of orbits
- * are in units of the well.
+ * The paces. Each function returns the new time of the orbits, given their time in the last frame and the seconds since then.
+ * Times of orbits are in units of the well.
  *
  * @type {Record<string, (time: number, seconds: number) => number>}
  */
@@ -47,26 +47,30 @@ const PACES = {
   backwards: (time, seconds) => Math.max(time - 4 * seconds, 0),
 }
 
-/** @type {(tag: string, attributes?: object, ...children: (Node | string)[]) => any} */
-const make = (tag, attributes = {}, ...children) => {
+/**
+ * Return a new element.
+ *
+ * @type {(tag: string, attributes?: object, ...children: (Node | string)[]) => any}
+ */
+const makeElement = (tag, attributes = {}, ...children) => {
   const node = Object.assign(document.createElement(tag), attributes)
   node.append(...children)
   return node
 }
 
-/** @type {(options: Record<string, string>) => HTMLElement[]} */
-const makeOptions = options => Object.entries(options).map(([value, text]) => make("option", {value}, text))
+/** Return the options of a list, given their texts by value. @type {(options: Record<string, string>) => HTMLElement[]} */
+const makeOptions = options => Object.entries(options).map(([value, text]) => makeElement("option", {value}, text))
 
-/** @type {(label: string, options: Record<string, string>) => any} */
+/** Return a drop-down list. @type {(label: string, options: Record<string, string>) => any} */
 const makeList = (label, options) => {
-  const list = make("select", {className: "bk-input"}, ...makeOptions(options))
+  const list = makeElement("select", {className: "bk-input"}, ...makeOptions(options))
   list.setAttribute("aria-label", label)
   return list
 }
 
-class Watch {
+class EnsemblePlayer {
   /**
-   * @param {any} model  of `EnsemblePlayer`
+   * @param {any} model  of the component in `app/views/orbits/ensemble_player.py`
    * @param {HTMLElement} el
    */
   constructor(model, el) {
@@ -80,21 +84,21 @@ class Watch {
     ;[this.#radius.min, this.#radius.max] = model.radii
     this.#pace = makeList("Speed", Object.fromEntries(Object.keys(PACES).map(pace => [pace, pace])))
     this.#pace.value = "normal"
-    this.#rail.setAttribute("aria-label", "Time of the orbits")
+    this.#timeSlider.setAttribute("aria-label", "Time of the orbits")
     this.#radius.setAttribute("aria-label", "Radius of the disc, as a power of ten of the window")
-    for (const canvas of [this.#well, this.#section]) canvas.style.cssText = STYLE
+    for (const canvas of [this.#wellCanvas, this.#sectionCanvas]) canvas.style.cssText = STYLE
     this.#trails.checked = false
     el.replaceChildren(
-      make("div", {className: "row"}, this.#where, this.#count, this.#otherStarts),
-      make("label", {className: "row radius"}, "Radius ", this.#radius, this.#radiusText),
-      make("div", {className: "row"}, this.#play, this.#step),
-      make("div", {className: "row"}, this.#rail, this.#timeText),
-      make(
+      makeElement("div", {className: "row"}, this.#where, this.#count, this.#otherStartsButton),
+      makeElement("label", {className: "row radius"}, "Radius ", this.#radius, this.#radiusOutput),
+      makeElement("div", {className: "row"}, this.#playButton, this.#stepButton),
+      makeElement("div", {className: "row"}, this.#timeSlider, this.#timeOutput),
+      makeElement(
         "div",
         {className: "row"},
         this.#pace,
-        make("label", {}, this.#trails, " trails"),
-        make("label", {}, this.#loop, " loop"),
+        makeElement("label", {}, this.#trails, " trails"),
+        makeElement("label", {}, this.#loop, " loop"),
       ),
       this.#note,
       this.#counters,
@@ -109,21 +113,21 @@ class Watch {
   #where
   #count
   #pace
-  #otherStarts = make("button", {type: "button", className: "bk-btn"}, "Other starts")
-  #play = make("button", {type: "button", className: "bk-btn play"})
-  #step = make("button", {type: "button", className: "bk-btn"}, "Step")
-  #rail = make("input", {type: "range", min: 0, max: STEPS, step: 1, value: 0})
-  #timeText = make("output")
-  #radius = make("input", {type: "range", step: 0.5})
-  #radiusText = make("output")
-  #trails = make("input", {type: "checkbox"})
-  #loop = make("input", {type: "checkbox"})
-  #note = make("p", {className: "quiet"})
-  #counters = make("table")
-  #growth = make("p", {className: "quiet"})
-  #chart = make("canvas", {className: "survival"})
-  #well = make("canvas")
-  #section = make("canvas")
+  #otherStartsButton = makeElement("button", {type: "button", className: "bk-btn"}, "Other starts")
+  #playButton = makeElement("button", {type: "button", className: "bk-btn play"})
+  #stepButton = makeElement("button", {type: "button", className: "bk-btn"}, "Step")
+  #timeSlider = makeElement("input", {type: "range", min: 0, max: SLIDER_STEPS, step: 1, value: 0})
+  #timeOutput = makeElement("output")
+  #radius = makeElement("input", {type: "range", step: 0.5})
+  #radiusOutput = makeElement("output")
+  #trails = makeElement("input", {type: "checkbox"})
+  #loop = makeElement("input", {type: "checkbox"})
+  #note = makeElement("p", {className: "quiet"})
+  #counters = makeElement("table")
+  #growth = makeElement("p", {className: "quiet"})
+  #chart = makeElement("canvas", {className: "survival"})
+  #wellCanvas = makeElement("canvas")
+  #sectionCanvas = makeElement("canvas")
   /** @type {Integrator | null} */
   #integrator = null
   /** @type {Ensemble | null} */
@@ -131,22 +135,23 @@ class Watch {
   /** @type {Outcomes | null} */
   #outcomes = null
   #outcomesFrame = 0
-  /** All choices and properties that determine the ensemble, as text. */
+  /** All choices and properties of the page that determine the ensemble, as text. */
   #ensembleKey = ""
   #playFrame = 0
   #paintedFrames = 0
   #ignorePage = onPresent(() => this.#follow())
   #ignoreMoves = onMoved(() => this.#draw())
 
+  /** Follow the controls, and changes of the model by the server. */
   #listen() {
     const model = this.#model
     this.#where.onchange = () => this.#choose({where: this.#where.value})
     this.#count.onchange = () => this.#choose({count: Number(this.#count.value)})
     this.#radius.oninput = () => this.#choose({radius: Number(this.#radius.value)})
-    this.#otherStarts.onclick = () => this.#choose({seed: model.seed + 1})
-    this.#play.onclick = () => this.#setPlaying(this.#playFrame === 0)
-    this.#step.onclick = () => this.#show(PACES[this.#pace.value](this.#time, STEP_SECONDS))
-    this.#rail.oninput = () => this.#show((this.#rail.valueAsNumber / STEPS) * LONGEST)
+    this.#otherStartsButton.onclick = () => this.#choose({seed: model.seed + 1})
+    this.#playButton.onclick = () => this.#setPlaying(this.#playFrame === 0)
+    this.#stepButton.onclick = () => this.#goTo(PACES[this.#pace.value](this.#time, STEP_SECONDS))
+    this.#timeSlider.oninput = () => this.#goTo((this.#timeSlider.valueAsNumber / SLIDER_STEPS) * LONGEST_TIME)
     model.on("places", () => {
       this.#where.replaceChildren(...makeOptions(model.places))
       this.#where.value = model.where
@@ -172,24 +177,24 @@ class Watch {
   /** Follow the page and the choices. New starts begin at time 0, and play if the previous starts were playing. */
   #follow() {
     const {where, count, seed, radius, point, box} = this.#model
-    Object.assign(this.#where, {value: where})
+    this.#where.value = where
     this.#count.value = String(count)
     this.#radius.value = String(radius)
-    this.#radiusText.textContent = `10^${radius}`
+    this.#radiusOutput.textContent = `10^${radius}`
     this.#radius.closest(".radius").hidden = where !== "disc"
     const shown = present()
     const scene = shown?.scene() ?? null
     /** @type {Record<string, unknown>} */
-    const dependences = {view: scene, disc: [scene, radius, point], box: [scene, box]}
+    const placesInView = {view: scene, disc: [scene, radius, point], box: [scene, box]}
     // Starts at other places depend on the energy, but not on the window.
-    const place = dependences[where] ?? scene?.energy
+    const place = placesInView[where] ?? scene?.energy
     const ensembleKey = JSON.stringify([where, count, seed, place, scene?.slice, shown?.system.key])
     if (ensembleKey === this.#ensembleKey) return this.#draw()
     this.#ensembleKey = ensembleKey
     this.#ensemble = this.#outcomes = null
-    if (shown && scene && energyAxis(scene.slice) < 0) this.#make(shown, scene)
+    if (shown && scene && energyAxis(scene.slice) < 0) this.#makeEnsemble(shown, scene)
     this.#findOutcomes()
-    this.#show(0)
+    this.#goTo(0)
   }
 
   /** Find the exits through which the orbits leave, in the next frames. */
@@ -206,12 +211,12 @@ class Watch {
   }
 
   /**
-   * Draw the starts, and prepare their ensemble and outcomes.
+   * Make the ensemble of random starts, and prepare the search for its outcomes.
    *
    * @param {import("./present.js").Shown} shown
    * @param {import("../workers/frames.js").Scene} scene
    */
-  #make({system, modules}, scene) {
+  #makeEnsemble({system, modules}, scene) {
     const {where, count, seed, radius, point, box} = this.#model
     const integrator = (this.#integrator = new Integrator(system, modules))
     const isMissing = (where === "disc" && !point.length) || (where === "box" && !box.length)
@@ -219,72 +224,74 @@ class Watch {
     const states = drawStarts(request, scene, integrator)
     const energy = scene.energy / system.units.energy
     this.#ensemble = new Ensemble(integrator, energy, states)
-    this.#outcomes = new Outcomes(system, modules, energy, states, LONGEST)
+    this.#outcomes = new Outcomes(system, modules, energy, states, LONGEST_TIME)
   }
 
   /** Play, from the beginning if the end is reached, or pause. @param {boolean} isPlaying */
   #setPlaying(isPlaying) {
     cancelAnimationFrame(this.#playFrame)
     this.#playFrame = 0
-    // While playing, not every frame writes the counters: write them at a pause.
+    // While playing, most frames do not write the numbers, so write them at a pause.
     if (!isPlaying || !this.#ensemble) return this.#draw()
-    if (this.#hasEnded) this.#begin()
+    if (this.#hasEnded) this.#goToBegin()
     let lastTime = performance.now()
     const tick = (/** @type {number} */ now) => {
       const seconds = Math.min(Math.max(now - lastTime, 0), LONGEST_FRAME_MS) / 1000
       lastTime = now
-      this.#show(PACES[this.#pace.value](this.#time, seconds))
-      if (this.#hasEnded && this.#loop.checked) this.#begin()
+      this.#goTo(PACES[this.#pace.value](this.#time, seconds))
+      if (this.#hasEnded && this.#loop.checked) this.#goToBegin()
       if (this.#hasEnded) return this.#setPlaying(false)
       this.#playFrame = requestAnimationFrame(tick)
     }
     this.#playFrame = requestAnimationFrame(tick)
-    this.#label()
+    this.#labelPlay()
   }
 
-  /** Whether the time has reached its end at this pace. */
+  /** Whether the time has reached the end of the present pace. */
   get #hasEnded() {
-    return this.#pace.value === "backwards" ? this.#time <= 0 : this.#time >= LONGEST
+    return this.#pace.value === "backwards" ? this.#time <= 0 : this.#time >= LONGEST_TIME
   }
 
-  /** Go to the time at which this pace begins. */
-  #begin() {
-    this.#show(this.#pace.value === "backwards" ? LONGEST : 0)
+  /** Go to the time at which the present pace begins. */
+  #goToBegin() {
+    this.#goTo(this.#pace.value === "backwards" ? LONGEST_TIME : 0)
   }
 
-  #label() {
+  /** Label the button for playing by what it does. */
+  #labelPlay() {
     const isPlaying = this.#playFrame !== 0
-    this.#play.textContent = isPlaying ? "❚❚ Pause" : "▶ Watch them leave"
-    this.#play.setAttribute("aria-pressed", String(isPlaying))
+    this.#playButton.textContent = isPlaying ? "❚❚ Pause" : "▶ Watch them leave"
+    this.#playButton.setAttribute("aria-pressed", String(isPlaying))
   }
 
   /** Go to a time, in units of the well. @param {number} time */
-  #show(time) {
-    this.#ensemble?.advance(Math.min(time, LONGEST))
+  #goTo(time) {
+    this.#ensemble?.advance(Math.min(time, LONGEST_TIME))
     this.#draw()
   }
 
+  /** Show the controls, the particles, the numbers and the chart at the present time. */
   #draw() {
     const [ensemble, shown] = [this.#ensemble, present()]
-    this.#label()
-    for (const control of [this.#play, this.#step, this.#rail]) control.disabled = !ensemble?.count
+    this.#labelPlay()
+    for (const control of [this.#playButton, this.#stepButton, this.#timeSlider]) control.disabled = !ensemble?.count
     this.#note.textContent = this.#explain()
     if (!ensemble || !shown) {
-      for (const canvas of [this.#well, this.#section]) canvas.style.display = "none"
+      for (const canvas of [this.#wellCanvas, this.#sectionCanvas]) canvas.style.display = "none"
       return
     }
-    if (!this.#well.isConnected) shown.host.append(this.#well, this.#section)
+    if (!this.#wellCanvas.isConnected) shown.host.append(this.#wellCanvas, this.#sectionCanvas)
     const time = this.#time * shown.system.units.time
-    this.#rail.valueAsNumber = (STEPS * this.#time) / LONGEST
-    this.#timeText.textContent = `t = ${time.toFixed(time < 100 ? 1 : 0)}`
+    this.#timeSlider.valueAsNumber = (SLIDER_STEPS * this.#time) / LONGEST_TIME
+    this.#timeOutput.textContent = `t = ${time.toFixed(time < 100 ? 1 : 0)}`
     this.#paintWell(ensemble, shown)
     this.#paintSection(ensemble, shown)
     // Numbers that change in every frame could not be read.
-    if (this.#playFrame !== 0 && this.#paintedFrames++ % FRAMES_PER_NUMBER) return
+    if (this.#playFrame !== 0 && this.#paintedFrames++ % FRAMES_PER_UPDATE) return
     this.#writeCounters(ensemble, shown)
     this.#writeGrowth(ensemble, time)
     const ink = getComputedStyle(this.#chart).color
-    drawSurvival(this.#chart, ensemble, {longest: LONGEST, unit: shown.system.units.time, rate: this.#model.rate, ink})
+    drawSurvival(this.#chart, ensemble, {longest: LONGEST_TIME, unit: shown.system.units.time, rate: this.#model.rate, ink})
   }
 
   /** Return the text below the controls: what is shown, or what is missing. */
@@ -301,83 +308,75 @@ class Watch {
   }
 
   /**
-   * @param {Ensemble} ensemble
-   * @param {import("./present.js").Shown} shown
-   */
-  #paintWell(ensemble, {system, scene, colours}) {
-    const [frame, energy, integrator] = [wellFrame(), scene()?.energy, this.#integrator]
-    const window = energy === undefined || !integrator ? null : windowAt(integrator, "x_y", energy)
-    if (!frame || !window) return void (this.#well.style.display = "none")
-    this.#paint(
-      this.#well,
-      frame.box,
-      window,
-      colours(),
-      ensemble,
-      ensemble.x,
-      ensemble.y,
-      system.units.length,
-      system.units.length,
-    )
-  }
-
-  /**
-   * Draw each orbit on the map of (x, px), at its last passage of y = 0.
+   * Draw the orbits over the picture of the well.
    *
    * @param {Ensemble} ensemble
    * @param {import("./present.js").Shown} shown
    */
-  #paintSection(ensemble, {scene, colours}) {
-    const [frame, view] = [frames()[0], scene()]
-    // The section is y = 0: the second coordinate of the origin is y.
-    const isSection = view?.slice.axes.join() === "x,px" && view.slice.motion[0][1] === 0
-    // Before the first passage, the map stays uncovered.
-    if (!frame || !view || !isSection || !ensemble.sectionX.some(Number.isFinite))
-      return void (this.#section.style.display = "none")
-    const style = getComputedStyle(this.#note)
-    this.#section.style.background = `color-mix(in srgb, ${style.getPropertyValue("--ui-page")} ${100 * COVER_OPACITY}%, transparent)`
-    const {sectionX, sectionPx} = ensemble
-    this.#paint(this.#section, frame.box, view.window, colours(), ensemble, sectionX, sectionPx, ...view.slice.units)
+  #paintWell({x, y}, {system, scene, colours}) {
+    const [picture, energy, integrator] = [wellPicture(), scene()?.energy, this.#integrator]
+    const window = energy === undefined || !integrator ? null : windowAt(integrator, "x_y", energy)
+    if (!picture || !window) return void (this.#wellCanvas.style.display = "none")
+    const {length} = system.units
+    this.#paint(this.#wellCanvas, picture.box, window, colours(), {xs: x, ys: y, units: [length, length]})
   }
 
   /**
-   * Paint the orbits as particles in the colours of their exits; orbits that stay have the colour of the text.
+   * Draw each orbit on the map of (x, px), at its last upward crossing of y = 0.
+   *
+   * @param {Ensemble} ensemble
+   * @param {import("./present.js").Shown} shown
+   */
+  #paintSection({sectionX, sectionPx}, {scene, colours}) {
+    const [picture, view] = [mapPictures()[0], scene()]
+    // The first row of `motion` is the origin of the slice, whose second coordinate is y. The section is y = 0.
+    const isSection = view?.slice.axes.join() === "x,px" && view.slice.motion[0][1] === 0
+    // Before the first crossing, the map stays uncovered.
+    if (!picture || !view || !isSection || !sectionX.some(Number.isFinite))
+      return void (this.#sectionCanvas.style.display = "none")
+    const style = getComputedStyle(this.#note)
+    this.#sectionCanvas.style.background = `color-mix(in srgb, ${style.getPropertyValue("--ui-page")} ${100 * COVER_OPACITY}%, transparent)`
+    const points = {xs: sectionX, ys: sectionPx, units: view.slice.units}
+    this.#paint(this.#sectionCanvas, picture.box, view.window, colours(), points)
+  }
+
+  /**
+   * Paint the orbits as particles in the colours of their exits. Orbits that stay have the colour of the text.
    *
    * @param {HTMLCanvasElement} canvas
    * @param {DOMRect} box
    * @param {import("../engine/starts.js").Window} window
-   * @param {string[]} colours
-   * @param {Ensemble} ensemble
-   * @param {Float64Array} xs
-   * @param {Float64Array} ys
-   * @param {number} unitX
-   * @param {number} unitY
+   * @param {string[]} colours  of the outcomes
+   * @param {{xs: Float64Array, ys: Float64Array, units: [number, number]}} points  a point for each orbit
    */
-  #paint(canvas, box, window, colours, {count}, xs, ys, unitX, unitY) {
+  #paint(canvas, box, window, colours, {xs, ys, units: [unitX, unitY]}) {
     const channel = this.#outcomes?.channel ?? []
     const context = cover(canvas, box)
     if (!context) return
     if (this.#trails.checked) {
       // Fade the particles of earlier frames.
       context.globalCompositeOperation = "destination-in"
-      context.fillStyle = `rgba(0,0,0,${TRAIL})`
+      context.fillStyle = `rgba(0,0,0,${TRAIL_OPACITY})`
       context.fillRect(0, 0, box.width, box.height)
       context.globalCompositeOperation = "source-over"
     } else context.clearRect(0, 0, box.width, box.height)
     const [scaleX, scaleY] = [box.width / (window.xHigh - window.xLow), box.height / (window.ordinateHigh - window.ordinateLow)]
+    // One colour at a time, because changing the colour of a canvas is slow.
     const inks = [getComputedStyle(this.#note).color, ...colours]
     inks.forEach((ink, code) => {
       context.fillStyle = ink
-      for (let i = 0; i < count; i++) {
+      for (let i = 0; i < xs.length; i++) {
         if (channel[i] !== code) continue
         const [left, top] = [(xs[i] * unitX - window.xLow) * scaleX, (window.ordinateHigh - ys[i] * unitY) * scaleY]
         if (left >= 0 && top >= 0 && left < box.width && top < box.height)
-          context.fillRect(left - SIDE / 2, top - SIDE / 2, SIDE, SIDE)
+          context.fillRect(left - PARTICLE_SIDE / 2, top - PARTICLE_SIDE / 2, PARTICLE_SIDE, PARTICLE_SIDE)
       }
     })
   }
 
   /**
+   * Write the number and the share of the orbits that are inside, and of those that have reached each exit.
+   *
    * @param {Ensemble} ensemble
    * @param {import("./present.js").Shown} shown
    */
@@ -385,12 +384,16 @@ class Watch {
     const [names, colours] = [["inside", ...shown.labels()], shown.colours()]
     const counts = new Array(names.length).fill(0)
     for (const code of channel) counts[code]++
-    const cells = counts.map((countOfEnd, code) => {
-      const cell = make("td", {}, `${names[code]}: ${whole(countOfEnd)} (${share(count ? countOfEnd / count : 0)})`)
+    const cells = counts.map((endCount, code) => {
+      const cell = makeElement(
+        "td",
+        {},
+        `${names[code]}: ${whole(endCount)} (${percentWithDecimal(count ? endCount / count : 0)})`,
+      )
       if (code) cell.style.setProperty("--colour", colours[code - 1])
       return cell
     })
-    this.#counters.replaceChildren(make("tbody", {}, make("tr", {}, ...cells)))
+    this.#counters.replaceChildren(makeElement("tbody", {}, makeElement("tr", {}, ...cells)))
   }
 
   /**
@@ -398,7 +401,7 @@ class Watch {
    * the Lyapunov exponent.
    *
    * @param {Ensemble} ensemble
-   * @param {number} time
+   * @param {number} time  in units of the page
    */
   #writeGrowth(ensemble, time) {
     const isDisc = this.#model.where === "disc"
@@ -416,12 +419,14 @@ class Watch {
     cancelAnimationFrame(this.#outcomesFrame)
     this.#ignorePage()
     this.#ignoreMoves()
-    for (const canvas of [this.#well, this.#section]) canvas.remove()
+    for (const canvas of [this.#wellCanvas, this.#sectionCanvas]) canvas.remove()
   }
 }
 
 /**
+ * Start the player of a component.
+ *
  * @param {any} model
  * @param {HTMLElement} el
  */
-export const watch = (model, el) => void new Watch(model, el)
+export const watch = (model, el) => void new EnsemblePlayer(model, el)

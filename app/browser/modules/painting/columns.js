@@ -4,7 +4,7 @@
  *
  * @typedef {object} Coding
  * @property {[number, number][]} outcomes  fate and code of the outcomes that are not escapes
- * @property {number} first  code of the first end, and of the first class of crossings
+ * @property {number} firstClass  code of the first end, and of the first class of crossings
  * @property {number[]} ends  place of each outcome, from fate 1, among all ends
  * @property {string[]} words  descriptions of all ends
  * @property {number[]} leastCrossings  fewest crossings of each class
@@ -28,16 +28,17 @@ import {energyAxis} from "../engine/starts.js"
  * @returns {Columns}
  */
 export function pixelColumns(coding, view, pixels, serverColumns, compared) {
-  const {outcomes, first, ends, leastCrossings} = coding
+  const {outcomes, firstClass, ends, leastCrossings} = coding
   const {window, columns, rows} = view
   const codes = new Map(outcomes)
   const count = columns * rows
   const fate = new Uint8Array(count)
   const crossingClass = new Uint8Array(count)
   for (let i = 0; i < count; i++) {
+    // Undefined for an escape.
     const outcome = codes.get(pixels.fate[i])
-    fate[i] = outcome ?? first + ends[pixels.fate[i] - 1]
-    crossingClass[i] = outcome ?? first + leastCrossings.findLastIndex(least => pixels.crossings[i] >= least)
+    fate[i] = outcome ?? firstClass + ends[pixels.fate[i] - 1]
+    crossingClass[i] = outcome ?? firstClass + leastCrossings.findLastIndex(least => pixels.crossings[i] >= least)
   }
   const [Bytes, Floats] = [serverColumns.fate[0].constructor, serverColumns.escape_time[0].constructor]
   const shape = [rows, columns]
@@ -48,7 +49,7 @@ export function pixelColumns(coding, view, pixels, serverColumns, compared) {
     crossings: [new Floats(Float32Array.from(pixels.crossings).buffer, shape)],
     escape_time: [new Floats(pixels.time.buffer, shape)],
     ...Object.fromEntries(coding.layers.map(name => [name, [emptyImage]])),
-    difference: [compared ? new Bytes(differencesFrom(coding, view, fate, compared).buffer, shape) : emptyImage],
+    difference: [compared ? new Bytes(differenceCodes(coding, view, fate, compared).buffer, shape) : emptyImage],
     ends: [coding.words],
     x: [window.xLow],
     y: [window.ordinateLow],
@@ -60,14 +61,14 @@ export function pixelColumns(coding, view, pixels, serverColumns, compared) {
 }
 
 /**
- * Return the codes of the differences from the pixels at the same places in another view.
+ * Return the codes of the differences from the pixels at the same points in another view.
  *
  * @param {Coding} coding
  * @param {import("../engine/pixels.js").View} view
  * @param {Uint8Array} fate  codes of the pixels of the view
- * @param {Columns} compared
+ * @param {Columns} compared  columns of the other view
  */
-function differencesFrom({undecided, differences}, {window, columns, rows}, fate, compared) {
+function differenceCodes({undecided, differences}, {window, columns, rows}, fate, compared) {
   const [image, x, y, dw, dh] = ["fate", "x", "y", "dw", "dh"].map(name => compared[name][0])
   const [rowCount, columnCount] = image.shape
   const centres = (/** @type {number} */ low, /** @type {number} */ high, /** @type {number} */ count) =>
@@ -85,7 +86,7 @@ function differencesFrom({undecided, differences}, {window, columns, rows}, fate
 
 /** Largest distance of edges that count as equal, as a share of the side of the window. */
 const SAME_EDGE = 1e-6
-/** Largest side of a frame from the server, as a share of the side of its window. Coarse frames extend beyond their window. */
+/** Largest side of a map from the server, as a share of the side of its window. Coarse maps extend beyond their window. */
 const WIDEST = 1.1
 /** Largest difference of energies that count as equal, as a share of the energy. */
 const SAME_ENERGY = 1e-12
@@ -99,19 +100,21 @@ const SAME_ENERGY = 1e-12
 export const sameEnergy = (one, other) => Math.abs(one - other) <= SAME_ENERGY * Math.abs(other)
 
 /**
- * Whether columns from the server show a scene, with a map that is complete or has at least as many rows as a preview.
+ * Whether an image that begins at `low` covers a side of a window, and is not much wider.
+ *
+ * @type {(low: number, size: number, from: number, to: number) => boolean}
+ */
+const coversSide = (low, size, from, to) =>
+  Math.abs(low - from) <= SAME_EDGE * (to - from) && size >= (1 - SAME_EDGE) * (to - from) && size <= WIDEST * (to - from)
+
+/**
+ * Whether columns from the server show a scene, and their map is complete or has at least as many rows as a preview.
  *
  * @param {Columns} columns
  * @param {import("../workers/frames.js").Scene} scene
  * @param {number} rows  of the preview
  */
 export function showsScene({x, y, dw, dh, energy, fate, complete}, {window, energy: sceneEnergy, slice}, rows) {
-  const coversSide = (
-    /** @type {number} */ low,
-    /** @type {number} */ size,
-    /** @type {number} */ from,
-    /** @type {number} */ to,
-  ) => Math.abs(low - from) <= SAME_EDGE * (to - from) && size >= (1 - SAME_EDGE) * (to - from) && size <= WIDEST * (to - from)
   const hasEnergy = energyAxis(slice) >= 0 || sameEnergy(energy[0], sceneEnergy)
   const hasWindow =
     coversSide(x[0], dw[0], window.xLow, window.xHigh) && coversSide(y[0], dh[0], window.ordinateLow, window.ordinateHigh)

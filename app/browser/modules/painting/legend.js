@@ -2,13 +2,13 @@
 /** Highlights the pixels of the legend entry under the pointer by fading all other colours. */
 
 /** Opacity of the faded colours, as two hexadecimal digits. */
-const FADED = "2e"
+const FADED_ALPHA = "2e"
 
-/** Fade all colours of a palette except one. @type {(palette: string[], colour: string) => string[]} */
-export const fade = (palette, colour) => palette.map(other => (other === colour ? other : other.slice(0, 7) + FADED))
+/** Return a palette "#rrggbb" in which all colours but one are faded. @type {(palette: string[], colour: string) => string[]} */
+export const fade = (palette, colour) => palette.map(other => (other === colour ? other : other.slice(0, 7) + FADED_ALPHA))
 
-/** Highlight pixels from now on, as long as the page exists. */
-export function lightPixels() {
+/** Highlight the pixels of the legend entry under the pointer, for as long as the page exists. */
+export function highlightPixels() {
   /** @type {{mapper: any, palette: string[], faded: string[]} | null} */
   let highlight = null
   document.addEventListener("pointerover", event => {
@@ -16,25 +16,29 @@ export function lightPixels() {
     if (highlight && highlight.mapper.palette === highlight.faded)
       highlight.mapper.setv({palette: highlight.palette}, {sync: false})
     highlight = null
-    const [item, foot] = [".patch", ".foot"].map(selector => closest(event, selector))
-    const mapper = foot && mapperOf(foot.dataset.picture)
-    const colour = item?.style.getPropertyValue("--colour")
+    const [entry, legend] = [".patch", ".foot"].map(selector => closest(event, selector))
+    const mapper = legend && mapperOf(legend.dataset.picture)
+    const colour = entry?.style.getPropertyValue("--colour")
     if (!mapper || !colour || !mapper.palette.includes(colour)) return
     highlight = {mapper, palette: mapper.palette, faded: fade(mapper.palette, colour)}
     mapper.setv({palette: highlight.faded}, {sync: false})
   })
 }
 
-/** @type {(event: Event, selector: string) => HTMLElement | undefined} */
+/**
+ * Return the innermost element of an event that matches a selector, also in a shadow tree.
+ *
+ * @type {(event: Event, selector: string) => HTMLElement | undefined}
+ */
 const closest = (event, selector) =>
   /** @type {HTMLElement | undefined} */ (
     event.composedPath().find(node => node instanceof HTMLElement && node.matches(selector))
   )
 
 /**
- * The colour mapper of a picture.
+ * Return the colour mapper of a picture.
  *
- * @param {string | undefined} picture
+ * @param {string | undefined} picture  name of the picture
  */
 function mapperOf(picture) {
   const view = [...Bokeh.index.all_views()].find(({model}) => model.type === "Figure" && model.name === picture)

@@ -1,5 +1,5 @@
 // @ts-check
-/** Models of Bokeh that show other values in this browser than on the server. */
+/** Models of Bokeh that show other values in this browser than those that the server knows. */
 
 /**
  * A model of Bokeh.
@@ -27,7 +27,7 @@ export class LocalWhenPresent {
   /** @type {Local | null} */
   #local = null
 
-  /** The values of the server; empty until the model is on the page. */
+  /** The values that the server knows; empty until the model is on the page. */
   get server() {
     this.#local ??= this.#make()
     return this.#local?.server ?? {}
@@ -44,28 +44,29 @@ export class LocalWhenPresent {
   }
 }
 
-/** Shows values of a model in this browser only, and keeps the values of the server. */
+/** Shows values of a model in this browser only, and keeps the values that the server knows. */
 export class Local {
   /**
    * @param {Model & Record<string, any>} model
    * @param {string[]} names  of the properties
-   * @param {() => void} onServer  called when the server or the visitor changes a value
+   * @param {() => void} onChange  called when the server or the visitor changes a value
    */
-  constructor(model, names, onServer = () => {}) {
+  constructor(model, names, onChange = () => {}) {
     this.#model = model
+    /** The values that the server knows, by name. */
     this.server = Object.fromEntries(names.map(name => [name, model[name]]))
     this.#displayed = this.server
     for (const name of names) {
       model.connect(model.properties[name].change, () => {
         if (this.#isSetting) return
         this.server = {...this.server, [name]: model[name]}
-        onServer()
+        onChange()
       })
     }
   }
 
   #model
-  /** The values on the page, except after a change by the server. */
+  /** The values that were shown last, which a change by the server may have replaced on the page. */
   #displayed
   #isSetting = false
   #showsPreview = false

@@ -1,5 +1,5 @@
 // @ts-check
-/** The curves over a picture of Bokeh while the energy or the window changes: limiting curve, exits, and numbers of exits. */
+/** The curves over a picture of Bokeh while the energy or the window changes: the limiting curve, the exits and their numbers. */
 
 import {LocalWhenPresent} from "./local.js"
 
@@ -36,10 +36,10 @@ export class Outlines {
     for (const local of [this.#limit, this.#exits, this.#labels]) local.restore()
   }
 
-  /** @param {Exit[]} exits */
+  /** Show exits with their numbers. @param {Exit[]} exits */
   #showExits(exits) {
     this.#exits.show({data: {...sourceOf(exits), colour: exits.map(({colour}) => colour)}})
-    // Keep the number of texts: Bokeh fails if texts with colours of their own become fewer.
+    // Bokeh fails if the number of texts with colours of their own falls, so keep it, with empty texts.
     const labels = this.#labels.server.data ?? {text: [], colour: []}
     const fill = (/** @type {any[]} */ values, /** @type {any} */ padding) =>
       Array.from(labels.text, (_, k) => (k < values.length ? values[k] : padding))
@@ -50,5 +50,5 @@ export class Outlines {
   }
 }
 
-/** Lines as the columns of a data source of Bokeh. @type {(lines: Line[]) => {xs: number[][], ys: number[][]}} */
+/** Return lines as the columns of a data source of Bokeh. @type {(lines: Line[]) => {xs: number[][], ys: number[][]}} */
 const sourceOf = lines => ({xs: lines.map(({xs}) => xs), ys: lines.map(({ys}) => ys)})

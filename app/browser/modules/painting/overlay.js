@@ -1,16 +1,16 @@
 // @ts-check
 /**
- * The pictures while the energy moves, on canvases over the pictures of Bokeh: Bokeh takes longer to paint a frame with axes than
+ * The pictures while the energy changes, on canvases over the pictures of Bokeh, because Bokeh takes longer to paint axes than
  * the browser takes to compute the pixels. Palettes and styles of lines come from the models of Bokeh.
  */
 
-import {cover, frames, strokeLine, wellFrame} from "./pictures.js"
+import {cover, mapPictures, strokeLine, wellPicture} from "./pictures.js"
 
 /** Style of the canvases, which are below cards and drawers. */
 const STYLE = "position:fixed;pointer-events:none;z-index:1;display:none;background:var(--ui-page)"
 
 /**
- * The content to paint.
+ * The content of the canvases.
  *
  * @typedef {object} Painting
  * @property {number} energy
@@ -41,7 +41,7 @@ export class Overlay {
   show(painting) {
     this.#isShown = true
     const {energy, window, columns, lines, well} = painting
-    for (const {view, box} of frames()) {
+    for (const {view, box} of mapPictures()) {
       const context = this.#canvasFor(view.model.name, box, energy)
       if (!context) continue
       for (const {glyph, data_source: source} of view.model.renderers) {
@@ -50,9 +50,9 @@ export class Overlay {
       strokeLines(context, view.model, window, box, lines)
       context.canvas.dataset.side = String(columns.fate[0].shape[0])
     }
-    const frame = well && wellFrame()
-    const context = frame && this.#canvasFor("well", frame.box, energy)
-    if (frame && context) strokeLines(context, frame.view.model, well.window, frame.box, well.lines)
+    const picture = well && wellPicture()
+    const context = picture && this.#canvasFor("well", picture.box, energy)
+    if (picture && context) strokeLines(context, picture.view.model, well.window, picture.box, well.lines)
   }
 
   /** Hide the canvases after Bokeh has painted the next frame. */
@@ -68,7 +68,7 @@ export class Overlay {
   }
 
   /**
-   * Clear the canvas over a picture, and return its context.
+   * Return the context of the empty canvas over a picture.
    *
    * @param {string} name
    * @param {DOMRect} box
@@ -88,8 +88,8 @@ export class Overlay {
    *
    * @param {CanvasRenderingContext2D} context
    * @param {DOMRect} box
-   * @param {any} image
-   * @param {any} mapper
+   * @param {any} image  numbers, with the numbers of rows and columns as `shape`
+   * @param {any} mapper  of Bokeh
    */
   #paintImage(context, box, image, mapper) {
     const [rows, columns] = image.shape
@@ -133,45 +133,49 @@ function strokeLines(context, plot, window, box, lines) {
   }
 }
 
-/** A property of a glyph that is the same for all its lines. @type {(property: any) => any} */
+/** Return the value of a property of a glyph that is the same for all its lines. @type {(property: any) => any} */
 const valueOf = property => {
   const value = property?.value ?? property
   return property?.transform ? property.transform.compute(value) : value
 }
 
 /** Colours of palettes as 32-bit numbers for canvases. @type {WeakMap<any[], Uint32Array>} */
-const tables = new WeakMap()
+const colourTables = new WeakMap()
 
-/** @param {any[]} palette  of "#rrggbb" or "#rrggbbaa", or of numbers 0xrrggbbaa */
+/**
+ * Return the colour table of a palette.
+ *
+ * @param {any[]} palette  of "#rrggbb" or "#rrggbbaa", or of numbers 0xrrggbbaa
+ */
 function tableOf(palette) {
-  const cachedTable = tables.get(palette)
+  const cachedTable = colourTables.get(palette)
   if (cachedTable) return cachedTable
   const table = Uint32Array.from(palette, colour => {
     // The bytes of a canvas are red, green, blue, alpha. A 32-bit number has its lowest byte first.
     const value = typeof colour === "number" ? colour : parseInt(colour.slice(1).padEnd(8, "f"), 16)
     return ((value & 0xff) << 24) | ((value & 0xff00) << 8) | ((value >>> 8) & 0xff00) | (value >>> 24)
   })
-  tables.set(palette, table)
+  colourTables.set(palette, table)
   return table
 }
 
 /**
- * Write the colours of an image as the linear and logarithmic mappers of Bokeh choose them. An image begins with its lowest row,
- * the result with the highest row.
+ * Compute the colours of an image as the linear and logarithmic mappers of Bokeh do. An image begins with its lowest row, the
+ * result with the highest row.
  *
  * @param {any} image  numbers, with NaN for no colour
  * @param {{type: string, palette: any[], low: number, high: number}} mapper
- * @param {Uint32Array} colours
- * @param {number} columns
+ * @param {Uint32Array} colours  written, one for each number of the image
+ * @param {number} columns  of the image
  */
 export function mapColours(image, {type, palette, low, high}, colours, columns) {
   const table = tableOf(palette)
   const scale = type === "LogColorMapper" ? Math.log : (/** @type {number} */ value) => value
-  const lowest = scale(low)
-  const coloursPerUnit = table.length / (scale(high) - lowest)
+  const scaledLow = scale(low)
+  const coloursPerUnit = table.length / (scale(high) - scaledLow)
   const rows = image.length / columns
   for (let i = 0; i < image.length; i++) {
-    const index = Math.floor((scale(image[i]) - lowest) * coloursPerUnit)
+    const index = Math.floor((scale(image[i]) - scaledLow) * coloursPerUnit)
     const row = rows - 1 - Math.floor(i / columns)
     colours[row * columns + (i % columns)] = Number.isNaN(image[i]) ? 0 : table[Math.min(Math.max(index, 0), table.length - 1)]
   }

@@ -2,27 +2,27 @@
 /** The places of the pictures on the screen, and canvases over them. */
 
 /**
- * A picture: the view of Bokeh, and the box of the frame on the screen.
+ * A picture on the page: the view of Bokeh, and the box of its frame on the screen.
  *
- * @typedef {{view: any, box: DOMRect}} Frame
+ * @typedef {{view: any, box: DOMRect}} Picture
  */
 
-/** The frames of the maps. @returns {Frame[]} */
-export function frames() {
+/** The visible maps, in the order of the page. @returns {Picture[]} */
+export function mapPictures() {
   // The server numbers the maps by tags, see `_paint` in `app/views/maps/map_plots.py`.
   const views = [...Bokeh.index.all_views()].filter(view => view.model.tags?.[0] === "map")
   views.sort((one, other) => one.model.tags[1] - other.model.tags[1])
   return views.map(withBox).filter(({box}) => box.width > 0)
 }
 
-/** The frame of the well; undefined on a narrow screen that shows a map. @returns {Frame | undefined} */
-export function wellFrame() {
+/** The picture of the well; undefined on a narrow screen that shows a map. @returns {Picture | undefined} */
+export function wellPicture() {
   const view = [...Bokeh.index.all_views()].find(view => view.model.name === "well")
-  const frame = view && withBox(view)
-  return frame?.box.width ? frame : undefined
+  const picture = view && withBox(view)
+  return picture?.box.width ? picture : undefined
 }
 
-/** @type {(view: any) => Frame} */
+/** @type {(view: any) => Picture} */
 function withBox(view) {
   const canvas = view.canvas_view.el.getBoundingClientRect()
   const {left, top, width, height} = view.frame.bbox
@@ -31,30 +31,30 @@ function withBox(view) {
 }
 
 /**
- * Call a function whenever a picture has moved, or the theme has changed.
+ * Call a function whenever the well or the first map has moved, or the theme has changed.
  *
- * No event reports all causes: windows, layers and panels change the layout, and Bokeh follows later, so the boxes are
+ * No event reports all causes: windows, layers and panels change the layout, and Bokeh follows later. Therefore the boxes are
  * compared before each repaint of the screen.
  *
  * @param {() => void} call
  * @returns {() => void} a function that ends the calls
  */
 export function onMoved(call) {
-  let frame = 0
+  let request = 0
   let lastState = ""
-  const look = () => {
-    const boxes = [wellFrame()?.box, frames()[0]?.box]
+  const compare = () => {
+    const boxes = [wellPicture()?.box, mapPictures()[0]?.box]
     const state = JSON.stringify([boxes, devicePixelRatio, document.documentElement.dataset.theme])
     if (state !== lastState) call()
     lastState = state
-    frame = requestAnimationFrame(look)
+    request = requestAnimationFrame(compare)
   }
-  frame = requestAnimationFrame(look)
-  return () => cancelAnimationFrame(frame)
+  request = requestAnimationFrame(compare)
+  return () => cancelAnimationFrame(request)
 }
 
 /**
- * Make a canvas cover a box on the screen, and return its context, in pixels of the box.
+ * Make a canvas cover a box on the screen, and return its context, whose unit is a pixel of the page.
  *
  * @param {HTMLCanvasElement} canvas
  * @param {DOMRect} box
@@ -76,14 +76,14 @@ export function cover(canvas, box) {
 }
 
 /**
- * Draw a line with coordinates in a window, which fills the box.
+ * Draw a line, with coordinates in a window that fills the box.
  *
  * @param {CanvasRenderingContext2D} context
  * @param {import("../engine/starts.js").Window} window
  * @param {DOMRect} box
  * @param {{xs: ArrayLike<number>, ys: ArrayLike<number>}} line
  * @param {string} colour
- * @param {number} width
+ * @param {number} width  in pixels
  */
 export function strokeLine(context, {xLow, xHigh, ordinateLow, ordinateHigh}, box, {xs, ys}, colour, width) {
   const [scaleX, scaleY] = [box.width / (xHigh - xLow), box.height / (ordinateHigh - ordinateLow)]

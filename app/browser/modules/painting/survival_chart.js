@@ -3,21 +3,21 @@
 
 import {number} from "../numbers.js"
 
-/** Smallest share on the axis. */
+/** Smallest share on the axis of shares. */
 const LEAST_SHARE = 1e-3
-/** Margins, in pixels. */
-const [LEFT, RIGHT, BOTTOM, TOP] = [40, 4, 22, 6]
-/** Number of intervals of a line. */
-const INTERVALS = 240
+/** Margins around the lines, in pixels. */
+const [LEFT, RIGHT, TOP, BOTTOM] = [40, 4, 6, 22]
+/** Number of straight pieces of which a line consists. */
+const PIECES = 240
 
 /**
  * Draw the chart.
  *
  * @param {HTMLCanvasElement} canvas
- * @param {{escapeTime: Float64Array, count: number, time: number}} ensemble
- * @param {{longest: number, unit: number, rate: number, ink: string}} options  `longest`: time
- *   at the end of the axis, in units of the well. `unit`: the unit of time of the well, in units of the page. `rate`: decay rate of
- *   mixed motion, in units of the page; 0 if it is not known. `ink`: colour
+ * @param {{escapeTime: Float64Array, count: number, time: number}} ensemble  times in units of the well
+ * @param {{longest: number, unit: number, rate: number, ink: string}} options  `longest`: time at the end of the axis, in units
+ *   of the well. `unit`: unit of time of the well, in units of the page. `rate`: decay rate of mixed motion, in units of the
+ *   page; 0 if it is not known. `ink`: colour of lines and text
  */
 export function drawSurvival(canvas, {escapeTime, count, time}, {longest, unit, rate, ink}) {
   const [width, height] = [canvas.clientWidth, canvas.clientHeight]
@@ -40,11 +40,11 @@ export function drawSurvival(canvas, {escapeTime, count, time}, {longest, unit, 
   context.textAlign = "left"
   const law = rate > 0 ? "; dashed: flux over volume" : ""
   context.fillText(`Inside until t = ${number(longest * unit, 3)}${law}`, LEFT, height - 4, width - LEFT)
-  const times = escapeTime.filter(each => each <= time).sort()
+  const pastTimes = escapeTime.filter(each => each <= time).sort()
   const drawLine = (/** @type {(t: number) => number} */ shareAt, /** @type {number} */ end) => {
     context.beginPath()
-    for (let k = 0; k <= INTERVALS; k++) {
-      const t = (end * k) / INTERVALS
+    for (let k = 0; k <= PIECES; k++) {
+      const t = (end * k) / PIECES
       const share = shareAt(t)
       if (share < LEAST_SHARE) break
       context.lineTo(placeX(t), placeY(share))
@@ -58,16 +58,16 @@ export function drawSurvival(canvas, {escapeTime, count, time}, {longest, unit, 
   }
   context.globalAlpha = 1
   context.lineWidth = 2
-  drawLine(t => 1 - countBelow(times, t) / count, time)
+  drawLine(t => 1 - countUpTo(pastTimes, t) / count, time)
 }
 
 /**
- * Return the number of values of a rising array that are at most a limit.
+ * Return the number of values of an ascending array that are at most a limit.
  *
  * @param {Float64Array} values
  * @param {number} limit
  */
-function countBelow(values, limit) {
+function countUpTo(values, limit) {
   let [low, high] = [0, values.length]
   while (low < high) {
     const middle = (low + high) >> 1

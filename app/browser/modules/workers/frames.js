@@ -1,8 +1,8 @@
 // @ts-check
 /**
- * Pictures at the rate of the display. While the view moves, a picture has as many pixels as a frame allows. At rest, it has more
- * pixels and a longer time. Only the newest view is computed, but a picture begun while the view moves is finished
- * first: otherwise, fast moves would show no pictures.
+ * Pictures at the rate of the display. While the view moves, a picture has as many pixels as can be computed in a frame of the
+ * display. At rest, it has more pixels and a longer time. Only the newest view is computed, but a picture begun while the view
+ * moves is finished first: otherwise, fast moves would show no pictures.
  *
  * @typedef {import("../engine/pixels.js").View} View
  * @typedef {import("../engine/pixels.js").Pixels} Pixels
@@ -18,7 +18,7 @@ const RESTING = [
   {side: 112, horizon: 100},
   {side: 224, horizon: 100},
 ]
-/** Time for computing the pixels of a frame, in ms. The rest of the frame is for painting. */
+/** Time for computing pixels in a frame of the display, in ms. The rest of the frame is for painting. */
 const FRAME_MS = 10
 /** Smallest factor of the side from one frame to the next. */
 const LEAST_CHANGE = 0.8
@@ -32,21 +32,21 @@ const PART_PIXELS = 500
 export class Frames {
   /**
    * @param {import("./pool.js").Pool} pool
-   * @param {number} workers
-   * @param {(view: View, pixels: Pixels, moving: boolean) => void} show
+   * @param {number} workerCount  number of workers of the pool
+   * @param {(view: View, pixels: Pixels, isMoving: boolean) => void} show
    */
-  constructor(pool, workers, show) {
+  constructor(pool, workerCount, show) {
     this.#pool = pool
-    this.#workers = workers
+    this.#workerCount = workerCount
     this.#show = show
   }
 
   #pool
-  #workers
+  #workerCount
   #show
   /** @type {import("../engine/system.js").System | null} */
   #system = null
-  /** @type {Scene | null} */
+  /** The scene to compute next. @type {Scene | null} */
   #scene = null
   /** @type {"nothing" | "moving" | "resting"} */
   #computing = "nothing"
@@ -84,7 +84,7 @@ export class Frames {
     this.#pool.cancel()
   }
 
-  /** Compute a picture of the newest view, with as many pixels as a frame allows. */
+  /** Compute a picture of the newest view, with as many pixels as can be computed in a frame. */
   #begin() {
     const scene = this.#scene
     this.#scene = null
@@ -93,8 +93,8 @@ export class Frames {
     const side = Math.min(this.#side, scene.mostPixels)
     const startTime = performance.now()
     // With two parts for each worker, workers that finish early take another part.
-    this.#compute({...scene, columns: side, rows: side, horizon: MOVING_HORIZON}, 2 * this.#workers, () => {
-      // The time for a picture is proportional to the square of the side.
+    this.#compute({...scene, columns: side, rows: side, horizon: MOVING_HORIZON}, 2 * this.#workerCount, () => {
+      // The time for a picture is proportional to the square of the side. Browsers round times, so a difference may be 0.
       const change = Math.sqrt(FRAME_MS / Math.max(performance.now() - startTime, 1))
       const nextSide = Math.round(side * Math.min(Math.max(change, LEAST_CHANGE), LARGEST_CHANGE))
       this.#side = Math.min(Math.max(nextSide, LEAST_SIDE), this.#largestSide)
@@ -108,7 +108,7 @@ export class Frames {
    * Compute a picture of a view at rest, then the next, finer one.
    *
    * @param {Scene} scene
-   * @param {number} level
+   * @param {number} level  index in `RESTING`
    */
   #refine(scene, level) {
     if (level === RESTING.length) {
@@ -136,20 +136,20 @@ export class Frames {
    */
   #compute(view, count, onDone) {
     if (!this.#system) return
-    const picture = new Picture(this.#system, view)
-    const parts = picture.deal(count)
+    const collector = new PixelCollector(this.#system, view)
+    const parts = collector.divide(count)
     let missingParts = parts.length
     this.#pool.compute(view, parts, (part, pixels) => {
-      picture.add(part, pixels)
+      collector.add(part, pixels)
       if (--missingParts > 0) return
-      this.#show(view, picture.finish(), this.#computing === "moving")
+      this.#show(view, collector.finish(), this.#computing === "moving")
       onDone()
     })
   }
 }
 
 /** Collects the pixels of a view. In a symmetric view, only one of two mirror images is computed. */
-export class Picture {
+export class PixelCollector {
   /**
    * @param {import("../engine/system.js").System} system
    * @param {View} view
@@ -173,12 +173,12 @@ export class Picture {
   #flips
 
   /**
-   * Divide the rows to compute into parts.
+   * Divide the pixels to compute into parts of interleaved rows, which take about the same time.
    *
-   * @param {number} count
+   * @param {number} count  largest number of parts
    * @returns {import("../engine/pixels.js").Part[]}
    */
-  deal(count) {
+  divide(count) {
     const {columns, rows} = this.#view
     const half = (/** @type {number} */ side) => Math.ceil(side / 2)
     const computedRows = this.#flips?.[1] ? half(rows) : rows
@@ -240,6 +240,6 @@ export class Picture {
  */
 export function mirroredAxes(system, {mirrored}, {xLow, xHigh, ordinateLow, ordinateHigh}) {
   if (!system.mirror || !mirrored || !(mirrored[0] || mirrored[1])) return null
-  const symmetric = (!mirrored[0] || xLow === -xHigh) && (!mirrored[1] || ordinateLow === -ordinateHigh)
-  return symmetric ? mirrored : null
+  const isSymmetric = (!mirrored[0] || xLow === -xHigh) && (!mirrored[1] || ordinateLow === -ordinateHigh)
+  return isSymmetric ? mirrored : null
 }

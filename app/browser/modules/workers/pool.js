@@ -7,9 +7,9 @@
  * @typedef {import("../engine/pixels.js").Part} Part
  * @typedef {import("../engine/pixels.js").Pixels} Pixels
  *
- * @typedef {object} Picture
+ * @typedef {object} Task  a picture to compute
  * @property {View} view
- * @property {Part[]} waiting
+ * @property {Part[]} waiting  parts that no worker has begun
  * @property {(part: Part, pixels: Pixels) => void} receive
  */
 
@@ -20,7 +20,7 @@ const MOST_WORKERS = 8
 export const workerCount = () => Math.min(Math.max(navigator.hardwareConcurrency - 1, 1), MOST_WORKERS)
 
 export class Pool {
-  /** @param {() => Worker} start  starts a worker */
+  /** @param {() => Worker} start  starts and returns a worker */
   constructor(start) {
     this.#start = start
   }
@@ -30,11 +30,11 @@ export class Pool {
   #workers = []
   /** @type {Set<Worker>} */
   #idle = new Set()
-  /** @type {Picture | null} */
-  #picture = null
+  /** @type {Task | null} */
+  #task = null
 
   /**
-   * Give a system to all workers, which the first call starts.
+   * Send a system to all workers, which the first call starts.
    *
    * @param {import("../engine/system.js").System} system
    * @param {import("../engine/integrator.js").Modules} modules
@@ -56,28 +56,28 @@ export class Pool {
    * @param {(part: Part, pixels: Pixels) => void} receive
    */
   compute(view, parts, receive) {
-    this.#picture = {view, waiting: [...parts], receive}
-    for (const worker of [...this.#idle]) this.#next(worker)
+    this.#task = {view, waiting: [...parts], receive}
+    for (const worker of [...this.#idle]) this.#giveNext(worker)
   }
 
-  /** Drop the present picture. */
+  /** Drop the present picture. Workers finish their parts, whose pixels are ignored. */
   cancel() {
-    this.#picture = null
+    this.#task = null
   }
 
-  /** @param {Worker} worker */
-  #next(worker) {
-    const picture = this.#picture
-    const part = picture?.waiting.shift()
-    if (!picture || !part) {
+  /** Give a worker the next part, if any. @param {Worker} worker */
+  #giveNext(worker) {
+    const task = this.#task
+    const part = task?.waiting.shift()
+    if (!task || !part) {
       this.#idle.add(worker)
       return
     }
     this.#idle.delete(worker)
     worker.onmessage = ({data}) => {
-      if (this.#picture === picture) picture.receive(part, data)
-      this.#next(worker)
+      if (this.#task === task) task.receive(part, data)
+      this.#giveNext(worker)
     }
-    worker.postMessage({view: picture.view, part})
+    worker.postMessage({view: task.view, part})
   }
 }

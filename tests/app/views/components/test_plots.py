@@ -30,7 +30,7 @@ def test_glyphs_are_added_with_one_search_of_the_models() -> None:
     glyphs = LaterGlyphs(lambda plot: plot.add_glyph(Scatter()))
     for plot in plots:
         document.add_root(plot)
-        glyphs.expect(plot)
+        glyphs.add_figure(plot)
     with patch.object(DocumentModelManager, "recompute", autospec=True) as recompute:
         glyphs.draw()
         assert recompute.call_count == 1
@@ -42,7 +42,7 @@ def test_a_figure_that_is_made_later_gets_the_glyphs_that_other_figures_have() -
     glyphs = LaterGlyphs(lambda plot: plot.add_glyph(Scatter()))
     glyphs.draw()
     plot = square_figure("basins", "basins")
-    glyphs.expect(plot)
+    glyphs.add_figure(plot)
     assert len(plot.renderers) == 1
 
 
