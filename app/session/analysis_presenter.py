@@ -43,7 +43,15 @@ class _LayerResult(NamedTuple):
 
 
 class AnalysisPresenter:
-    """Requests the analyses that the view state asks for, shows them over the maps, and stores them in the session's results."""
+    """Requests the analyses that the view state asks for, shows them over the maps, and stores them in the session's results.
+
+    Parameters
+    ----------
+    context
+        The session.
+    maps
+        Shows the results of layers.
+    """
 
     def __init__(self, context: SessionContext, maps: MapsView) -> None:
         state, jobs, locked = context.state, context.jobs, context.locked

@@ -64,7 +64,17 @@ class LinkPresenter:
         progress: ProgressView,
         notice: Notice,
     ) -> None:
-        """Connect the links with the other parts of the page, and write a link for each change of the state."""
+        """Connect the links with the other parts of the page, and write a link for each change of the state.
+
+        Parameters
+        ----------
+        potential
+            Reviews the systems of links.
+        browser
+            Writes links to the address of the page.
+        progress, notice
+            Show that a review runs, and messages about links.
+        """
         self._potential, self._browser = potential, browser
         self._progress, self._notice = progress, notice
         self.state.param.watch(self._write, list(LINKED))

@@ -42,6 +42,13 @@ class PotentialPresenter:
     """Reviews each potential that is chosen, typed or set by a slider, and writes it to the view state if it is valid.
 
     All changes while a formula is typed, or a slider dragged, make one entry of the history.
+
+    Parameters
+    ----------
+    context
+        The session.
+    history
+        Numbers the entries of the browser's history.
     """
 
     def __init__(self, context: SessionContext, history: History) -> None:
@@ -73,7 +80,7 @@ class PotentialPresenter:
             self._request.cancel()
 
     def _take(self, system: System, *, done: bool) -> None:
-        """Review a system of the panel. A running review is finished first: the maps could not follow a steady drag otherwise."""
+        """Review a system of the panel, after a running review. If each system cancelled it, no map could follow a drag."""
         proposal = _Proposal(system, self._use if done else self._use_if_ready, done=done)
         if self._proposal is None or self._proposal.refuse is not None:
             self._propose(proposal)
@@ -81,7 +88,7 @@ class PotentialPresenter:
             self._waiting_proposal = proposal
 
     def _use_if_ready(self, reviewed: SystemReview) -> None:
-        """Use an unfinished system unless its integrator must be compiled: a server can keep only some dozens of integrators."""
+        """Use an unfinished system if its integrator is compiled, because a server can keep only some dozens of integrators."""
         if is_ready_for_maps(reviewed.potential):
             self._use(reviewed)
         else:

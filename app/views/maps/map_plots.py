@@ -1,4 +1,4 @@
-"""The pictures of a slice, linked in zoom, hover and clicks. They share a data source, so one message repaints all pictures."""
+"""The pictures of a map. They share ranges, tools and a data source, so that one message repaints all pictures."""
 
 from __future__ import annotations
 
@@ -80,7 +80,17 @@ def prepare_curves(spec: MapSpec) -> None:
 
 
 class MapsView:
-    """Draws the frames of maps, with marks and curves. With `alone`, only the picture shown large is visible."""
+    """Draws the frames of maps, with marks and curves.
+
+    Parameters
+    ----------
+    state
+        View state, which the view follows.
+    actions
+        Callbacks for the user's actions.
+    alone
+        Whether only the picture shown large is visible.
+    """
 
     def __init__(self, state: ViewState, actions: MapActions, *, alone: bool = False) -> None:
         self._state, self._actions = state, actions
