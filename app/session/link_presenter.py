@@ -161,7 +161,8 @@ class LinkPresenter:
             # "Back" on a page also goes through the entries of its frames, so an embedded page makes no entries.
             makes_entry = not self.embedded and {event.name for event in events} != {"chosen"}
             self._write_address(self.history.record() if makes_entry else self.history.entry)
-            self.open_link.show(write_link(self.state))
+            if self.embedded:
+                self.open_link.show(write_link(self.state))
 
     def _write_address(self, entry: int) -> None:
         self._browser.write_link(write_link(self.state, embedded=self.embedded), entry)

@@ -93,7 +93,10 @@ def longest_first_t_max(potential: Potential) -> float:
 
 
 class ViewState(param.Parameterized):
-    """What a session shows: the fields of `View` with their legal values, other choices, and what is known of the browser."""
+    """What a session shows: the fields of `View` with their legal values, other choices, and what is known of the browser.
+
+    `follow` calls a function now and after each change; `param.watch` calls it only after changes.
+    """
 
     system = param.ClassSelector(class_=System, default=FIRST_VIEW.system)
     plane = param.ClassSelector(class_=Slice, default=FIRST_VIEW.plane)

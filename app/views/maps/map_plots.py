@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -137,6 +137,7 @@ class MapsView:
     def show(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
         """Paint a frame, and go to the window of a new map."""
         if frame.spec != self._spec:
+            self.ranges.set_home(replace(frame.spec, window=None))
             self.ranges.follow(frame.spec.find_window())
             self._spec, self._results = frame.spec, {}
             self._show_curves(frame.spec)
