@@ -22,6 +22,7 @@ from engine.integrator.bound_kernels import load_kernels
 from engine.integrator.kernels import propagate
 from engine.integrator.kernels.events import NOT_COMPUTED
 from engine.integrator.source import polynomial_recurrence, recurrence
+from engine.integrator.source.series import Setting
 
 T_MAX = 1e5
 ORBITS = 64
@@ -52,7 +53,7 @@ def _measure(case: str, order: int, tolerance: float, cache: str) -> tuple[float
     os.environ[CACHE_VARIABLE] = cache
     potential = CASES[case]
     polynomial_recurrence.ORDER = recurrence.ORDER = propagate.ORDER = order
-    kernels = load_kernels(potential.terms, potential.channels)
+    kernels = load_kernels(potential.terms, Setting(potential.channels))
     curves = closed_exits(potential)[None]
     gates = exit_gates(curves)
 

@@ -25,7 +25,7 @@ from engine.slices.window import GivenWindow
 from engine.sweeps.spec import MOST_VALUES
 from engine.systems.system import TYPED
 from plots.pictures.palette import PALETTES, Palette
-from plots.texts.accepted_potentials import refusal
+from plots.texts.accepted_potentials import page_refusal
 
 PLANE_HELP = (
     f"Slice of starts: {', '.join(plane.key for plane in Plane)}, or two axes such as x,theta: {', '.join(AXIS_NAMES)}, or a "
@@ -89,7 +89,7 @@ def find_potential(case: Case) -> Potential:
         If the case is neither a name nor a formula, a parameter is invalid, or the potential is not supported.
     """
     potential = find_system(case).potential
-    problem = refusal(review_potential(potential))
+    problem = page_refusal(review_potential(potential))
     if problem is not None:
         raise ValueError(f"case={reprlib.repr(case)}: {problem}")
     return potential

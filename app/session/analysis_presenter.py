@@ -43,7 +43,15 @@ class _LayerResult(NamedTuple):
 
 
 class AnalysisPresenter:
-    """Requests the analyses that the view state asks for, shows them over the maps, and stores them in the session's results."""
+    """Requests the analyses that the view state asks for, shows them over the maps, and stores them in the session's results.
+
+    Parameters
+    ----------
+    context
+        The session.
+    maps
+        Shows the results of layers.
+    """
 
     def __init__(self, context: SessionContext, maps: MapsView) -> None:
         state, jobs, locked = context.state, context.jobs, context.locked
@@ -62,15 +70,14 @@ class AnalysisPresenter:
             name: LatestRequest(jobs, partial(self._show_slow_measure, name), partial(self.measures.say, name), locked)
             for name in self.measures.buttons
         }
-        watch = state.param.watch
-        watch(lambda event: self._cancel_box_measures(), "box")
+        state.param.watch(lambda event: self._cancel_box_measures(), "box")
         self._sweep_request = LatestRequest(jobs, self._show_curves, self._fail_sweep, locked)
         self._follow_ups = FollowUpRequests(state, jobs, self._list_follow_ups(), self._fail, locked)
         self._results.param.watch(lambda event: self._follow_map(), "frame")
-        watch(self._switch_layers, "layers")
-        watch(lambda event: self._apply_settings(), "settings")
-        watch(lambda *events: self._stop_sweep(), ["system", "plane", "t_max"])
-        watch(lambda *events: self._show_curves(None), "system")
+        state.param.watch(self._switch_layers, "layers")
+        state.param.watch(lambda event: self._apply_settings(), "settings")
+        state.param.watch(lambda *events: self._stop_sweep(), ["system", "plane", "t_max"])
+        state.param.watch(lambda *events: self._show_curves(None), "system")
 
     def _list_follow_ups(self) -> list[FollowUp]:
         """Return the analyses of each complete map."""

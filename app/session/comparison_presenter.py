@@ -16,7 +16,7 @@ from app.views.maps.map_plots import MapsView
 from engine import EscapeMap, Fate, MapSpec
 from engine.foundations.wording import format_share, format_whole
 from engine.systems.review.potential_review import SystemReview
-from plots.texts.accepted_potentials import refusal
+from plots.texts.accepted_potentials import page_refusal
 
 
 class ComparisonPresenter:
@@ -82,7 +82,7 @@ class ComparisonPresenter:
             return
         if reviewed is None or reviewed.system != view.system:
             self._review_request.submit(review_job(view.system))
-        elif (problem := refusal(reviewed)) is not None:
+        elif (problem := page_refusal(reviewed)) is not None:
             self._refuse_system(problem)
         elif self._map is not None:
             self._request_map(view, reviewed, self._map.spec)

@@ -64,7 +64,17 @@ class LinkPresenter:
         progress: ProgressView,
         notice: Notice,
     ) -> None:
-        """Connect the links with the other parts of the page, and write a link for each change of the state."""
+        """Connect the links with the other parts of the page, and write a link for each change of the state.
+
+        Parameters
+        ----------
+        potential
+            Reviews the systems of links.
+        browser
+            Writes links to the address of the page.
+        progress, notice
+            Show that a review runs, and messages about links.
+        """
         self._potential, self._browser = potential, browser
         self._progress, self._notice = progress, notice
         self.state.param.watch(self._write, list(LINKED))
@@ -151,7 +161,8 @@ class LinkPresenter:
             # "Back" on a page also goes through the entries of its frames, so an embedded page makes no entries.
             makes_entry = not self.embedded and {event.name for event in events} != {"chosen"}
             self._write_address(self.history.record() if makes_entry else self.history.entry)
-            self.open_link.show(write_link(self.state))
+            if self.embedded:
+                self.open_link.show(write_link(self.state))
 
     def _write_address(self, entry: int) -> None:
         self._browser.write_link(write_link(self.state, embedded=self.embedded), entry)

@@ -160,7 +160,6 @@ class MapPresenter:
             process_state().metrics.first_frame.observe(time.monotonic() - self._requested_at)
             self._requested_at = None
         with pn.io.hold():
-            self.view.ranges.set_home(replace(frame.spec, window=None))
             self.view.show(frame, columns)
             self.view.grid.mark_stale(False)
             self.progress.show(frame)

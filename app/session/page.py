@@ -52,7 +52,7 @@ def link_sentence(view: View) -> str:
 
 
 def _shown_formula(system: System) -> str:
-    """Return a typed formula without its clauses, which may contain names; empty if the formula is long or contains other words.
+    """Return a typed formula without its clauses, which may contain names; empty for a long formula or one with unknown words.
 
     Other programs show the result as this server's words, whoever wrote the link.
     """

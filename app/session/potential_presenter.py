@@ -13,7 +13,7 @@ from engine import System
 from engine.sweeps.warmup import is_ready_for_maps
 from engine.systems.review.potential_review import SystemReview
 from engine.systems.system import TYPED
-from plots.texts.accepted_potentials import refusal
+from plots.texts.accepted_potentials import page_refusal
 
 
 @dataclass(frozen=True)
@@ -42,6 +42,13 @@ class PotentialPresenter:
     """Reviews each potential that is chosen, typed or set by a slider, and writes it to the view state if it is valid.
 
     All changes while a formula is typed, or a slider dragged, make one entry of the history.
+
+    Parameters
+    ----------
+    context
+        The session.
+    history
+        Numbers the entries of the browser's history.
     """
 
     def __init__(self, context: SessionContext, history: History) -> None:
@@ -52,14 +59,14 @@ class PotentialPresenter:
         self._waiting_proposal: _Proposal | None = None
         self._last_review: SystemReview | None = None
         self.panel = PotentialPanel(state.reviewed, context.locked(self._take))
-        self._request = LatestRequest(context.jobs, self._on_review, self._on_failure, context.locked)
+        self._request = LatestRequest(context.jobs, self._show, self._on_failure, context.locked)
         state.param.watch(lambda *events: self._follow_system(), "system")
         self.panel.show(state.reviewed)
 
     def open(self, system: System, use: Callable[[SystemReview], object], refuse: Callable[[str], None]) -> bool:
         """Use or refuse the system of a link, a preset or the browser's history; return whether its review is awaited."""
         known = self._known_review(system)
-        if known is not None and refusal(known) is None:
+        if known is not None and page_refusal(known) is None:
             self._cancel_link_review()
             use(known)
             return False
@@ -73,7 +80,7 @@ class PotentialPresenter:
             self._request.cancel()
 
     def _take(self, system: System, *, done: bool) -> None:
-        """Review a system of the panel. A running review is finished first: the maps could not follow a steady drag otherwise."""
+        """Review a system of the panel, after a running review. If each system cancelled it, no map could follow a drag."""
         proposal = _Proposal(system, self._use if done else self._use_if_ready, done=done)
         if self._proposal is None or self._proposal.refuse is not None:
             self._propose(proposal)
@@ -81,7 +88,7 @@ class PotentialPresenter:
             self._waiting_proposal = proposal
 
     def _use_if_ready(self, reviewed: SystemReview) -> None:
-        """Use an unfinished system unless its integrator must be compiled: a server can keep only some dozens of integrators."""
+        """Use an unfinished system if its integrator is compiled, because a server can keep only some dozens of integrators."""
         if is_ready_for_maps(reviewed.potential):
             self._use(reviewed)
         else:
@@ -117,22 +124,19 @@ class PotentialPresenter:
         reviews = (self._state.reviewed, self._last_review)
         return next((known for known in reviews if known is not None and known.system == system), None)
 
-    def _on_review(self, reviewed: SystemReview) -> None:
-        self._last_review = reviewed
-        self._show(reviewed)
-
     def _on_failure(self, sentence: str) -> None:
         self._finish(lambda proposal: self.panel.say(sentence) if proposal.refuse is None else proposal.refuse(sentence))
 
     def _show(self, reviewed: SystemReview) -> None:
+        self._last_review = reviewed
         self._finish(lambda proposal: self._judge(proposal, reviewed))
 
     def _judge(self, proposal: _Proposal, reviewed: SystemReview) -> None:
-        problem = refusal(reviewed)
+        problem = page_refusal(reviewed)
         if problem is None:
             proposal.use(reviewed)
         elif proposal.refuse is None:
-            self.panel.show(reviewed)
+            self.panel.show(reviewed, problem=problem)
         else:
             proposal.refuse(problem)
 

@@ -141,21 +141,25 @@ WINDOW = Format(
     lambda text: Window(*_read_numbers(text, 4)),
     lambda: "four numbers x_low,x_high,ordinate_low,ordinate_high, each low below its high",
 )
+"""Text form of a window or a box."""
 
 TIMES = Format(
     lambda times: f"{times.low:g},{times.high:g}",
     _read_times,
     lambda: "two positive numbers low,high, the first below the second",
 )
+"""Text form of a scale of escape times."""
 
 STARTS = Format(
     lambda starts: ";".join(map(_write_numbers, starts)),
     _read_starts,
     lambda: f"up to {MOST_ORBITS} starts x,ordinate, separated by semicolons",
 )
+"""Text form of the starts of the orbits."""
 
 WATCHED = Format(
     lambda watched: f"{watched.where},{watched.count},{watched.seed},{watched.radius:g}",
     _read_watched,
     lambda: f"{listed(StartsFrom)}, {listed(map(str, COUNTS))}, a seed, and log10 of a radius, such as well,5000,1,-2",
 )
+"""Text form of the starts in the player of many orbits."""

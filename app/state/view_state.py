@@ -30,6 +30,7 @@ from engine.systems.catalogue.entry import EnergyRange
 from engine.systems.catalogue.table import PAPER_ENERGIES
 from engine.systems.review.potential_review import SystemReview
 from engine.systems.system import TYPED
+from plots.layers.table import LAYERS, SETTINGS
 from plots.pictures.palette import MOST_ORBITS, PALETTES, Palette
 from plots.pictures.time_scale import TimeScale
 
@@ -56,6 +57,29 @@ class _Starts(param.Parameter):
             raise ValueError(f"starts={reprlib.repr(val)}: must be up to {MOST_ORBITS} pairs of finite numbers x, ordinate")
 
 
+class _Layers(param.ClassSelector):
+    """Names of layers, as a frozenset."""
+
+    def _validate(self, val: Any) -> None:
+        super()._validate(val)
+        unknown = sorted(val.difference(LAYERS))
+        if unknown:
+            raise ValueError(f"layers: {', '.join(unknown)}: must be among {', '.join(LAYERS)}")
+
+
+class _Settings(param.ClassSelector):
+    """One of its choices for each setting of the layers."""
+
+    def _validate(self, val: Any) -> None:
+        super()._validate(val)
+        if val.keys() != SETTINGS.keys():
+            raise ValueError(f"settings={reprlib.repr(val)}: must have a value for each of {', '.join(SETTINGS)}")
+        for name, value in val.items():
+            choices = list(SETTINGS[name].choices.values())
+            if value not in choices:
+                raise ValueError(f"settings: {name}={value!r}: must be one of {choices}")
+
+
 def _is_start(value: Any) -> bool:
     is_pair = isinstance(value, tuple) and len(value) == 2
     return is_pair and all(isinstance(number, int | float) and abs(number) < np.inf for number in value)
@@ -69,7 +93,10 @@ def longest_first_t_max(potential: Potential) -> float:
 
 
 class ViewState(param.Parameterized):
-    """What a session shows: the fields of `View` with their legal values, other choices, and what is known of the browser."""
+    """What a session shows: the fields of `View` with their legal values, other choices, and what is known of the browser.
+
+    `follow` calls a function now and after each change; `param.watch` calls it only after changes.
+    """
 
     system = param.ClassSelector(class_=System, default=FIRST_VIEW.system)
     plane = param.ClassSelector(class_=Slice, default=FIRST_VIEW.plane)
@@ -77,8 +104,8 @@ class ViewState(param.Parameterized):
     window = param.ClassSelector(class_=Window, default=FIRST_VIEW.window, allow_None=True)
     t_max = param.Selector(default=FIRST_VIEW.t_max, objects=list(T_MAX_CHOICES.values()))
     resolution = param.Selector(default=FIRST_VIEW.resolution, objects=list(RESOLUTION_CHOICES.values()))
-    layers = param.ClassSelector(class_=frozenset, default=FIRST_VIEW.layers, doc="names of the layers that are on")
-    settings = param.ClassSelector(class_=Mapping, default=FIRST_VIEW.settings, doc="value of each setting of the layers")
+    layers = _Layers(class_=frozenset, default=FIRST_VIEW.layers, doc="names of the layers that are on")
+    settings = _Settings(class_=Mapping, default=FIRST_VIEW.settings, doc="value of each setting of the layers")
     analysis = param.Selector(default=FIRST_VIEW.analysis, objects=list(Analysis))
     box = param.ClassSelector(class_=Window, default=FIRST_VIEW.box, allow_None=True)
     watched = param.ClassSelector(class_=WatchedStarts, default=FIRST_VIEW.watched)

@@ -34,7 +34,7 @@ class LyapunovOrbit(Result):
         (201,) path over one period, evenly spaced in time, from one side of the channel to the other and back; in a rotating
         frame, once around a closed curve. The first and the last point are equal.
     curve
-        (columns,) the exit as a row of numbers, see `engine.integrator.kernels.exit_geometry`.
+        (columns,) the exit as a row of numbers, as the kernels of the integrator read it.
     velocity
         (2,) momenta px and py at the first point, which equal ẋ and ẏ; 0 unless the frame rotates.
     others

@@ -199,7 +199,7 @@ def _find_closed_orbit(potential: Potential, energy: float, channel: int) -> Lya
     curve = line_across(potential, energy, channel, orbit.edge)
     if curve is None:
         raise _SearchError(
-            f"the line at the outer edge of the Lyapunov orbit across channel {channel} does not end on the walls of its neck; "
+            f"the line at the outer edge of the Lyapunov orbit across channel {channel} does not end on its walls; "
             "choose a lower energy"
         )
     x, y = orbit.path[:2].copy()

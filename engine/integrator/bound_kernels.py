@@ -43,25 +43,17 @@ _outlines: set[tuple[Hashable, Setting]] = set()
 
 
 @functools.lru_cache(maxsize=_CACHED_POTENTIALS)
-def load_kernels(
-    definition: Definition,
-    channels: int,
-    *,
-    sides: tuple[int, ...] = (),
-    rotation: float = 0.0,
-) -> ModuleType:
+def load_kernels(definition: Definition, setting: Setting, rotation: float = 0.0) -> ModuleType:
     """Return the kernels of a potential: ``step``, ``fixed_step``, ``jets``, ``tangent``, ``propagate``, ``shoot``, …
 
     Parameters
     ----------
     definition
         Terms ((i, j, c), …) of the polynomial V = Σ c x^i y^j, dimensionless, or an expression.
-    channels
-        Number of exit channels, 0 or more.
-    sides
-        For each circle at which orbits end: −1 if they end inside it, 1 if they end outside.
+    setting
+        The facts besides V on which the generated code depends.
     rotation
-        Ω of the frame, finite, dimensionless.
+        Ω of the frame, finite, dimensionless; 0 unless ``setting.rotates``.
 
     Returns
     -------
@@ -69,7 +61,6 @@ def load_kernels(
     first use of a kernel for this structure loads the generated functions that it calls from the disk cache, or compiles them,
     which takes seconds.
     """
-    setting = Setting(channels, sides, rotation != 0.0)
     code, module_name, functions = _find_or_generate(find_structure(definition, setting))
     _outlines.add((_outline(definition), setting))
     coefficients = code.tabulate(definition, rotation)

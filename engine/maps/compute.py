@@ -13,22 +13,15 @@ import numpy as np
 
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.validation import checks_types
-from engine.maps.analyses.reruns import SAME_STARTS
-from engine.maps.analyses.trust import TrustTest, find_unlike_neighbours
+from engine.maps.analyses.rounded_share import with_rounded_share
 from engine.maps.parameter_map import LinewiseRun
 from engine.maps.result import PIXEL_ARRAYS, EscapeMap, collect_map, empty_arrays
 from engine.maps.run import MapRun
 from engine.maps.spec import MapSpec
-from engine.maps.stages import OnChange, Stage, run_stages, run_to_frame
+from engine.maps.stages import OnChange, Stage, run_stages
 
 LARGEST_RUN = 2**20
 """Largest number of pixels whose orbits are in memory together. Larger maps are computed in blocks and cannot be resumed."""
-
-DEEP_PIXEL = 1e-7
-"""Distance of pixels, in units of the well, below which the share of pixels lost to double precision is estimated."""
-
-SAMPLED_SIDE = 16
-"""Approximate number of pixels per side that are sampled for `estimate_rounded_share`."""
 
 
 @shows_progress("escape map")
@@ -80,28 +73,27 @@ def compute_map(
     execution = replace(execution, **{name: value for name, value in overrides.items() if value is not None})
     if resume is not None:
         _check_resumable(spec, resume)
-    work = _begin_computation(spec, resume, coarse_first=on_frame is not None)
-    run_stages(work, execution, None if on_frame is None else lambda frame: on_frame(_in_units_of(spec, frame)))
-    result = _in_units_of(spec, _with_rounded_share(work.result(), execution))
+    work, restore = _begin_computation(spec, resume, coarse_first=on_frame is not None)
+    run_stages(work, execution, None if on_frame is None else lambda frame: on_frame(restore(frame)))
+    result = restore(with_rounded_share(work.result(), execution))
     if on_frame is not None and result.complete:
         on_frame(replace(result, batch=None))
     return result
 
 
-def _begin_computation(spec: MapSpec, resume: EscapeMap | None, *, coarse_first: bool) -> MapRun | LinewiseRun | BlockwiseRun:
-    """Return the computation of a map, in units of the well or, along a parameter, in the units of the request."""
+def _begin_computation(
+    spec: MapSpec, resume: EscapeMap | None, *, coarse_first: bool
+) -> tuple[MapRun | LinewiseRun | BlockwiseRun, Callable[[EscapeMap], EscapeMap]]:
+    """Return the computation of a map, and a function that converts its maps to the units of the request."""
     keeps_states = spec.resolution[0] * spec.resolution[1] <= LARGEST_RUN
     if spec.plane.parameter is not None:
-        return LinewiseRun(spec, resume, keeps_states=keeps_states)
+        # Each line has its own units, so its maps are converted already.
+        return LinewiseRun(spec, resume, keeps_states=keeps_states), lambda linewise: linewise
+    restore = partial(EscapeMap.restored, spec=spec)
     if not keeps_states:
-        return BlockwiseRun(spec.in_well_units(), LARGEST_RUN)
+        return BlockwiseRun(spec.in_well_units(), LARGEST_RUN), restore
     earlier = None if resume is None else resume.in_well_units()
-    return MapRun(spec.in_well_units(), earlier, coarse_first=coarse_first)
-
-
-def _in_units_of(spec: MapSpec, escape_map: EscapeMap) -> EscapeMap:
-    """Convert a map of `_begin_computation` to the units of its request."""
-    return escape_map if spec.plane.parameter is not None else escape_map.restored(spec)
+    return MapRun(spec.in_well_units(), earlier, coarse_first=coarse_first), restore
 
 
 def _check_resumable(spec: MapSpec, resume: EscapeMap) -> None:
@@ -111,17 +103,6 @@ def _check_resumable(spec: MapSpec, resume: EscapeMap) -> None:
     different_fields = [field.name for field in fields(spec) if getattr(resume.spec, field.name) != getattr(spec, field.name)]
     if different_fields not in ([], ["t_max"]) or resume.spec.t_max > spec.t_max:
         raise ValueError(f"resume: a map with another {', '.join(different_fields)}; must be equal but for a smaller t_max")
-
-
-def _with_rounded_share(result: EscapeMap, execution: Execution) -> EscapeMap:
-    """Return a map of `_begin_computation` with `EscapeMap.rounded_share`, which is estimated for complete deep zooms only."""
-    spacings = (np.ptp(axis) / max(axis.size - 1, 1) for axis in (result.x, result.ordinate))
-    # The spacing of a single row or column is 0.
-    is_deep = result.spec.plane.parameter is None and 0.0 < min(spacings) < DEEP_PIXEL
-    if not (result.complete and is_deep):
-        return result
-    share = estimate_rounded_share(result, replace(execution, on_progress=None))
-    return result if execution.is_cancelled else replace(result, rounded_share=share)
 
 
 def row_blocks(spec: MapSpec, max_pixels: int) -> Iterator[np.ndarray]:
@@ -194,36 +175,3 @@ class BlockwiseRun:
     def result(self) -> EscapeMap:
         """Return the map so far. It has no integration state."""
         return self.frame()
-
-
-def estimate_rounded_share(escape_map: EscapeMap, execution: Execution = DEFAULT_EXECUTION) -> float:
-    """Estimate the share of pixels of a complete map whose fate or crossings change with the errors of double precision.
-
-    The estimate is based on about `SAMPLED_SIDE`² pixels, evenly spaced. Those that are bounded without evidence, or have another
-    outcome than one of their neighbours in this sample, are integrated again from the same starts with `SECOND_TOLERANCE`, so
-    that only the errors of the integration differ. The others count as unchanged. If an outcome changes, one of the two outcomes
-    is wrong. The share of changes is therefore at most the sum of the shares of wrong pixels in both integrations.
-
-    Parameters
-    ----------
-    escape_map
-        A complete map of one potential.
-    execution
-        How the computation runs.
-
-    Returns
-    -------
-    The share of the sampled interior pixels whose fate or number of crossings changes, 0 to 1; NaN without interior pixels.
-    """
-    sample = _sample_pixels(escape_map)
-    has_unlike_neighbour = find_unlike_neighbours(sample.fate, sample.crossings)
-    return run_to_frame(TrustTest(sample, has_unlike_neighbour, SAME_STARTS), execution).doubtful_share
-
-
-def _sample_pixels(escape_map: EscapeMap) -> EscapeMap:
-    """Return evenly spaced pixels of a map, with the request of the whole map."""
-    row_step, column_step = (max(1, side // SAMPLED_SIDE) for side in escape_map.fate.shape)
-    rows, columns = slice(row_step // 2, None, row_step), slice(column_step // 2, None, column_step)
-    arrays = {name: getattr(escape_map, name)[rows, columns] for name in PIXEL_ARRAYS}
-    x, ordinate = escape_map.x[columns], escape_map.ordinate[rows]
-    return replace(escape_map, x=x, ordinate=ordinate, batch=None, **arrays)

@@ -115,7 +115,7 @@ class Measure:
     meaning
         Meaning of the measure in about five words.
     compute
-        Returns the result for a `MeasuredMap`; None if the measure is not defined for this map.
+        Returns the result for a measured map; None if the measure is not defined for this map.
     quantities
         Numbers of the measure.
     help
@@ -131,7 +131,7 @@ class Measure:
     terms
         Terms of the glossary that the measure needs, with their definitions.
     other_variables
-        Returns further variables of the dataset, given a `SweepPoint` and the result; None if there are none.
+        Returns further variables of the dataset, given a point of a sweep and the result; None if there are none.
     """
 
     name: str

@@ -95,8 +95,12 @@ def prepare_for_maps(potential: Potential) -> None:
     if is_ready_for_maps(potential):
         return
     energy = _open_energy(potential)
-    spec = small_map(potential, energy)
-    _map_compilations.run(lambda: find_lyapunov_orbits(potential, energy), lambda: compute_map(spec, execution=_EXECUTION))
+    _map_compilations.run(
+        # The first use of the kernels generates their code, and the calls of a search and of a map compile it.
+        lambda: potential.in_well_units.well.kernels,
+        lambda: find_lyapunov_orbits(potential, energy),
+        lambda: compute_map(small_map(potential, energy), execution=_EXECUTION),
+    )
 
 
 def prepare_for_evidence(potential: Potential) -> None:

@@ -170,12 +170,13 @@ class Motion(Result):
         parameters = {"omega_1": omega_1, "omega_2": omega_2, "epsilon": epsilon}
         for name, value in parameters.items():
             checked_between(name, value, *WELL_PARAMETERS[name].range)
-        is_changed = not omega_1 == omega_2 == epsilon == 1.0
-        if is_changed and not np.isfinite(self.hessian_matrix(0.0, 0.0)).all():
+        if omega_1 == omega_2 == epsilon == 1.0:
+            return self
+        if not np.isfinite(self.hessian_matrix(0.0, 0.0)).all():
             raise ValueError(f"omega_1, omega_2, epsilon: V of {self.name} has no expansion about the origin; must be 1")
         changes = ", ".join(f"{symbol_of(name)}={value:g}" for name, value in parameters.items() if value != 1.0)
         form = self.form.with_parameters(omega_1, omega_2, epsilon)
-        return self._copy_with(name=f"{self.name} ({changes})" if changes else self.name, form=form)
+        return self._copy_with(name=f"{self.name} ({changes})", form=form)
 
     def check_at_rest(self, what: str) -> None:
         """Raise ValueError if the frame rotates. `what` names, in the plural, computations that rely on time reversal."""

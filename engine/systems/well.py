@@ -163,9 +163,8 @@ class Well(ReadOnlyArrays):
 
     @property
     def kernels(self) -> ModuleType:
-        """The compiled kernels, see `load_kernels`, for a potential in units of its well."""
-        channels, sides, _ = self.setting
-        return load_kernels(self.form.definition, channels, sides=sides, rotation=self.rotation)
+        """The kernels, see `load_kernels`, for a potential in units of its well. The first use generates their code."""
+        return load_kernels(self.form.definition, self.setting, self.rotation)
 
     @property
     def fixed_step(self) -> float:

@@ -10,7 +10,7 @@ from engine.systems.review.energy_ranges import HIGHEST_SHOWN
 from plots.pictures.palette import PAPER
 
 
-def refusal(review: PotentialReview) -> str | None:
+def page_refusal(review: PotentialReview) -> str | None:
     """Return the reason why the page cannot show a potential; None if it can."""
     if review.refusal is not None:
         return review.refusal

@@ -86,7 +86,7 @@ def test_escape_closes_a_drawer_from_a_box_in_it(explorer: ExplorerPage) -> None
 
 @pytest.mark.parametrize("touch", [False, True])
 def test_the_energy_and_the_maps_stay_in_view_beside_a_drawer(open_explorer: Callable[..., ExplorerPage], touch: bool) -> None:
-    first, *others = [(420, 850)] if touch else [(1280, 720), (1024, 768), (768, 1024)]
+    first, *others = [(420, 850), (375, 667)] if touch else [(1280, 720), (1024, 768), (768, 1024)]
     explorer = open_explorer(*first, QUICK, touch=touch)
     explorer.press("Other …")
     expect(explorer.page.locator(".formula-box textarea")).to_be_visible()

@@ -147,6 +147,19 @@ def test_hovering_describes_the_pixel(shared: ExplorerPage, first_map: EscapeMap
     expect(shared.text("invariant curves separate it from every exit")).to_be_visible()
 
 
+_PAINTED = """() => [...Bokeh.index.all_views()]
+    .find(view => view.model.name == 'times').canvas_view.primary.el.toDataURL()"""
+
+
+def test_a_picture_is_not_painted_again_when_the_mouse_moves(shared: ExplorerPage) -> None:
+    shared.hover("basins", 0.1, 0.05)
+    expect(shared.text(re.compile(r"\(0\.\d+, 0\.0\d+\)"))).to_be_visible()
+    painted = shared.page.evaluate(_PAINTED)
+    shared.hover("basins", -0.2, 0.3)
+    expect(shared.text(re.compile(r"\(−0\.\d+, 0\.\d+\)"))).to_be_visible()
+    assert shared.page.evaluate(_PAINTED) == painted
+
+
 def begin_a_long_map(explorer: ExplorerPage) -> None:
     """Choose a map that takes longer than a test, and wait for its first pixels."""
     explorer.choose("t_max", "1 000 000")

@@ -17,6 +17,9 @@ from tests.browser.explorer_page import ExplorerPage
 LIGHT_LINES = """() => [...Bokeh.index.all_views()]
     .filter(view => view.model.data_source?.name == 'zero_velocity_curve')
     .every(view => view.glyph.line_color.value >>> 24 > 200)"""
+CROSSHAIR_COLOURS = """() => [...new Set([...Bokeh.index.all_views()]
+    .filter(view => view.model.type == 'Span')
+    .map(view => view.visuals.line.get_line_color()))]"""
 TITLE_COLOUR = """() => {
     const view = [...Bokeh.index.all_views()].find(view => view.model.name == 'basins')
     return getComputedStyle(view.el).getPropertyValue('--bk-text-color').trim()
@@ -41,6 +44,7 @@ def test_the_dark_theme_has_light_lines_and_titles_and_is_stored(open_explorer: 
     }}""")
     assert luminance(explorer) < 50
     assert explorer.page.evaluate(TITLE_COLOUR) == "rgb(236, 239, 243)"
+    assert explorer.page.evaluate(CROSSHAIR_COLOURS) == ["rgb(236, 239, 243)"]
     explorer.page.reload()
     explorer.wait_until_complete()
     explorer.page.wait_for_function(LIGHT_LINES)

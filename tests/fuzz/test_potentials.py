@@ -17,7 +17,7 @@ from engine.results import PotentialReview
 from engine.systems.parameters import WELL_PARAMETERS
 from engine.systems.review.potential_review import review_system
 from engine.systems.system import TYPED
-from plots.texts.accepted_potentials import refusal
+from plots.texts.accepted_potentials import page_refusal
 from tests.app.state.opened_link import open_link
 from tests.contracts.potentials import WELLS
 from tests.fuzz.hostile import LONGEST_MESSAGE, formulas, mostly, result_or_error
@@ -42,7 +42,7 @@ def reviewed(potential: Potential) -> PotentialReview:
 
 def check_display(system: System, review: PotentialReview) -> None:
     """Check the energy range, starts and link of an accepted potential."""
-    if refusal(review) is not None:
+    if page_refusal(review) is not None:
         return
     state = ViewState()
     state.show_system(review_system(system))

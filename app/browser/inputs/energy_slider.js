@@ -1,4 +1,5 @@
 // @ts-check
+import {dispatch, listen} from "../modules/energy_events.js"
 import {CountedValue} from "./counted_value.js"
 
 /** Largest number of decimals of a shown energy. */
@@ -42,8 +43,6 @@ export function render({model, el}) {
     number.hidden = model.note !== ""
     value.follow()
   }
-  const dispatch = (/** @type {string} */ event, /** @type {number} */ energy) =>
-    document.dispatchEvent(new CustomEvent(event, {detail: energy}))
   const drag = (/** @type {number} */ energy) => {
     name.textContent = `${model.label}: `
     number.hidden = false
@@ -70,15 +69,11 @@ export function render({model, el}) {
   slider.addEventListener("input", () => drag(value.read()))
   for (const event of ["change", "pointerup", "pointercancel"]) slider.addEventListener(event, release)
   slider.addEventListener("keydown", press)
-  const show = (/** @type {Event} */ event) => write(clamped(/** @type {CustomEvent} */ (event).detail))
-  document.addEventListener("energyshown", show)
+  const show = (/** @type {number} */ energy) => write(clamped(energy))
+  model.on("lifecycle:remove", listen("energyshown", show))
   // The engine may be loaded while the user holds the slider.
   const answer = () => value.isUnsent && dispatch("energydragged", value.read())
-  document.addEventListener("energyasked", answer)
-  model.on("lifecycle:remove", () => {
-    document.removeEventListener("energyshown", show)
-    document.removeEventListener("energyasked", answer)
-  })
+  model.on("lifecycle:remove", listen("energyasked", answer))
   model.on(["low", "high", "decimals", "label", "note", "disabled", "shown"], follow)
   follow()
 }

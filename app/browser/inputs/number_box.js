@@ -1,4 +1,5 @@
 // @ts-check
+import {listen} from "../modules/energy_events.js"
 import {CountedValue} from "./counted_value.js"
 
 /**
@@ -31,11 +32,8 @@ export function render({model, el}) {
   // Enter without a change of the number fires no change event.
   input.addEventListener("keydown", event => event.key === "Enter" && finish())
   // Show a number that the server has not received yet, without the rounding errors in its last digits.
-  const show = (/** @type {any} */ event) => {
-    if (!value.isUnsent) write(Number(event.detail.toPrecision(10)))
-  }
-  if (model.shown_event) document.addEventListener(model.shown_event, show)
-  model.on("lifecycle:remove", () => document.removeEventListener(model.shown_event, show))
+  const show = (/** @type {number} */ number) => !value.isUnsent && write(Number(number.toPrecision(10)))
+  if (model.shown_event) model.on("lifecycle:remove", listen(model.shown_event, show))
   model.on(["step", "disabled", "shown"], follow)
   follow()
 }

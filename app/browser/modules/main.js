@@ -1,6 +1,7 @@
 // @ts-check
 /** Connects the component on the page (`app/views/panels/engine_component.py`) with the modules. */
 
+import {dispatch, listen} from "./energy_events.js"
 import {Card} from "./gestures/card.js"
 import {Frames} from "./workers/frames.js"
 import {highlightPixels} from "./painting/legend.js"
@@ -46,12 +47,10 @@ export function start(model, el) {
   const frames = new Frames(pool, workerCount(), (view, pixels, isMoving) => preview.show(view, pixels, isMoving))
   /** @type {Preview} */
   const preview = new Preview(find, findSource, frames, new Overlay(el))
-  const announceEnergy = (/** @type {number} */ energy) =>
-    document.dispatchEvent(new CustomEvent("energyshown", {detail: energy}))
   const player = new EnergyPlayer(
     energy => {
       preview.showEnergy(energy)
-      announceEnergy(energy)
+      dispatch("energyshown", energy)
     },
     energy => {
       preview.release()
@@ -64,8 +63,8 @@ export function start(model, el) {
     () => find("maps").data,
     () => model.view,
   )
-  document.addEventListener("energydragged", event => preview.showEnergy(/** @type {CustomEvent} */ (event).detail))
-  document.addEventListener("energyreleased", () => preview.release())
+  listen("energydragged", energy => preview.showEnergy(energy))
+  listen("energyreleased", () => preview.release())
   // The last system from the server, and its compiled modules.
   /** @type {{system: import("./engine/system.js").System, modules: import("./engine/integrator.js").Modules} | null} */
   let compiled = null
@@ -106,5 +105,5 @@ export function start(model, el) {
   void receiveSystem()
   if (model.command.name === "play") runCommand()
   // If the slider is held already, it answers with its energy.
-  document.dispatchEvent(new Event("energyasked"))
+  dispatch("energyasked")
 }

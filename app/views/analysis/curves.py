@@ -11,11 +11,12 @@ from typing import Any
 import numpy as np
 import panel as pn
 from bokeh.events import Tap
-from bokeh.models import Range1d, Span
+from bokeh.models import Range1d
 
 from app.state.view_state import ViewState
 from app.views.components.charts import ChartView
 from app.views.components.collapsible_section import InTurns, Later, at_once
+from app.views.components.plots import moving_line
 from app.views.components.texts import TextPane, plain_symbol
 from app.views.components.widgets import FULL_HEIGHT, button, flex_row
 from engine import Measure, System
@@ -23,7 +24,6 @@ from engine.foundations.wording import format_number, format_whole
 from engine.results import Sweep
 from engine.systems.parameters import symbol_of
 from plots.pictures.charts import CURVE_PANELS, SHARES, Shape, measure_frame, sweep_charts
-from plots.pictures.palette import MARK_EDGE
 
 START = "Compute the curves"
 """Label of the button while nothing is computed."""
@@ -81,7 +81,7 @@ class CurvesView:
             SHARES.name: ChartView(measure_frame(SHARES), _SHARES_TEXT, Shape.LINE, **options),
             **{each.name: ChartView(measure_frame(each), _panel_text(each), **options) for each in CURVE_PANELS},
         }
-        self._mark_line = Span(location=0.0, dimension="height", line_color=MARK_EDGE, line_dash="dotted")
+        self._mark_line = moving_line("height", location=0.0, line_dash="dotted")
         self._charts_in_turns = InTurns([partial(self._build_chart, chart) for chart in self._charts.values()], self._add, later)
         self._plots = pn.Column(sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=["curves"], visible=False)
         state.follow(self._follow_system, "system")

@@ -21,7 +21,6 @@ from engine.systems.parameters import WELL_PARAMETERS
 from engine.systems.review.potential_review import SystemReview
 from engine.systems.system import TYPED
 from plots.pictures.palette import MOST_CHANNELS
-from plots.texts.accepted_potentials import refusal
 from plots.texts.mathml import potential_formula, potential_symbol
 
 # Ends of the sliders of most parameters. Boxes, links and the command line allow wider ranges.
@@ -148,9 +147,8 @@ class PotentialPanel:
         self._show(used.system)
         self.show(used)
 
-    def show(self, reviewed: SystemReview, note: str = _HINT) -> None:
+    def show(self, reviewed: SystemReview, note: str = _HINT, *, problem: str = "") -> None:
         """Show the properties of the system of the widgets. Add a note, or the reason why the maps cannot show the system."""
-        problem = refusal(reviewed)
         self.typeset.object = potential_formula(reviewed.potential)
         self._write(_alert(problem) if problem else _accepted(reviewed, note))
         self._offer(reviewed.well if problem else None)

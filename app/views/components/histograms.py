@@ -37,22 +37,23 @@ class HistogramView:
 
     def __init__(self, frame: Frame, text: str) -> None:
         self._frame, self._text = frame, text
+        self._labels = CustomJSTickFormatter(code=_TICK)
         self._charts = hv.streams.Pipe(data=_empty_chart(frame))
 
     def show(self, chart: Chart) -> None:
         """Show a chart."""
         self._charts.send(chart)
 
-    def build(self) -> pn.pane.HoloViews:
-        """Return the pane with the histogram."""
-        return pn.pane.HoloViews(hv.DynamicMap(self._draw, streams=[self._charts]), margin=0, sizing_mode="stretch_width")
+    def build(self) -> pn.pane.Bokeh:
+        """Return the pane with the histogram, whose figure stays the same when other tabs have been shown in between."""
+        # Panel's pane for HoloViews would draw a new figure each time it returns to the page.
+        drawing = hv.renderer("bokeh").get_plot(hv.DynamicMap(self._draw, streams=[self._charts]))
+        return pn.pane.Bokeh(drawing.state, margin=0)
 
     def _draw(self, data: Chart) -> hv.Histogram:
         (element,) = chart_elements(data)
         x_limits = data.limits[0]
-        ticks: dict[str, Any] = {}
-        if "x" in self._frame.logarithmic and x_limits is not None:
-            ticks = {"xticks": _few_ticks(*x_limits), "xformatter": CustomJSTickFormatter(code=_TICK)}
+        ticks = {"xticks": _few_ticks(*x_limits)} if "x" in self._frame.logarithmic and x_limits is not None else {}
         return element.opts(
             color=MEASURED,
             line_color=None,
@@ -60,9 +61,12 @@ class HistogramView:
             responsive=True,
             aspect=_ASPECT,
             title="",
+            fontsize={"ticks": "12px", "labels": "12px"},
             toolbar=None,
             default_tools=[],
             hooks=[self._style],
+            xformatter=self._labels,
+            yformatter=self._labels,
             **axis_options(data),
             **ticks,
         )

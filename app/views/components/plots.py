@@ -12,7 +12,7 @@ from typing import Any
 import panel as pn
 from bokeh.events import Event
 from bokeh.model import Model
-from bokeh.models import BasicTickFormatter, CustomJSHover, CustomJSTickFormatter, GlyphRenderer, HoverTool, Range1d
+from bokeh.models import BasicTickFormatter, CustomJSHover, CustomJSTickFormatter, GlyphRenderer, HoverTool, Range1d, Span
 from bokeh.models.dom import HTML
 from bokeh.plotting import figure
 
@@ -212,6 +212,17 @@ def set_decades(axis_range: Range1d, low: float, high: float) -> None:
     set_range(axis_range, *logarithmic_limits(low, high))
 
 
+def moving_line(dimension: str, **options: Any) -> Span:
+    """Return a line across figures in the colour of the text. The figures are not painted again when the line moves."""
+    return Span(dimension=dimension, level="overlay", styles={"--bk-line-color": "var(--ui-ink)"}, **options)
+
+
+def hover_html(text: str) -> str:
+    """Return the HTML of a hover text in the type of the page, whose stylesheet does not reach into a tooltip."""
+    weighted = text.replace("<b>", '<b style="font-weight:600">')
+    return f'<div style="font-size:12px;line-height:16px;color:var(--ui-ink)">{weighted}</div>'
+
+
 def chart_hover(text: str, renderers: Sequence[GlyphRenderer], **options: Any) -> HoverTool:
     """Return a tool that describes the points of a chart under the mouse.
 
@@ -225,6 +236,5 @@ def chart_hover(text: str, renderers: Sequence[GlyphRenderer], **options: Any) -
         Options of `bokeh.models.HoverTool`.
     """
     formatters = {value: CustomJSHover(code=HOVER_FORMATS[name]) for value, name in _HOVER_VALUE.findall(text)}
-    html = _HOVER_VALUE.sub(r"\1{custom}", text)
-    tooltips = f'<div style="font-size:12px;line-height:16px;color:var(--ui-ink)">{html}</div>'
+    tooltips = hover_html(_HOVER_VALUE.sub(r"\1{custom}", text))
     return HoverTool(tooltips=tooltips, formatters=formatters, renderers=list(renderers), visible=False, **options)

@@ -7,6 +7,7 @@ from pathlib import Path
 from bokeh.models import ColumnDataSource, CustomJSHover, HoverTool, Range1d
 
 from app.browser.javascript import callback_code
+from app.views.components.plots import hover_html
 from engine import Evidence, Fate
 from engine.propagation.fates import describe_evidence
 from plots.layers.table import LAYERS
@@ -21,10 +22,7 @@ _COORDINATE_CODE = callback_code(_MODULE, "coordinate(value, range)")
 
 # The formatter reads all columns, so the column that it is written for only needs finite numbers.
 _DETAILS_HTML = '<div style="white-space:pre-line">@crossing_class{custom}</div>'
-_TOOLTIP_HTML = (
-    '<div style="font-size:12px;line-height:16px;color:var(--ui-ink)"><b>@fate{{custom}}</b>'
-    "{details}<div>($x{{custom}}, $y{{custom}})</div></div>"
-)
+_FATE_HTML, _START_HTML = "<b>@fate{custom}</b>", "<div>($x{custom}, $y{custom})</div>"
 
 _FATE_NAMES = list(OUTCOMES.values())
 
@@ -84,5 +82,5 @@ def _fate_and_start_formatters(source: ColumnDataSource, x: Range1d, ordinate: R
 
 def _hover_tool(details: str, formatters: dict[str, CustomJSHover]) -> HoverTool:
     """Return a tool without renderers. Its text has details (HTML) between the fate and the coordinates."""
-    text = _TOOLTIP_HTML.format(details=details)
+    text = hover_html(_FATE_HTML + details + _START_HTML)
     return HoverTool(tooltips=text, formatters=formatters, attachment="vertical", show_arrow=False, renderers=[])

@@ -67,5 +67,5 @@ function isSamePlace(one, other) {
  */
 export function coordinate(value, range) {
   const decimals = Math.min(Math.max(Math.ceil(3 - Math.log10(range.end - range.start)), 2), 17)
-  return value.toFixed(decimals)
+  return value.toFixed(decimals).replace("-", "−")
 }

@@ -1,9 +1,9 @@
-"""The pictures of a slice, linked in zoom, hover and clicks. They share a data source, so one message repaints all pictures."""
+"""The pictures of a map. They share ranges, tools and a data source, so that one message repaints all pictures."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -80,7 +80,17 @@ def prepare_curves(spec: MapSpec) -> None:
 
 
 class MapsView:
-    """Draws the frames of maps, with marks and curves. With `alone`, only the picture shown large is visible."""
+    """Draws the frames of maps, with marks and curves.
+
+    Parameters
+    ----------
+    state
+        View state, which the view follows.
+    actions
+        Callbacks for the user's actions.
+    alone
+        Whether only the picture shown large is visible.
+    """
 
     def __init__(self, state: ViewState, actions: MapActions, *, alone: bool = False) -> None:
         self._state, self._actions = state, actions
@@ -127,6 +137,7 @@ class MapsView:
     def show(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
         """Paint a frame, and go to the window of a new map."""
         if frame.spec != self._spec:
+            self.ranges.set_home(replace(frame.spec, window=None))
             self.ranges.follow(frame.spec.find_window())
             self._spec, self._results = frame.spec, {}
             self._show_curves(frame.spec)

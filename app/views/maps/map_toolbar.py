@@ -8,9 +8,10 @@ from functools import partial
 from typing import Any
 
 import panel as pn
-from bokeh.models import BoxSelectTool, BoxZoomTool, CrosshairTool, HoverTool, PanTool, Span, Toolbar, WheelZoomTool
+from bokeh.models import BoxSelectTool, BoxZoomTool, CrosshairTool, HoverTool, PanTool, Toolbar, WheelZoomTool
 
 from app.state.view_state import ViewState
+from app.views.components.plots import moving_line
 from app.views.components.widgets import SegmentedControl, button, flex_row, keep_place
 
 
@@ -40,7 +41,7 @@ class MapTools:
 
     def __init__(self, state: ViewState, *hovers: HoverTool) -> None:
         pan, wheel = PanTool(), WheelZoomTool()
-        spans = [Span(dimension=dimension, line_alpha=0.35) for dimension in ("width", "height")]
+        spans = [moving_line(dimension, line_alpha=0.35) for dimension in ("width", "height")]
         tools = [pan, wheel, CrosshairTool(overlay=spans), *hovers]
         self.toolbar = Toolbar(tools=tools, active_drag=pan, active_scroll=wheel)
         self._drag_tools: dict[Drag, Any] = {Drag.PAN: pan}

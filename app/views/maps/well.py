@@ -31,7 +31,13 @@ def well_spec(potential: Potential, energy: float) -> MapSpec:
 
 
 class WellView:
-    """Draws the whole interior at the energy of the map. With an axis h, the energy is the chosen orbit's, or the highest."""
+    """Draws the whole interior at the energy of the map. With an axis h, the energy is the chosen orbit's, or the highest.
+
+    Parameters
+    ----------
+    state
+        View state, whose palette has the colours of exits and orbits.
+    """
 
     def __init__(self, state: ViewState) -> None:
         self._state = state

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from html import escape
+from itertools import groupby
 
 import panel as pn
 
@@ -121,11 +122,7 @@ class OrbitControls:
     def show_indicators(self, verdicts: Sequence[IndicatorVerdict]) -> None:
         """Show the verdict of each chaos indicator on the chosen orbit."""
         self._verdicts = verdicts
-        rows = "".join(
-            f"<tr><th scope=row>{one.name}<br>{_value(one.value)}</th>"
-            f"<td><b>{one.conclusion or 'no verdict'}</b><br>{escape(one.sentence)}</td></tr>"
-            for one in verdicts
-        )
+        rows = _indicator_rows(verdicts)
         self.indicators.object = with_terms(f"<table aria-label='chaos indicators'>{rows}</table>") if rows else ""
 
     def show(self, orbits: Sequence[ChosenOrbit], chosen: int) -> None:
@@ -166,6 +163,17 @@ class OrbitControls:
             self._actions.add(*start)
         else:
             self.say("Type a number into both boxes first.")
+
+
+def _indicator_rows(verdicts: Sequence[IndicatorVerdict]) -> str:
+    """Return the rows of the table of indicators. Neighbours with the same verdict share its cell."""
+    rows = ""
+    for (conclusion, sentence), group in groupby(verdicts, lambda one: (one.conclusion, one.sentence)):
+        names = [f"<th scope=row>{one.name}<br>{_value(one.value)}</th>" for one in group]
+        cell = f"<td rowspan={len(names)}><b>{conclusion or 'no verdict'}</b><br>{escape(sentence)}</td>"
+        first, *others = names
+        rows += f"<tr>{first}{cell}</tr>" + "".join(f"<tr>{name}</tr>" for name in others)
+    return rows
 
 
 def _list_label(orbits: Sequence[ChosenOrbit], index: int) -> str:

@@ -36,13 +36,13 @@ from app.views.components.orbit_lines import (
     opacities,
     orbit_colours,
 )
-from app.views.components.plots import FigurePane, history_figure, set_range
+from app.views.components.plots import FigurePane, history_figure, moving_line, set_range
 from engine import CASES, integrate_orbit, start_states
 from engine.slices.planes import SECTION
 from plots.pictures.histories import has_log_time
 from plots.pictures.orbit_curves import OrbitCurves, compute_orbit_curves
 from plots.pictures.orbit_quantities import ORBIT_QUANTITIES, OrbitQuantity
-from plots.pictures.palette import MARK_EDGE, THRESHOLD
+from plots.pictures.palette import THRESHOLD
 
 # The history from which times are read: all histories have the same times.
 _FIRST_HISTORY = ORBIT_QUANTITIES[0].name
@@ -68,7 +68,7 @@ class OrbitPlots:
         self._histories = {name: line_source(f"{name}_histories") for name in self._y_ranges}
         self._bands = {name: line_source(f"{name}_bands") for name in self._y_ranges}
         self._plots: dict[str, figure] = {}
-        self._time_mark = Span(location=0.0, dimension="height", line_color=MARK_EDGE, line_dash="dotted", visible=False)
+        self._time_mark = moving_line("height", location=0.0, line_dash="dotted", visible=False)
         self._orbits: list[tuple[int, OrbitCurves]] = []
 
     def parts(self) -> list[Build]:

@@ -192,7 +192,10 @@ def _mode_of(plane: Slice) -> str:
 
 
 def _with_axes(plane: Slice, axes: tuple[Any, Any]) -> Slice:
-    """Return a slice with other axes, and with the determined momentum and the held values if the new axes permit them."""
+    """Return a slice with other axes, and with the determined momentum and the held values if the new axes permit them.
+
+    Raises ValueError if no slice has these axes.
+    """
     kept = tuple((c, value) for c, value in plane.fixed if c not in axes)
     for solved, sign, fixed in ((plane.solved, plane.sign, kept), (None, 1, kept), (None, 1, ())):
         try:

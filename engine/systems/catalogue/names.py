@@ -41,13 +41,15 @@ class ByName[Value](Mapping[str, Value]):
 
     def __getitem__(self, name: str) -> Value:
         """Return the value of a name; for an unknown name, raise an `UnknownNameError` that suggests similar names."""
-        # The type is not checked statically, because users may pass any object.
-        key: object = name
-        if isinstance(key, str) and key in self._names:
-            return self._make(key)
+        if name in self:
+            return self._make(name)
         similar_names = self._find_similar(str(name))
         question = f"did you mean {' or '.join(map(repr, similar_names))}? The" if similar_names else "the"
         raise UnknownNameError(f"{self._kind} {short_repr(name)}: {question} names are {', '.join(self._names)}")
+
+    def __contains__(self, name: object) -> bool:
+        # Users may pass any object.
+        return isinstance(name, str) and name in self._names
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._names)

@@ -172,8 +172,6 @@ class ExpressionForm:
 
     def with_parameters(self, omega_1: float, omega_2: float, epsilon: float) -> ExpressionForm:
         """Return ε V, but keep its constant and linear terms about the origin, and scale its quadratic terms by ω1 and ω2."""
-        if omega_1 == omega_2 == epsilon == 1.0:
-            return self
         vxx, vxy, vyy = map(float, self.hessian(0.0, 0.0))
         along_x, along_y = map(float, self.gradient(0.0, 0.0))
         changes = {

@@ -12,7 +12,7 @@ import reprlib
 from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
-from functools import partial
+from functools import lru_cache, partial
 from typing import Any
 
 from engine.expressions.exact_polynomials import exact_terms
@@ -25,8 +25,8 @@ from engine.systems.forms.polynomial_form import COEFFICIENT_RANGE, MOST_TERMS
 from engine.systems.formulas.formula_grammar import Parser
 from engine.systems.formulas.formula_tokens import FormulaError, tokenize
 from engine.systems.formulas.formula_values import FormulaValue, constant_of
-from engine.systems.formulas.formula_writer import by_degree, write_formula
-from engine.systems.formulas.outcome_clauses import Part, split_clauses
+from engine.systems.formulas.formula_writer import by_degree, write_form
+from engine.systems.formulas.outcome_clauses import Clauses, Part, split_clauses
 from engine.systems.outcomes import end_kinds
 from engine.systems.potential import Potential
 
@@ -104,12 +104,12 @@ def parse_formula(text: str, name: str | None = None, parameters: Mapping[str, f
     """
     if len(text) > LONGEST_TEXT:
         raise FormulaError(LONGEST_TEXT, f"the text has {len(text)} characters; at most {LONGEST_TEXT} characters are allowed")
-    values, clauses = _exact_values(text, parameters or {}), split_clauses(text)
+    clauses = split_clauses(text)
+    values = _exact_values(_letters_of(clauses), parameters or {})
     form = _make_form(Parser(clauses.formula, values).parse())
     evaluate_number = partial(_evaluate_number, values=values)
     ends = [clause.evaluate(evaluate_number) for clause in clauses.ends]
-    title = name or write_formula(Potential("", form))
-    potential = Potential(title, form, ends=ends, mass=clauses.find_mass(evaluate_number))
+    potential = Potential(name or write_form(form), form, ends=ends, mass=clauses.find_mass(evaluate_number))
     if clauses.well is not None:
         potential = potential.at_minimum(*map(evaluate_number, clauses.well))
     return replace(potential, exit_names=clauses.exits) if clauses.exits else potential
@@ -128,10 +128,14 @@ def _make_form(value: FormulaValue) -> Form:
     return as_form(tuple((i, j, float(expanded[i, j])) for i, j in sorted(expanded, key=by_degree)))
 
 
+@lru_cache(maxsize=64)
 def formula_letters(text: str) -> tuple[str, ...]:
     """Return the letters of a formula, then those of its clauses; FormulaError for an unknown character or too many letters."""
+    return _letters_of(split_clauses(text))
+
+
+def _letters_of(clauses: Clauses) -> tuple[str, ...]:
     letters: dict[str, int] = {}
-    clauses = split_clauses(text)
     for part in (Part(clauses.formula, 0), *clauses.numbers):
         for token in tokenize(part.text):
             if token.kind == "letter":
@@ -158,9 +162,8 @@ def checked_letter_value(name: str, value: float) -> float:
     return checked_between(name, value, -LARGEST_VALUE, LARGEST_VALUE)
 
 
-def _exact_values(text: str, parameters: Mapping[str, float]) -> dict[str, Fraction]:
+def _exact_values(letters: tuple[str, ...], parameters: Mapping[str, float]) -> dict[str, Fraction]:
     """Return the values of letters as the decimals that Python prints; ValueError for an unknown letter or illegal value."""
-    letters = formula_letters(text)
     for name in parameters:
         if name not in letters:
             legal = f"its letters are {', '.join(letters)}" if letters else "it has no letters"

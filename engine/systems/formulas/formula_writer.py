@@ -35,10 +35,11 @@ def write_formula(potential: Potential, digits: int | None = None) -> str:
     """
     if digits is not None:
         digits = checked_count("digits", digits, 1, _MOST_DIGITS)
-    return _write_form(potential.form, digits) + write_clauses(potential.ends, potential.exit_names, potential.mass)
+    return write_form(potential.form, digits) + write_clauses(potential.ends, potential.exit_names, potential.mass)
 
 
-def _write_form(form: Form, digits: int | None) -> str:
+def write_form(form: Form, digits: int | None = None) -> str:
+    """Return a form as plain text, see `write_formula`."""
     if isinstance(form, ExpressionForm):
         return write_expression(form.expression, digits)
     terms = sorted(form.terms, key=by_degree)

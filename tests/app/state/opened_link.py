@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from app.state.permalink import fit_to_system, linked_view, read_link, refused_link, without_system
 from app.state.view_state import ViewState
 from engine.systems.review.potential_review import review_system
-from plots.texts.accepted_potentials import refusal
+from plots.texts.accepted_potentials import page_refusal
 
 
 def open_link(parameters: Mapping[str, str]) -> tuple[ViewState, list[str]]:
@@ -15,7 +15,7 @@ def open_link(parameters: Mapping[str, str]) -> tuple[ViewState, list[str]]:
     values, problems = read_link(parameters)
     try:
         reviewed = review_system(linked_view(values).system)
-        problem = refusal(reviewed)
+        problem = page_refusal(reviewed)
     except ValueError as error:
         problem = str(error)
     if problem is not None:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
+from app.state.view import default_settings
 from app.state.view_state import ViewState
 from engine import CASES, Plane, System
 from engine.systems.catalogue.table import PAPER_ENERGIES
@@ -70,3 +73,19 @@ def test_the_end_of_a_comparison_changes_nothing_else() -> None:
     view.param.watch(lambda *events: changed.extend(event.name for event in events), [*view.param])
     view.compare(on=False)
     assert changed == ["compared"]
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        ({"layers": frozenset({"trust", "spirals"})}, "layers: spirals: must be among judge, trust"),
+        ({"settings": {}}, "must have a value for each of images, "),
+        ({"settings": {**default_settings(), "images": 4}}, r"settings: images=4: must be one of \[1, 2, 3, 0\]"),
+    ],
+)
+def test_unknown_layers_and_illegal_settings_are_refused(values: dict[str, Any], message: str) -> None:
+    view = ViewState(layers=frozenset({"trust"}))
+    with pytest.raises(ValueError, match=message):
+        view.param.update(values)
+    assert view.layers == {"trust"}
+    assert view.settings == default_settings()

@@ -16,7 +16,7 @@ TERMS = ((2, 0, 0.5), (0, 2, 0.5))
 
 
 def test_potentials_of_one_structure_share_code_with_their_own_coefficients() -> None:
-    kernels = [bound_kernels.load_kernels(((2, 0, c), (0, 2, 0.5)), 0) for c in (0.5, 0.7)]
+    kernels = [bound_kernels.load_kernels(((2, 0, c), (0, 2, 0.5)), Setting()) for c in (0.5, 0.7)]
     assert [module.potential_value(2.0, 1.0) for module in kernels] == [2.5, 0.7 * 4 + 0.5]
     assert kernels[0].potential_value.function is kernels[1].potential_value.function
 
@@ -24,13 +24,13 @@ def test_potentials_of_one_structure_share_code_with_their_own_coefficients() ->
 def test_a_potential_of_the_same_powers_may_need_other_functions() -> None:
     setting = Setting(0, (), False)
     weak, strong = (((2, 0, 0.5), (0, 2, 0.5), (2, 2, c)) for c in (-0.1, 1e6))
-    bound_kernels.load_kernels(weak, 0)
+    bound_kernels.load_kernels(weak, Setting())
     assert bound_kernels.is_generated(weak, setting)
     assert not bound_kernels.is_generated(strong, setting)
 
 
 def test_known_functions_are_available_while_others_are_generated(monkeypatch: pytest.MonkeyPatch) -> None:
-    bound_kernels.load_kernels(TERMS, 0)
+    bound_kernels.load_kernels(TERMS, Setting())
     begun, end = threading.Event(), threading.Event()
 
     def wait(structure: Structure) -> GeneratedCode:
@@ -40,9 +40,9 @@ def test_known_functions_are_available_while_others_are_generated(monkeypatch: p
 
     monkeypatch.setattr(bound_kernels, "generate", wait)
     with ThreadPoolExecutor(2) as threads:
-        other = threads.submit(bound_kernels.load_kernels, (*TERMS, (11, 0, 0.1)), 0)
+        other = threads.submit(bound_kernels.load_kernels, (*TERMS, (11, 0, 0.1)), Setting())
         assert begun.wait(SECONDS)
-        known = threads.submit(bound_kernels.load_kernels, ((2, 0, 0.8), (0, 2, 0.5)), 0)
+        known = threads.submit(bound_kernels.load_kernels, ((2, 0, 0.8), (0, 2, 0.5)), Setting())
         try:
             assert known.result(SECONDS).potential_value(1.0, 0.0) == 0.8
         finally:

@@ -7,6 +7,7 @@ import threading
 from engine import Potential
 from engine.integrator.bound_kernels import load_kernels
 from engine.integrator.jit.compiled_operations import compiled_operations
+from engine.integrator.source.series import Setting
 from engine.sweeps.warmup import Compilations, is_ready_for_maps, prepare_for_evidence, prepare_for_maps
 from tests.waiting import SECONDS
 
@@ -15,7 +16,7 @@ OTHER = Potential("other", ((2, 0, 0.5), (0, 2, 0.5), (2, 1, 1.0), (0, 3, -1 / 3
 
 
 def test_kernels_are_compiled_in_the_order_of_need() -> None:
-    kernels = load_kernels(OTHER.terms, OTHER.channels)
+    kernels = load_kernels(OTHER.terms, Setting(OTHER.channels))
     compiled = []
     for prepare in (prepare_for_maps, prepare_for_evidence):
         prepare(OTHER)

@@ -7,6 +7,7 @@ from app.server.lifecycle.warmup import STEPS, prepare_for_layers, start_warmup
 from app.state.view_state import ViewState
 from engine import Potential
 from engine.integrator.bound_kernels import load_kernels
+from engine.integrator.source.series import Setting
 from tests.waiting import SECONDS
 
 
@@ -43,7 +44,7 @@ def test_the_map_of_the_opened_page_comes_first() -> None:
 def test_layers_are_compiled_for_bounded_and_for_escaping_orbits() -> None:
     # A structure that no other test compiles.
     other = Potential("other", ((2, 0, 0.5), (0, 2, 0.5), (2, 1, 1.0), (0, 3, -1 / 3), (1, 2, 1e-3), (2, 3, 1e-3)))
-    kernels = load_kernels(other.terms, other.channels)
+    kernels = load_kernels(other.terms, Setting(other.channels))
     prepare_for_layers(other)
     # Deviation vectors are computed for bounded orbits, and series for orbits that escape.
     assert kernels.tangent.signatures

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import panel as pn
 import pytest
 from bokeh.plotting import figure
 
@@ -42,7 +43,7 @@ def view(state: ViewState, results: ShownResults, frame: EscapeMap) -> Statistic
 @pytest.fixture(autouse=True)
 def charts(view: StatisticsView) -> list[figure]:
     """Build the section, and return its figures."""
-    return [part.get_root().children[0] for make in view.parts()[1:] for part in make()]
+    return [part.object for make in view.parts()[1:] for part in make()]
 
 
 def test_the_charts_count_every_escape(state: ViewState, view: StatisticsView, charts: list[figure], frame: EscapeMap) -> None:
@@ -53,6 +54,22 @@ def test_the_charts_count_every_escape(state: ViewState, view: StatisticsView, c
     times, probabilities = (chart.renderers[-1].data_source.data for chart in charts)
     assert times["top"].sum() == statistics.escaped
     assert probabilities["top"][0] == pytest.approx(statistics.direct_share)
+
+
+def test_numbers_on_the_axes_keep_their_size_with_each_count(state: ViewState, charts: list[figure]) -> None:
+    state.analysis = Analysis.STATISTICS
+    assert {axis.major_label_text_font_size for chart in charts for axis in (*chart.below, *chart.left)} == {"12px"}
+
+
+def test_a_chart_that_returns_to_the_page_is_not_drawn_again(view: StatisticsView) -> None:
+    for make in view.parts()[1:]:
+        content = list(make())
+        column = pn.Column(*content)
+        root = column.get_root()
+        drawn = root.children
+        column.objects = []
+        column.objects = content
+        assert root.children == drawn
 
 
 @pytest.mark.parametrize("box", [None, BOX])

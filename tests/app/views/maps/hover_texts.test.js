@@ -76,3 +76,7 @@ test("a coordinate distinguishes neighbouring pixels", () => {
   assert.equal(coordinate(0.123456789, {start: 0, end: 1}), "0.123")
   assert.equal(coordinate(0.123456789, {start: 0.1234567, end: 0.1234569}), "0.1234567890")
 })
+
+test("a coordinate has the minus sign of the other numbers", () => {
+  assert.equal(coordinate(-0.2, {start: -1, end: 1}), "−0.200")
+})

@@ -41,9 +41,9 @@ def test_compilation_beyond_the_limit_is_refused_with_a_sentence() -> None:
     terms = ((2, 0, 0.5), (0, 2, 0.5), (9, 0, 1.0))
     compiled_operations.limit = 1
     with pytest.raises(ValueError, match="choose a potential with the same powers"):
-        load_kernels(terms, 0)
+        load_kernels(terms, Setting())
     compiled_operations.limit = None
-    assert load_kernels(terms, 0).potential_value(1.0, 1.0) == 2.0
+    assert load_kernels(terms, Setting()).potential_value(1.0, 1.0) == 2.0
     assert compiled_operations.used == generate_code(terms, Setting()).operations
 
 
@@ -83,7 +83,7 @@ def test_a_job_takes_the_share_of_its_client(account: Hashable, is_refused: bool
     terms = ((2, 0, 0.5), (0, 2, 0.5), (3, 6, 1.0 if account else 2.0), (6, 3, 1.0))
     compiled_operations.limit = SHARES * generate_code(terms, Setting()).operations - 1
     client, inbox = JobClient(Jobs(), account=account), Inbox()
-    client.request(Job(load_kernels, (terms, 0), queue=Queue.COMPILATION), inbox.result, inbox.error)
+    client.request(Job(load_kernels, (terms, Setting()), queue=Queue.COMPILATION), inbox.result, inbox.error)
     assert inbox.done.wait(SECONDS)
     assert ["your address" in str(error) for error in inbox.errors] == [True] * is_refused
 

@@ -11,6 +11,7 @@ from loky import ProcessPoolExecutor
 from engine.foundations.cache_files import CACHE_VARIABLE
 from engine.integrator.bound_kernels import load_kernels
 from engine.integrator.jit.disk_cache import compile_in
+from engine.integrator.source.series import Setting
 from tests.waiting import SECONDS
 
 
@@ -31,7 +32,7 @@ def test_this_process_loads_kernels_that_another_process_stored(folder: Path) ->
             stored.extend(file.name for file in folder.iterdir())
 
         compile_in(compile_there)
-        kernels = load_kernels(((2, 0, 0.5), (0, 2, 0.5), (6, 1, 1.0)), 0)
+        kernels = load_kernels(((2, 0, 0.5), (0, 2, 0.5), (6, 1, 1.0)), Setting())
         assert kernels.potential_value(2.0, 1.0) == 2.0 + 0.5 + 2.0**6
     assert [name.partition(".")[2].partition(".")[0] for name in stored] == ["potential_value"]
 
@@ -41,6 +42,6 @@ def test_this_process_compiles_kernels_that_the_other_process_cannot(folder: Pat
         raise ValueError("it takes too long")
 
     compile_in(refuse)
-    kernels = load_kernels(((2, 0, 0.5), (0, 2, 0.5), (1, 6, 1.0)), 0)
+    kernels = load_kernels(((2, 0, 0.5), (0, 2, 0.5), (1, 6, 1.0)), Setting())
     assert kernels.potential_value(2.0, 1.0) == 2.0 + 0.5 + 2.0
     assert len(list(folder.iterdir())) == 1

@@ -10,7 +10,7 @@ from engine.exits.exit_rows import exit_curves, exit_gates
 from engine.integrator.bound_kernels import load_kernels
 from engine.integrator.kernels.propagate import NO_TRACE, Exits, Orbits
 from engine.integrator.source.recurrence import LANES, ROWS, TOLERANCE
-from engine.integrator.source.series import ORDER
+from engine.integrator.source.series import ORDER, Setting
 from engine.integrator.source.step_flags import HIDDEN
 from engine.propagation.fates import Fate
 
@@ -23,7 +23,7 @@ POTENTIAL, ENERGY = CASES["III"], 0.4
 def single_steps(potential: Potential, states: np.ndarray, horizon: float = np.inf) -> tuple[np.ndarray, ...]:
     """Return states, times and step sizes after a step, of shape (6, n), and its flags and crossings, each of shape (n,)."""
     gates = np.tile([0.0, 0.0, np.inf], (potential.channels, 1))
-    kernels = load_kernels(potential.terms, potential.channels)
+    kernels = load_kernels(potential.terms, Setting(potential.channels))
     parts = []
     for part in np.split(states, range(LANES, len(states), LANES)):
         now, new, counts = np.zeros((ROWS, LANES)), np.zeros((ROWS, LANES)), np.zeros((2, LANES), np.int64)
@@ -37,7 +37,7 @@ def single_steps(potential: Potential, states: np.ndarray, horizon: float = np.i
 def sampled_y(potential: Potential, states: np.ndarray, h: np.ndarray) -> np.ndarray:
     """Return y over each step, of shape (n, 2001)."""
     jets = np.empty((2, ORDER + 1, len(states)))
-    load_kernels(potential.terms, potential.channels).jets(len(states), *states.T.copy(), *jets)
+    load_kernels(potential.terms, Setting(potential.channels)).jets(len(states), *states.T.copy(), *jets)
     tau = np.linspace(0, 1, 2001) * h[:, None]
     return sum(jets[1, k][:, None] * tau**k for k in range(ORDER + 1))
 
@@ -84,7 +84,7 @@ def propagate(
 ) -> int:
     curves = exit_curves(POTENTIAL, ENERGY)[None]
     exits = Exits(exit_gates(curves), curves, np.zeros(orbits.t.size, np.int64))
-    kernels = load_kernels(POTENTIAL.terms, POTENTIAL.channels)
+    kernels = load_kernels(POTENTIAL.terms, Setting(POTENTIAL.channels))
     return int(kernels.propagate(todo, horizon, final, TOLERANCE, budget, least, exits, orbits, NO_TRACE))
 
 

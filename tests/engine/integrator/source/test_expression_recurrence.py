@@ -16,7 +16,7 @@ from engine.expressions.nodes import Coordinate, Expression, Function, Product, 
 from engine.integrator.bound_kernels import load_kernels
 from engine.integrator.jit.function_pointers import SIGNATURES
 from engine.integrator.source.recurrence import LANES, ROWS, TOLERANCE
-from engine.integrator.source.series import ORDER
+from engine.integrator.source.series import ORDER, Setting
 
 # Together these formulas have all kinds of nodes.
 TEXTS = (
@@ -40,7 +40,7 @@ def states_of(count: int) -> np.ndarray:
 
 
 def kernels_of(text: str):
-    return load_kernels(parse_formula(text).form.definition, 2)
+    return load_kernels(parse_formula(text).form.definition, Setting(2))
 
 
 def jets_of(text: str, states: np.ndarray) -> np.ndarray:
@@ -127,7 +127,7 @@ def test_steps_do_not_depend_on_lanes(text: str) -> None:
 @pytest.mark.parametrize("size", [1e-3])
 def test_steps_around_a_body_shrink_as_its_periods(size: float) -> None:
     """By Kepler's third law, the step of the same orbit in another size is proportional to size^(3/2), to 6 % for each root."""
-    states, kernels = np.tile([1.0, 0.2, 0.3, 0.8], (2, 1)), load_kernels(parse_formula("−1/r").form.definition, 0)
+    states, kernels = np.tile([1.0, 0.2, 0.3, 0.8], (2, 1)), load_kernels(parse_formula("−1/r").form.definition, Setting())
     states[1] *= [size, size, size**-0.5, size**-0.5]
     now, new, counts = np.zeros((ROWS, LANES)), np.zeros((ROWS, LANES)), np.zeros((2, LANES), np.int64)
     now[:4, :2] = states.T
@@ -139,7 +139,7 @@ def test_a_step_outside_the_domain_fails() -> None:
     potential = Potential("", parse_formula("½r² + (1 − x)^(3/2)").form)
     now, new, counts = np.zeros((ROWS, LANES)), np.zeros((ROWS, LANES)), np.zeros((2, LANES), np.int64)
     now[0, 0] = 2.0
-    load_kernels(potential.form.definition, 0).step(1, TOLERANCE, np.inf, np.zeros((0, 3)), now, new, *counts)
+    load_kernels(potential.form.definition, Setting()).step(1, TOLERANCE, np.inf, np.zeros((0, 3)), now, new, *counts)
     assert np.isnan(new[5, 0])
 
 

@@ -11,7 +11,7 @@ import pytest
 from engine import CASES
 from engine.integrator.bound_kernels import load_kernels
 from engine.integrator.source.recurrence import LANES, ROWS, TOLERANCE
-from engine.integrator.source.series import ORDER
+from engine.integrator.source.series import ORDER, Setting
 from engine.integrator.source.step_flags import NEAR
 
 # Number of batches of orbits, number of points along a step, and distance beyond an exit that returning orbits reach.
@@ -21,15 +21,15 @@ BATCHES, TIMES, DEPTH = 40, 401, 1e-4
 class Shape(NamedTuple):
     """An exit: the setting of its kernels, the outward coordinate of points, and its row of numbers at an outward coordinate."""
 
-    setting: dict[str, Any]
+    setting: Setting
     outward: Callable[[np.ndarray, np.ndarray], np.ndarray]
     row: Callable[[float], tuple[float, float, float]]
 
 
 SHAPES = {
-    "line": Shape({"channels": 1}, lambda x, y: 0.6 * x + 0.8 * y, lambda place: (0.6, 0.8, place)),
-    "disc": Shape({"channels": 0, "sides": (-1,)}, lambda x, y: -np.hypot(x - 0.1, y - 0.2), lambda place: (0.1, 0.2, -place)),
-    "circle": Shape({"channels": 0, "sides": (1,)}, np.hypot, lambda place: (0.0, 0.0, place)),
+    "line": Shape(Setting(1, rotates=True), lambda x, y: 0.6 * x + 0.8 * y, lambda place: (0.6, 0.8, place)),
+    "disc": Shape(Setting(0, (-1,), rotates=True), lambda x, y: -np.hypot(x - 0.1, y - 0.2), lambda place: (0.1, 0.2, -place)),
+    "circle": Shape(Setting(0, (1,), rotates=True), np.hypot, lambda place: (0.0, 0.0, place)),
 }
 
 
@@ -49,7 +49,7 @@ def step(kernels: Any, states: np.ndarray, row: tuple[float, float, float]) -> t
 @pytest.mark.parametrize("name", SHAPES)
 def test_a_step_that_passes_an_exit_and_returns_is_flagged(name: str) -> None:
     setting, outward, row = SHAPES[name]
-    kernels = load_kernels(CASES["I"].form.definition, rotation=0.3, **setting)
+    kernels = load_kernels(CASES["I"].form.definition, setting, rotation=0.3)
     chance, returns, spared = np.random.default_rng(1), 0, 0
     for _ in range(BATCHES):
         states = chance.uniform(-0.5, 0.5, (4, LANES))

@@ -13,7 +13,7 @@ from engine import CASES, Fate, Potential, classify_orbits, start_states
 from engine.integrator.bound_kernels import load_kernels
 from engine.integrator.jit.function_pointers import SIGNATURES
 from engine.integrator.source.recurrence import LANES, ROWS, TOLERANCE
-from engine.integrator.source.series import ORDER
+from engine.integrator.source.series import ORDER, Setting
 from engine.slices.planes import Plane
 from tests.channel_family import channel_family
 from tests.peers import taylor_heyoka
@@ -31,7 +31,7 @@ def some_states(count: int) -> np.ndarray:
 def jets_of(potential: Potential, states: np.ndarray) -> np.ndarray:
     """Return the coefficients of x and y, of shape (2, ORDER + 1, n)."""
     jets = np.empty((2, ORDER + 1, len(states)))
-    load_kernels(potential.terms, potential.channels).jets(len(states), *states.T.copy(), *jets)
+    load_kernels(potential.terms, Setting(potential.channels)).jets(len(states), *states.T.copy(), *jets)
     return jets
 
 
@@ -50,14 +50,14 @@ def stepped(potential: Potential, states: np.ndarray, tolerance: float, count: i
     now, new, counts = np.zeros((ROWS, LANES)), np.zeros((ROWS, LANES)), np.zeros((2, LANES), np.int64)
     now[:4] = states.T
     gates = np.tile([0.0, 0.0, np.inf], (potential.channels, 1))
-    load_kernels(potential.terms, potential.channels).step(count, tolerance, np.inf, gates, now, new, *counts)
+    load_kernels(potential.terms, Setting(potential.channels)).step(count, tolerance, np.inf, gates, now, new, *counts)
     return new
 
 
 def transition_matrix(potential: Potential, state: np.ndarray, h: float) -> np.ndarray:
     deviations = np.eye(4)
     position = [np.full(4, value) for value in state]
-    load_kernels(potential.terms, potential.channels).tangent(4, np.full(4, h), *position, *deviations)
+    load_kernels(potential.terms, Setting(potential.channels)).tangent(4, np.full(4, h), *position, *deviations)
     return deviations
 
 
@@ -91,7 +91,7 @@ def test_energy_error_is_at_most_1e_11_over_1e5_time_units(name: str, energy: fl
 
 @pytest.mark.parametrize("terms", [(), ((1, 0, 2.0),), ((6, 3, -1.0),)])
 def test_generated_functions_compile_for_any_polynomial(terms: tuple) -> None:
-    kernels = load_kernels(terms, 0)
+    kernels = load_kernels(terms, Setting())
     assert kernels.potential_value(0.5, 0.7) == pytest.approx(sum(c * 0.5**i * 0.7**j for i, j, c in terms))
     state, sums = some_states(LANES).T.copy(), np.zeros((2, LANES))
     kernels.fixed_step(LANES, 0.1, 1.0, state, sums)
@@ -103,7 +103,7 @@ def test_a_fixed_step_is_the_flow_and_adds_weighted_squares(name: str) -> None:
     h = 0.25
     potential, states = POTENTIALS[name], some_states(LANES)
     ends, sums = states.T.copy(), np.zeros((2, LANES))
-    load_kernels(potential.terms, potential.channels).fixed_step(LANES, h, 2.0, ends, sums)
+    load_kernels(potential.terms, Setting(potential.channels)).fixed_step(LANES, h, 2.0, ends, sums)
     np.testing.assert_allclose(ends.T, flowed(potential, states, h), rtol=0, atol=1e-14)
     np.testing.assert_array_equal(sums.T, 2.0 * states[:, :2] ** 2)
 
@@ -127,7 +127,7 @@ def test_a_step_is_vectorised_throughout(name: str) -> None:
     potential = channel_family(int(name)) if name.isdigit() else CASES[name]
     # Compile the step anew, because code from the cache cannot be inspected.
     step = njit(error_model="numpy", fastmath={"contract"})(
-        load_kernels(potential.terms, potential.channels).step.function.py_func
+        load_kernels(potential.terms, Setting(potential.channels)).step.function.py_func
     )
     step.compile(SIGNATURES["step"])
     assembly = "".join(step.inspect_asm().values())

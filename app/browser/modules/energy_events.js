@@ -1,0 +1,31 @@
+// @ts-check
+/**
+ * Events of the document about the energy, which the slider, its box and the engine exchange without the server:
+ *
+ * - `energydragged`: the user moves the slider to an energy;
+ * - `energyreleased`: the user has released the slider;
+ * - `energyshown`: the pictures show an energy, during a drag or while the energy is played;
+ * - `energyasked`: the engine has started, and asks for the energy of a slider that the user holds.
+ */
+
+/**
+ * Send an event to all parts of the page.
+ *
+ * @param {string} event
+ * @param {number} [energy]
+ */
+export function dispatch(event, energy) {
+  document.dispatchEvent(new CustomEvent(event, {detail: energy}))
+}
+
+/**
+ * Call a function with the energy of each event of a name. Return a function that ends this.
+ *
+ * @param {string} event
+ * @param {(energy: number) => void} take
+ */
+export function listen(event, take) {
+  const listener = (/** @type {Event} */ each) => take(/** @type {CustomEvent} */ (each).detail)
+  document.addEventListener(event, listener)
+  return () => document.removeEventListener(event, listener)
+}
