@@ -12,7 +12,7 @@ from plots.layers.layer import Analyses
 
 def compute_map_with_layers(spec: MapSpec, requested_layers: LayerOptions, context: RunContext) -> tuple[EscapeMap, Analyses]:
     """Return the complete map and the results of its layers; CancelledError if interrupted."""
-    frame = compute_whole_map(spec, context, "map")
+    frame = compute_whole_map(spec, context)
     results = {}
     for layer in requested_layers.layers:
         results[layer.name] = run_job(
@@ -21,8 +21,8 @@ def compute_map_with_layers(spec: MapSpec, requested_layers: LayerOptions, conte
     return frame, results
 
 
-def compute_whole_map(spec: MapSpec, context: RunContext, stage: str) -> EscapeMap:
+def compute_whole_map(spec: MapSpec, context: RunContext) -> EscapeMap:
     """Return the complete map; CancelledError if interrupted."""
-    frame = compute_map(spec, execution=context.start_stage(stage))
+    frame = compute_map(spec, execution=context.start_stage("map"))
     context.execution.raise_if_cancelled()
     return frame

@@ -92,7 +92,7 @@ def write_files(contents: Mapping[Path, Content]) -> list[str]:
 
     Returns
     -------
-    The paths, unchanged.
+    The paths as strings, in the given order.
 
     Raises
     ------

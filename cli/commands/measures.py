@@ -44,7 +44,7 @@ def run(
     """Compute and print the measures of a map."""
     names = _choose(measure, exponent)
     with place.run() as context:
-        frame = compute_whole_map(spec, context, "map")
+        frame = compute_whole_map(spec, context)
         stages = {name: DESCRIBED[name].title.lower() for name in names}
         results = {name: measure_map(frame, name, execution=context.start_stage(stages[name])) for name in names}
     sentences = {name: _describe(name, result) for name, result in results.items()}

@@ -1,11 +1,17 @@
-"""A line of text that says how a map was made."""
+"""Texts about the origin of results: the version of this program, and a line about a map."""
 
 from __future__ import annotations
 
 import math
+from importlib import metadata
 
 from engine import CASES, EscapeMap, Potential
 from engine.foundations.wording import format_number
+
+
+def program_version() -> str:
+    """Return the name and the version of this program, for the metadata of files."""
+    return f"escape-explorer {metadata.version('escape-explorer')}"
 
 
 def provenance_line(frame: EscapeMap) -> str:

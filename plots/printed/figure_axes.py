@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 import threading
 from collections.abc import Iterable, Mapping, Sequence
-from importlib import metadata
 from io import BytesIO
 from textwrap import fill
 from typing import Any, Literal
@@ -26,6 +25,7 @@ from matplotlib.ticker import MaxNLocator, NullFormatter
 from matplotlib.transforms import Bbox, ScaledTranslation, Transform
 
 from plots.pictures.palette import LIGHT, PATCH_EDGE, Entry, Mark
+from plots.pictures.provenance import program_version
 from plots.printed.figure_style import CM_PER_INCH, POINTS_PER_INCH, SCREEN, FigureFormat, FigureStyle
 
 RENDER_LOCK = threading.Lock()
@@ -252,11 +252,6 @@ def set_font(figure: Figure) -> None:
         text.set_math_fontfamily(_MATH_FONT)
 
 
-def software() -> str:
-    """Return name and version of this program, for the metadata of files."""
-    return f"escape-explorer {metadata.version('escape-explorer')}"
-
-
 def save_figure(figure: Figure, format: FigureFormat, facts: Mapping[str, str]) -> bytes:
     """Return the content of the file of a figure. Equal figures have equal bytes.
 
@@ -298,8 +293,8 @@ def _metadata(format: FigureFormat, facts: Mapping[str, str]) -> dict[str, str |
     sentence = ", ".join(f"{name}: {value}" for name, value in facts.items())
     match format:
         case FigureFormat.PNG:
-            return {"Software": software(), **facts}
+            return {"Software": program_version(), **facts}
         case FigureFormat.SVG:
-            return {"Creator": software(), "Description": sentence, "Date": None}
+            return {"Creator": program_version(), "Description": sentence, "Date": None}
         case FigureFormat.PDF:
-            return {"Creator": software(), "Producer": software(), "Subject": sentence, "CreationDate": None}
+            return {"Creator": program_version(), "Producer": program_version(), "Subject": sentence, "CreationDate": None}

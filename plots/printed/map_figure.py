@@ -35,7 +35,7 @@ from plots.printed.figure_axes import (
     write_below,
 )
 from plots.printed.figure_style import POINTS_PER_INCH, SCREEN, FigureStyle
-from plots.printed.window_axes import draw_limits, draw_pixels, draw_strokes, mark_starts, show_window
+from plots.printed.window_axes import draw_limits, draw_pixels, draw_strokes, labelled_curves, mark_starts, show_window
 
 # Distance from a map to the next element below the axis label, in units of the font size.
 _BELOW_AXIS = 3.7
@@ -160,8 +160,7 @@ def _explain_picture(axes: Axes, legend: Legend, explained: set[str], width: flo
         bar_axes.get_xticklabels()[-1].set_horizontalalignment("right")
         depth += _BELOW_BAR * style.font_size
     handles = legend_handles([*legend.entries, *legend.others])
-    # Matplotlib gives curves without a label names such as "_child0".
-    handles += [curve for curve in axes.collections if not str(curve.get_label()).startswith("_")]
+    handles += labelled_curves(axes)
     handles += legend_handles(legend.over)
     handles = [handle for handle in handles if handle.get_label() not in explained]
     explained.update(str(handle.get_label()) for handle in handles)

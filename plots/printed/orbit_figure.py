@@ -16,17 +16,10 @@ from plots.pictures.histories import ENVELOPE_ALPHA, History, has_log_time
 from plots.pictures.orbit_curves import OrbitCurves, find_well_window
 from plots.pictures.orbit_quantities import ORBIT_QUANTITIES, OrbitQuantity
 from plots.pictures.palette import THRESHOLD, Palette
-from plots.printed.figure_axes import (
-    add_figure_legend,
-    add_panel_legend,
-    new_figure,
-    set_title,
-    style_axes,
-    write_below,
-)
+from plots.printed.figure_axes import add_figure_legend, add_panel_legend, new_figure, set_title, style_axes, write_below
 from plots.printed.figure_style import SCREEN, FigureStyle
 from plots.printed.potential_figure import draw_well
-from plots.printed.window_axes import draw_curve, draw_limits, draw_pixels, show_window
+from plots.printed.window_axes import draw_curve, draw_limits, draw_pixels, labelled_curves, show_window
 
 # Height of the figure with two columns, in units of the width.
 _HEIGHT = 0.58
@@ -81,9 +74,7 @@ def draw_well_figure(
     draw_well(axes, potential, energy, window, palette)
     _draw_paths(axes, orbits, window, palette)
     show_window(axes, window, "x", "y", style, equal=True)
-    # Matplotlib gives curves without a label names such as "_child0".
-    curves = [curve for curve in axes.collections if not str(curve.get_label()).startswith("_")]
-    add_figure_legend(figure, curves, style, columns=2)
+    add_figure_legend(figure, labelled_curves(axes), style, columns=2)
     return figure
 
 

@@ -43,7 +43,7 @@ def draw_pieces(axes: Axes, pieces: list[np.ndarray], colour: str, width: float)
 
 
 def enlarge(window: Window) -> Window:
-    """Return a square window around a window, larger by a margin."""
+    """Return a square window with the centre of a window, wider by a margin."""
     x = 0.5 * (window.x_low + window.x_high)
     ordinate = 0.5 * (window.ordinate_low + window.ordinate_high)
     half = 0.5 * _ENLARGEMENT * window.width

@@ -149,6 +149,7 @@ def _picture_html(result: Result) -> str:
 
 @singledispatch
 def _draw(result: Result, axes: Axes, palette: Palette) -> None:
+    """Draw the result of a layer, or a result that has charts or columns. Functions for other results are registered below."""
     for layer in LAYERS.values():
         if layer.result is type(result):
             _draw_layer(layer, result, axes, palette)
@@ -156,6 +157,11 @@ def _draw(result: Result, axes: Axes, palette: Palette) -> None:
     if charts := _find_charts(result, palette):
         draw_chart(axes, charts[0])
         return
+    _draw_columns(result, axes, palette)
+
+
+def _draw_columns(result: Result, axes: Axes, palette: Palette) -> None:
+    """Draw the columns of a result that its `chart` names, as a line or as bars."""
     chart = result.chart
     if chart is None:
         raise NoPictureError(f"{type(result).__name__} has no picture; its numbers are in to_pandas()")

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import shapely
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.patheffects import withStroke
@@ -115,6 +116,11 @@ def draw_curve(
         LineCollection([shapely.get_coordinates(part) for part in visible_parts], label=label, **({"zorder": 2} | style)),
         autolim=False,
     )
+
+
+def labelled_curves(axes: Axes) -> list[Artist]:
+    """Return the curves in a panel that have a label. Matplotlib gives curves without a label names such as "_child0"."""
+    return [curve for curve in axes.collections if not str(curve.get_label()).startswith("_")]
 
 
 def mark_starts(

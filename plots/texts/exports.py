@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from importlib import metadata
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +13,7 @@ from engine.results import OrbitVerdict, Sweep
 from engine.systems.system import TYPED
 from plots.layers.layer import NO_ANALYSES, Analyses
 from plots.layers.table import LAYERS
+from plots.pictures.provenance import program_version
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -61,7 +61,7 @@ def orbits_csv(orbits: Sequence[Orbit], most_rows: int = MOST_ROWS, verdicts: Se
     if most_rows < max(1, len(orbits)):
         raise ValueError(f"most_rows={most_rows}: must be at least 1, and one for each of {len(orbits)} orbits")
     strides = [math.ceil(orbit.t.size / (most_rows // len(orbits))) for orbit in orbits]
-    comments, rows = [_version()], []
+    comments, rows = [program_version()], []
     for number, (orbit, stride, verdict) in enumerate(zip(orbits, strides, verdicts or map(judge_orbit, orbits), strict=True), 1):
         comments += _header(number, orbit, stride, verdict)
         columns = [getattr(orbit, name)[::stride].tolist() for name in _COLUMNS]
@@ -73,10 +73,6 @@ def write_csv(names: Iterable[str], rows: Iterable[Sequence[object]], comments: 
     """Return a CSV table with names of columns and numbers at full precision, below comment lines (#)."""
     lines = [*(f"# {comment}" for comment in comments), ",".join(names), *(",".join(map(repr, row)) for row in rows)]
     return "\n".join(lines) + "\n"
-
-
-def _version() -> str:
-    return f"escape-explorer {metadata.version('escape-explorer')}"
 
 
 def _header(number: int, orbit: Orbit, stride: int, verdict: OrbitVerdict) -> list[str]:
@@ -192,5 +188,5 @@ def file_stem(spec: MapSpec, case: str) -> str:
 def curves_csv(curves: Sweep) -> str:
     """Return a CSV table of a sweep, with a row for each energy or parameter value and a column for each number of a measure."""
     columns = curves.columns()
-    comments = (_version(), *(f"{name}: {value}" for name, value in curves.dataset.attrs.items()))
+    comments = (program_version(), *(f"{name}: {value}" for name, value in curves.dataset.attrs.items()))
     return write_csv(columns, zip(*(column.tolist() for column in columns.values()), strict=True), comments)

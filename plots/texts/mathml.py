@@ -15,8 +15,6 @@ from plots.texts.mathml_expressions import signed_parts
 _SPOKEN_SIGNS = {"+": "plus", "−": "minus", "=": "equals", "∂": "partial", "˙": "dot", "¨": "double dot"}
 # Words for exponents.
 _POWERS = {"2": "squared", "3": "cubed"}
-
-
 # Names of the integral, by whether the frame rotates.
 _INTEGRALS = {False: "Energy integral", True: "Jacobi integral"}
 
@@ -33,7 +31,7 @@ def equations(potential: Potential) -> str:
         **_exits(potential),
     }
     style = "font-size:17px;margin:2px 0 8px 12px;display:flex;flex-wrap:wrap;align-items:center;gap:4px 28px;overflow-x:auto"
-    body = "".join(f"<dt>{name}</dt><dd style='{style}'>{''.join(map(_math, row))}</dd>" for name, row in rows.items())
+    body = "".join(f"<dt>{name}</dt><dd style='{style}'>{''.join(map(_math, formulas))}</dd>" for name, formulas in rows.items())
     return f"<dl style='margin:0;font-size:13px;color:inherit'>{body}</dl>"
 
 
