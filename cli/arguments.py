@@ -147,7 +147,7 @@ def find_energy(system: System, energy: float | None = None, jacobi: float | Non
     return system.potential.jacobi_energy(jacobi)
 
 
-def need_energy(energy: GivenEnergy) -> OneEnergy:
+def require_energy(energy: GivenEnergy) -> OneEnergy:
     """Return the energy; ValueError if none is given."""
     if energy is None:
         raise ValueError("energy: give --energy H, or --jacobi C in a rotating frame")
@@ -222,7 +222,7 @@ def space_values(
     if listed or low is None or high is None or count is None:
         raise ValueError("energies: give --low, --high and --count, or repeat --energy")
     if not (low < high or (low == high and count == 1)):
-        raise ValueError(f"low={low}, high={high}: the lower energy must be below the higher one")
+        raise ValueError(f"low={low}, high={high}: low must be below high")
     return tuple(np.linspace(low, high, checked_count("count", count, 1, MOST_VALUES)).tolist())
 
 
@@ -233,7 +233,7 @@ READERS: Mapping[Any, Callable[..., Any]] = {
     Slice | None: find_plane,
     Energy: choose_energy,
     GivenEnergy: find_energy,
-    OneEnergy: need_energy,
+    OneEnergy: require_energy,
     Palette: find_palette,
     LayerOptions: read_layers,
 }

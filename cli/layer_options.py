@@ -11,7 +11,7 @@ import typer
 
 from engine import MapSpec
 from plots.layers.layer import Layer, Setting
-from plots.layers.table import LAYER_OF, LAYERS
+from plots.layers.table import LAYERS, LAYERS_BY_PICTURE
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class LayerOptions:
 
     def with_pictures(self, pictures: Collection[str]) -> LayerOptions:
         """Return a copy that also requests the layers of some pictures."""
-        picture_layers = {LAYER_OF[picture].name: True for picture in pictures if picture in LAYER_OF}
+        picture_layers = {LAYERS_BY_PICTURE[picture].name: True for picture in pictures if picture in LAYERS_BY_PICTURE}
         return replace(self, values={**self.values, **picture_layers})
 
     def check(self, spec: MapSpec) -> None:

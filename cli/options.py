@@ -40,7 +40,7 @@ def _list_options(make: Callable[..., Any]) -> dict[str, inspect.Parameter]:
     """Return the options of a function or request, by name. `_build` makes arguments from the values of these options."""
     options: dict[str, inspect.Parameter] = {}
     for parameter in _parameters(make):
-        kind, marks = _split(parameter.annotation)
+        kind, marks = _split_annotation(parameter.annotation)
         reader = _find_reader(kind)
         if reader is None:
             options[parameter.name] = _make_option(make, parameter)
@@ -56,7 +56,7 @@ def _build(make: Callable[..., Any], values: Mapping[str, Any]) -> Any:
     """Call a function, or make a request, with the values of its options."""
     arguments = {}
     for parameter in _parameters(make):
-        reader = _find_reader(_split(parameter.annotation)[0])
+        reader = _find_reader(_split_annotation(parameter.annotation)[0])
         if reader is not None:
             arguments[parameter.name] = _build(reader, values)
         elif parameter.name in values:
@@ -73,7 +73,7 @@ def _find_reader(kind: Any) -> Callable[..., Any] | None:
 
 def _make_option(make: Callable[..., Any], parameter: inspect.Parameter) -> inspect.Parameter:
     """Return a keyword parameter for Typer, with names, help and default."""
-    kind, marks = _split(parameter.annotation)
+    kind, marks = _split_annotation(parameter.annotation)
     origin = next((mark for mark in marks if isinstance(mark, DocumentedBy)), DocumentedBy(make))
     source_name = origin.name or parameter.name
     default = parameter.default
@@ -81,17 +81,17 @@ def _make_option(make: Callable[..., Any], parameter: inspect.Parameter) -> insp
         default = inspect.signature(origin.owner).parameters[source_name].default
     # The mark may set what a docstring cannot, such as the metavar. Copy it, because annotations are shared.
     info = copy(next((mark for mark in marks if isinstance(mark, ParameterInfo)), typer.Option()))
-    info.help = info.help or _describe(origin.owner, source_name)
+    info.help = info.help or _find_help(origin.owner, source_name)
     # In `Annotated`, `Option("--name")` stores the name in `default`, and ... means that no name was given.
     if isinstance(info, OptionInfo) and info.default is ...:
-        info.param_decls = _name(parameter.name, default)
+        info.param_decls = _option_names(parameter.name, default)
     if isinstance(default, tuple):
         # The resolution is one word, such as 224x224.
         default = "x".join(map(str, default))
     return inspect.Parameter(parameter.name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=Annotated[kind, info])
 
 
-def _name(parameter: str, default: Any) -> tuple[str, ...]:
+def _option_names(parameter: str, default: Any) -> tuple[str, ...]:
     """Return the names of an option. A flag that is on by default also has a name that switches it off."""
     if parameter in NAMES:
         return NAMES[parameter]
@@ -99,7 +99,7 @@ def _name(parameter: str, default: Any) -> tuple[str, ...]:
     return (f"--{name}/--no-{name}",) if default is True else (f"--{name}",)
 
 
-def _describe(owner: Callable[..., Any], name: str) -> str:
+def _find_help(owner: Callable[..., Any], name: str) -> str:
     """Return the first sentence about a parameter in the docstring of its owner."""
     entry = re.search(rf"^{name}\n((?: +.+\n?)+)", inspect.getdoc(owner) or "", re.MULTILINE)
     if entry is None:
@@ -113,7 +113,7 @@ def _parameters(make: Callable[..., Any]) -> Collection[inspect.Parameter]:
     return inspect.signature(make, eval_str=True).parameters.values()
 
 
-def _split(annotation: Any) -> tuple[Any, tuple[Any, ...]]:
+def _split_annotation(annotation: Any) -> tuple[Any, tuple[Any, ...]]:
     """Return the type of an option and the marks of its annotation."""
     kind, *marks = get_args(annotation) if get_origin(annotation) is Annotated else (annotation,)
     if kind in OPTION_TYPES:

@@ -57,7 +57,7 @@ class MapCache:
 
     def map(self, case: str, plane: Slice, energy: float | tuple[float, float], window: Window | None = None) -> EscapeMap:
         """Return a map of a case of `engine.CASES`. Other parameters are those of `engine.MapSpec`."""
-        return self._stored(self._spec(case, plane, energy, window))
+        return self._stored_map(self._spec(case, plane, energy, window))
 
     def curves(self, case: str, plane: Slice) -> Sweep:
         """Return shares, and the largest energy error, at the energies of `curve_energies`. New maps are not stored."""
@@ -65,7 +65,7 @@ class MapCache:
 
     def regularity(self, frame: EscapeMap) -> RegularityMap:
         """Classify the bounded orbits of a map as regular or chaotic."""
-        return self._once(("regularity", frame.spec), lambda: self._judge(frame))
+        return self._once(("regularity", frame.spec), lambda: self._classify(frame))
 
     def super_sticky(self) -> SuperStickySearch:
         """Continue the chaotic bounded orbits of case III at h = 0.26 on (x, px)."""
@@ -88,7 +88,7 @@ class MapCache:
         return self._values[key]
 
     def _search(self, case: str, energy: float, side: int) -> SuperStickySearch:
-        frame = self._stored(replace(self._spec(case, Plane.X_PX, energy), resolution=(side, side)))
+        frame = self._stored_map(replace(self._spec(case, Plane.X_PX, energy), resolution=(side, side)))
         t_max = self.quality.search_t_max
         return self._once(
             ("search", frame.spec),
@@ -103,12 +103,12 @@ class MapCache:
         return compute_sweep(
             spec,
             measure=lambda point: compute_point(
-                point, escape_map=self._values.get(point.map_spec) or self._compute(point.map_spec)
+                point, escape_map=self._values.get(point.map_spec) or self._compute_map(point.map_spec)
             ),
             execution=self.execution,
         )
 
-    def _judge(self, frame: EscapeMap) -> RegularityMap:
+    def _classify(self, frame: EscapeMap) -> RegularityMap:
         regularity = compute_regularity(frame, execution=self.execution)
         if not regularity.complete:
             raise CancelledError
@@ -118,10 +118,10 @@ class MapCache:
         resolution = self.quality.resolution, self.quality.resolution
         return MapSpec(CASES[case], plane, energy, resolution, window, self.quality.t_max)
 
-    def _stored(self, spec: MapSpec) -> EscapeMap:
-        return self._once(spec, lambda: self._compute(spec))
+    def _stored_map(self, spec: MapSpec) -> EscapeMap:
+        return self._once(spec, lambda: self._compute_map(spec))
 
-    def _compute(self, spec: MapSpec) -> EscapeMap:
+    def _compute_map(self, spec: MapSpec) -> EscapeMap:
         frame = compute_map(spec, execution=self.execution)
         if not frame.complete:
             raise CancelledError

@@ -28,7 +28,7 @@ from engine.foundations.validation import LARGEST_NUMBER
 from engine.slices.slice_text import read_slice, write_slice
 from engine.systems.formulas.formula_parser import LONGEST_TEXT
 from engine.systems.review.potential_review import SystemReview
-from plots.layers.table import LAYER_OF, LAYERS, SETTINGS
+from plots.layers.table import LAYERS, LAYERS_BY_PICTURE, SETTINGS
 from plots.pictures.palette import MOST_ORBITS, PALETTES
 
 LONGEST_VALUE = LONGEST_TEXT
@@ -140,8 +140,8 @@ def read_link(parameters: Mapping[str, str], prefix: str = "") -> tuple[dict[str
     if EMBED in parts:
         picture = values["focus"] = parts[EMBED]
         # The picture of a layer needs the layer.
-        if picture in LAYER_OF:
-            values["layers"] = values.get("layers", frozenset()) | {LAYER_OF[picture].name}
+        if picture in LAYERS_BY_PICTURE:
+            values["layers"] = values.get("layers", frozenset()) | {LAYERS_BY_PICTURE[picture].name}
     # Without starts, only the index 0 is legal.
     if values.get("chosen", 0) >= len(values.get("starts", (0,))):
         values["chosen"] = 0

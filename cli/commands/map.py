@@ -122,19 +122,19 @@ def _make_contents(
     stem: Path, endings: Sequence[str], frame: EscapeMap, analyses: Analyses, drawing: Drawing
 ) -> dict[Path, Content]:
     """Return the content of each output file: the map in some formats, and tables as CSV."""
-    files: dict[Path, Content] = {}
+    contents: dict[Path, Content] = {}
     for ending in endings:
+        path = add_ending(stem, ending)
         if ending == "nc":
-            files[add_ending(stem, ending)] = netcdf_bytes(frame, analyses)
+            contents[path] = netcdf_bytes(frame, analyses)
         else:
-            picture = map_figure_bytes(
+            contents[path] = map_figure_bytes(
                 frame, drawing.pictures, drawing.palette, FigureFormat(ending), drawing.style, analyses=analyses
             )
-            files[add_ending(stem, ending)] = picture
     for name, result in analyses.items():
         if LAYERS[name].has_table:
-            files[stem.with_name(f"{stem.name}-{name}.csv")] = result.to_pandas().to_csv(index=False)
-    return files
+            contents[stem.with_name(f"{stem.name}-{name}.csv")] = result.to_pandas().to_csv(index=False)
+    return contents
 
 
 def _print(frame: EscapeMap, analyses: Analyses, files: Sequence[str], count_outside: bool, as_json: bool) -> None:

@@ -19,7 +19,7 @@ from plots.pictures.palette import Entry, Palette
 # Number of classes of equal width. Their codes and the codes of other pixels fit into uint8.
 _CLASSES = 240
 # Share of the values below the scale, and equal share above the scale. They are drawn in the colours of its ends.
-_LEFT_OUT = 0.01
+_CLIPPED_SHARE = 0.01
 
 DURATION = Setting(
     name="descriptor_time",
@@ -72,7 +72,7 @@ def _limits(result: DescriptorMap) -> tuple[float, float]:
     values = result.descriptor[np.isfinite(result.descriptor)]
     if not values.size:
         return 0.0, 1.0
-    low, high = np.quantile(values, (_LEFT_OUT, 1.0 - _LEFT_OUT)).tolist()
+    low, high = np.quantile(values, (_CLIPPED_SHARE, 1.0 - _CLIPPED_SHARE)).tolist()
     return (low, high) if low < high else (low, low + 1.0)
 
 

@@ -27,8 +27,8 @@ LAYERS = _by_name(REGULARITY, TRUST, MANIFOLDS, ORIGINS, DESCRIPTORS)
 SETTINGS = _by_name(*(setting for layer in LAYERS.values() for setting in layer.settings))
 """The settings of all layers."""
 
-LAYER_OF = MappingProxyType({layer.picture.name: layer for layer in LAYERS.values() if layer.picture is not None})
-"""Layers that have a picture, by the name of the picture."""
+LAYERS_BY_PICTURE = MappingProxyType({layer.picture.name: layer for layer in LAYERS.values() if layer.picture is not None})
+"""The layers that have a picture, by the name of the picture."""
 
 PICTURES = _by_name(
     CURVES,
@@ -46,7 +46,7 @@ TITLES = MappingProxyType({name: picture.title for name, picture in PICTURES.ite
 
 
 def map_legend(picture: str, shown: ShownMap) -> Legend:
-    """Return the legend of a picture of a map, with the entries of what layers draw over it."""
+    """Return the legend of a picture of a map, with the entries of the layers that are drawn over it."""
     over: list[Entry] = []
     for name, result in shown.results.items():
         marks = LAYERS[name].over_picture(picture)

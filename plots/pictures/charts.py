@@ -11,7 +11,7 @@ import numpy as np
 from engine import MEASURES, Measure
 from engine.foundations.wording import format_number
 from engine.results import DecayLaws, EscapeStatistics, LawFit, Sweep, UncertaintyExponent
-from plots.pictures.histories import find_decades
+from plots.pictures.histories import logarithmic_limits
 from plots.pictures.palette import LAW_COLOURS, MEASURED, SET_ASIDE, THRESHOLD, Entry, Palette
 
 BINS = 40
@@ -147,7 +147,7 @@ def _measure_chart(measure: Measure, curves: Sweep) -> Chart:
     numbers = numbers[np.isfinite(numbers)]
     limits: Limits | None = None
     if numbers.size and measure.curve.logarithmic:
-        limits = find_decades(float(numbers.min()), float(numbers.max()))
+        limits = logarithmic_limits(float(numbers.min()), float(numbers.max()))
     elif numbers.size:
         limits = 0.0, 1.05 * max([*numbers, measure.curve.least_top])
     return Chart(measure_frame(measure, curves.symbol), series, (_swept_limits(curves), limits))
@@ -203,11 +203,11 @@ def survival_chart(laws: DecayLaws, t_end: float | None = None) -> Chart:
         steps = np.vstack([steps, [t_end, steps[-1, 1]]])
     fits = [fit for fit in (laws.exponential, laws.power_law) if fit is not None]
     survivors = Series("starts", MEASURED, steps[:, 0], steps[:, 1], Shape.STEPS)
-    series = [survivors, *(_law(fit, preferred=laws.preferred is fit.law) for fit in fits)]
-    return Chart(SURVIVAL, series, ((begin, t_end or 1.5 * latest), find_decades(0.99 * float(steps[:, 1].min()), 1.0)))
+    series = [survivors, *(_law_series(fit, preferred=laws.preferred is fit.law) for fit in fits)]
+    return Chart(SURVIVAL, series, ((begin, t_end or 1.5 * latest), logarithmic_limits(0.99 * float(steps[:, 1].min()), 1.0)))
 
 
-def _law(fit: LawFit, *, preferred: bool) -> Series:
+def _law_series(fit: LawFit, *, preferred: bool) -> Series:
     t = np.geomspace(fit.t_low, fit.t_high, _LAW_POINTS)
     share = fit.curve(t)
     label = f"{fit.law}, {_RATE_SYMBOLS[fit.law]} = {format_number(fit.rate, 3)}{' (preferred)' if preferred else ''}"
@@ -225,8 +225,9 @@ def pairs_chart(fit: UncertaintyExponent) -> Chart:
         law = fit.amplitude * fitted**fit.exponent
         series.append(Series(f"α = {format_number(fit.exponent, 3)}", LAW_COLOURS["power law"], fitted, law))
     for label, colour, members in (("used", MEASURED, fit.used), ("not used", SET_ASIDE, ~fit.used)):
-        of = is_positive & members
-        points = Series(f"{label} for the exponent", colour, separations[of], shares[of], Shape.POINTS, (low[of], high[of]))
-        series += [points] if of.any() else []
-    limits = find_decades(float(shares[is_positive].min()), float(shares.max())) if is_positive.any() else None
+        is_shown = is_positive & members
+        errors = low[is_shown], high[is_shown]
+        points = Series(f"{label} for the exponent", colour, separations[is_shown], shares[is_shown], Shape.POINTS, errors)
+        series += [points] if is_shown.any() else []
+    limits = logarithmic_limits(float(shares[is_positive].min()), float(shares.max())) if is_positive.any() else None
     return Chart(PAIRS, series, ((0.5 * float(separations.min()), 2.0 * float(separations.max())), limits))

@@ -50,8 +50,8 @@ class History:
         return np.concatenate([t, t[::-1]]), np.concatenate([low, high[::-1]])
 
 
-def find_decades(low: float, high: float) -> tuple[float, float]:
-    """Return the ends of a logarithmic axis: the power of ten below `low`, and a number a little above `high`."""
+def logarithmic_limits(low: float, high: float) -> tuple[float, float]:
+    """Return the ends of a logarithmic axis: the largest power of ten up to `low`, and a number a little above `high`."""
     return 10.0 ** math.floor(math.log10(low)), 1.3 * high
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from engine import Orbit
 from engine.foundations.wording import format_number
 from engine.propagation.fates import CHAOS_THRESHOLD
-from plots.pictures.histories import History, find_decades, reduce_history
+from plots.pictures.histories import History, logarithmic_limits, reduce_history
 
 # Lower end of the axis of SALI.
 _LEAST_SALI = 1e-17
@@ -75,13 +75,13 @@ class OrbitQuantity:
 def _sali_limits(histories: Sequence[History]) -> tuple[float, float]:
     """Return limits at least five powers of ten apart, so that the curve of a regular orbit looks level."""
     lowest = min(float(history.line[1].min()) for history in histories)
-    return min(1e-4, max(_LEAST_SALI, find_decades(lowest, _LARGEST_SALI)[0])), _LARGEST_SALI
+    return min(1e-4, max(_LEAST_SALI, logarithmic_limits(lowest, _LARGEST_SALI)[0])), _LARGEST_SALI
 
 
 def _exponent_limits(histories: Sequence[History]) -> tuple[float, float]:
     """Return limits that begin at the power of ten below the last values, and have at least two labels."""
     lowest = min(float(history.line[1][-1]) for history in histories)
-    return min(1e-2, find_decades(lowest, _LARGEST_EXPONENT)[0]), _LARGEST_EXPONENT
+    return min(1e-2, logarithmic_limits(lowest, _LARGEST_EXPONENT)[0]), _LARGEST_EXPONENT
 
 
 def _r2_limits(histories: Sequence[History]) -> tuple[float, float]:

@@ -206,7 +206,7 @@ PAPER = Palette(
     times=("#ffe0d6", "#fb9a80", "#dd4a6a", "#8b2b8c", "#3d1f7a", "#150a3c"),
     orbits=("#c30066", "#6987e7", "#43bea5", "#fa8f63", "#4b6d00"),
 )
-"""Channels 1 to 4 are green, red, blue and orange, crossings light to dark blue, escapes light red (fast) to dark red (slow)."""
+"""Channels 1 to 4 are green, red, blue and orange, crossings light to dark blue, escape times light red to dark violet."""
 
 COLOUR_BLIND_SAFE = Palette(
     name="colour-blind safe",

@@ -63,7 +63,7 @@ class _Stage:
 def ensemble_movie_bytes(
     potential: Potential, orbits: SampledOrbits, palette: Palette, format: MovieFormat, style: FigureStyle
 ) -> bytes:
-    """Return the file of a movie, with one frame for each of the common times of the orbits.
+    """Return the content of the file of a movie, with one frame for each of the common times of the orbits.
 
     Parameters
     ----------

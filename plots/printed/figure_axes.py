@@ -258,7 +258,7 @@ def software() -> str:
 
 
 def save_figure(figure: Figure, format: FigureFormat, facts: Mapping[str, str]) -> bytes:
-    """Return the file of a figure. Equal figures have equal bytes.
+    """Return the content of the file of a figure. Equal figures have equal bytes.
 
     Parameters
     ----------

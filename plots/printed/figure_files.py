@@ -28,7 +28,7 @@ def map_figure_bytes(
     starts: Sequence[tuple[float, float]] = (),
     times: TimeScale | None = None,
 ) -> bytes:
-    """Return the file of some pictures of a map, with the map's provenance in the metadata.
+    """Return the content of a figure file with pictures of a map. The metadata contain the map's provenance.
 
     For parameters and exceptions, see `plots.printed.map_figure.draw_map_figure` and `plots.printed.figure_axes.save_figure`.
     """
@@ -37,7 +37,7 @@ def map_figure_bytes(
     return _make_file(
         lambda: draw_map_figure(frame, pictures, palette, style, analyses=analyses, starts=starts, times=times),
         format,
-        {name: str(value) for name, value in frame.provenance().items()},
+        frame.provenance(),
     )
 
 
@@ -49,7 +49,10 @@ def orbits_figure_bytes(
     format: FigureFormat,
     style: FigureStyle,
 ) -> bytes:
-    """Return the file of `plots.printed.orbit_figure.draw_orbits_figure`, with starts and verdicts in the metadata."""
+    """Return the content of a file with the figure of `plots.printed.orbit_figure.draw_orbits_figure`.
+
+    The metadata contain the starts, energies and verdicts.
+    """
     from plots.printed.orbit_figure import draw_orbits_figure
 
     facts = {"potential": potential.name}
@@ -67,7 +70,7 @@ def well_figure_bytes(
     format: FigureFormat,
     style: FigureStyle,
 ) -> bytes:
-    """Return the file of `plots.printed.orbit_figure.draw_well_figure`."""
+    """Return the content of a file with the figure of `plots.printed.orbit_figure.draw_well_figure`."""
     from plots.printed.orbit_figure import draw_well_figure
 
     facts = {"potential": potential.name, "energy": repr(energy)}
@@ -75,23 +78,26 @@ def well_figure_bytes(
 
 
 def statistics_figure_bytes(frame: EscapeMap, box: Window | None, format: FigureFormat, style: FigureStyle) -> bytes:
-    """Return the file of `plots.printed.curve_figures.draw_statistics_figure`; `box` is as in `engine.compute_statistics`."""
+    """Return the content of a file with the figure of `plots.printed.curve_figures.draw_statistics_figure`.
+
+    `box` is as in `engine.compute_statistics`.
+    """
     from plots.printed.curve_figures import draw_statistics_figure
 
-    facts = {name: str(value) for name, value in frame.provenance().items()} | ({} if box is None else {"box": str(box)})
+    facts = frame.provenance() | ({} if box is None else {"box": box})
     return _make_file(lambda: draw_statistics_figure(compute_statistics(frame, box), style), format, facts)
 
 
 def curves_figure_bytes(curves: Sweep, format: FigureFormat, style: FigureStyle) -> bytes:
-    """Return the file of `plots.printed.curve_figures.draw_curves_figure`."""
+    """Return the content of a file with the figure of `plots.printed.curve_figures.draw_curves_figure`."""
     from plots.printed.curve_figures import draw_curves_figure
 
-    facts = {str(name): str(value) for name, value in curves.dataset.attrs.items()}
-    return _make_file(lambda: draw_curves_figure(curves, style), format, facts)
+    return _make_file(lambda: draw_curves_figure(curves, style), format, curves.dataset.attrs)
 
 
-def _make_file(draw: Callable[[], Figure], format: FigureFormat, facts: Mapping[str, str]) -> bytes:
+def _make_file(draw: Callable[[], Figure], format: FigureFormat, facts: Mapping[str, object]) -> bytes:
+    """Draw a figure and return the content of its file. Matplotlib is not thread-safe, so only one thread draws at a time."""
     from plots.printed.figure_axes import RENDER_LOCK, save_figure
 
     with RENDER_LOCK:
-        return save_figure(draw(), format, facts)
+        return save_figure(draw(), format, {name: str(value) for name, value in facts.items()})

@@ -25,7 +25,7 @@ _COLUMNS = ("t", "x", "y", "px", "py", "sali", "lyapunov_exponent", "r2")
 
 
 def netcdf_bytes(frame: EscapeMap, analyses: Analyses = NO_ANALYSES) -> bytes:
-    """Return the NetCDF file of `EscapeMap.to_xarray` with the variables of the results of layers, such as ``origin``."""
+    """Return the content of the NetCDF file of a map, with variables of the results of its layers, such as ``origin``."""
     names = ((layer, name) for layer in analyses for name in LAYERS[layer].variables)
     dataset = frame.to_xarray().assign({name: analyses[layer].to_xarray()[name].variable for layer, name in names})
     # Shuffling and compression reduce a map to a quarter of its size, and make writing faster.

@@ -47,10 +47,10 @@ class FigureEntry:
         return {f"{self.name}.{format}": save_figure(figure, format, facts) for format in (FigureFormat.PNG, FigureFormat.PDF)}
 
 
-def _of_case(case: str) -> Sequence[FigureEntry]:
+def _case_figures(case: str) -> Sequence[FigureEntry]:
     low, high = plane_energies(case)
-    channels = ("green", "red", "blue", "orange")[: CASES[case].channels]
-    colours = ", ".join(["bounded grey", *(f"channel {k} {colour}" for k, colour in enumerate(channels, 1))])
+    channel_colours = ("green", "red", "blue", "orange")[: CASES[case].channels]
+    colours = ", ".join(["bounded grey", *(f"channel {k} {colour}" for k, colour in enumerate(channel_colours, 1))])
     times = "darker is later; bounded grey"
     rows: tuple[tuple[str, str, Callable[[str, MapCache], Figure]], ...] = (
         (
@@ -59,15 +59,15 @@ def _of_case(case: str) -> Sequence[FigureEntry]:
             f"h = {CHANNEL_ENERGIES[case]}, and an orbit through each",
             draw_potential,
         ),
-        ("basins-xy", f"basins of escape on (x, y) at nine energies: {colours}", _nine(Plane.X_Y, "basins")),
-        ("times-xy", f"escape times on (x, y) at nine energies: {times}", _nine(Plane.X_Y, "times")),
-        ("basins-xpx", f"basins of escape on (x, px) at nine energies: {colours}", _nine(Plane.X_PX, "basins")),
-        ("times-xpx", f"escape times on (x, px) at nine energies: {times}", _nine(Plane.X_PX, "times")),
+        ("basins-xy", f"basins of escape on (x, y) at nine energies: {colours}", _nine_maps(Plane.X_Y, "basins")),
+        ("times-xy", f"escape times on (x, y) at nine energies: {times}", _nine_maps(Plane.X_Y, "times")),
+        ("basins-xpx", f"basins of escape on (x, px) at nine energies: {colours}", _nine_maps(Plane.X_PX, "basins")),
+        ("times-xpx", f"escape times on (x, px) at nine energies: {times}", _nine_maps(Plane.X_PX, "times")),
         (
             "crossings-xpx",
-            "upward crossings of y = 0 before the escape, on (x, px) at nine energies: 0 red, 1 blue, 2 magenta, 3 to 10 "
-            "orange, more green, bounded grey",
-            _nine(Plane.X_PX, "crossings"),
+            "upward crossings of y = 0 before the escape, on (x, px) at nine energies: 0, 1, 2, 3 to 10 and more from light to "
+            "dark blue, bounded grey",
+            _nine_maps(Plane.X_PX, "crossings"),
         ),
         ("percentages", "shares of bounded starts and of each channel against h, on (x, y) and (x, px)", draw_percentages),
         ("xh", f"basins of escape on (x, h), h from {low:.4g} to {high:g}: {colours}", draw_energy_plane),
@@ -81,7 +81,7 @@ def _of_case(case: str) -> Sequence[FigureEntry]:
     return [FigureEntry(f"{case}-{name}", f"Case {case}: {caption}", partial(draw, case)) for name, caption, draw in rows]
 
 
-def _nine(plane: Plane, picture: str) -> Callable[[str, MapCache], Figure]:
+def _nine_maps(plane: Plane, picture: str) -> Callable[[str, MapCache], Figure]:
     return partial(draw_nine_maps, plane=plane, picture=picture)
 
 
@@ -99,6 +99,6 @@ _STICKY = (
 )
 
 FIGURES: Mapping[str, FigureEntry] = MappingProxyType(
-    {entry.name: entry for entry in (*(entry for case in CASES for entry in _of_case(case)), *_STICKY)}
+    {entry.name: entry for entry in (*(entry for case in CASES for entry in _case_figures(case)), *_STICKY)}
 )
 """All figures by name, in an order that reuses maps."""

@@ -23,7 +23,7 @@ from reproduction.sample_orbits import find_sample_starts
 # Number of samples of V along a side of a panel.
 _SAMPLES = 301
 # Distance of labels from the bottom of the well, in units of the distance of the saddle.
-_LABEL_PLACE = 1.22
+_LABEL_DISTANCE = 1.22
 
 
 def draw_potential(case: str, cache: MapCache) -> Figure:
@@ -58,7 +58,7 @@ def _draw_channels(axes: Axes, potential: Potential, energy: float, orbits: tupl
     draw_pieces(axes, trace_zero_velocity_curve(potential, Plane.X_Y, energy, window), PAPER.channels[0], 1.6)
     for orbit in orbits:
         axes.plot(*orbit.half_path.T, color=LIGHT.critical_equipotential, linewidth=2.0, solid_capstyle="round")
-        x, y = potential.saddles[orbit.channel - 1] * _LABEL_PLACE
+        x, y = potential.saddles[orbit.channel - 1] * _LABEL_DISTANCE
         axes.text(x, y, f"$L_{orbit.channel}$", ha="center", va="center", fontsize=14.0, color=LIGHT.text)
 
 

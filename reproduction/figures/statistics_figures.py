@@ -47,8 +47,8 @@ def draw_statistics(case: str, cache: MapCache) -> Figure:
         _draw_fits(axes, fit)
     label_axes(panels[0], "$h$", "$N_e/N_0$")
     label_axes(panels[1], "$h$", "$N_{de}/N_0$")
-    crossings = {energy: compute_statistics(cache.map(case, Plane.X_PX, energy)) for energy in nine_energies(case)}
-    _draw_crossings(panels[2], panels[3], crossings)
+    statistics = {energy: compute_statistics(cache.map(case, Plane.X_PX, energy)) for energy in nine_energies(case)}
+    _draw_crossings(panels[2], panels[3], statistics)
     after = "after $n$ crossings"
     set_titles(panels, ["escaping starts", "direct escapes", f"escapes {after}", f"probability of escape {after}"])
     return figure
@@ -66,17 +66,17 @@ def _draw_fits(axes: Axes, fit: CaseFit) -> None:
     add_panel_legend(axes, "lower right")
 
 
-def _draw_crossings(share_axes: Axes, probability_axes: Axes, statistics: Mapping[float, EscapeStatistics]) -> None:
+def _draw_crossings(share_axes: Axes, probability_axes: Axes, statistics_by_energy: Mapping[float, EscapeStatistics]) -> None:
     """Draw both panels against n, with a line for each energy. Lower energies have darker lines."""
-    colour_indices = np.linspace(_DARKEST, _LIGHTEST, len(statistics)).astype(int)
-    for (energy, counted), colour_index in zip(statistics.items(), colour_indices, strict=True):
+    colour_indices = np.linspace(_DARKEST, _LIGHTEST, len(statistics_by_energy)).astype(int)
+    for (energy, statistics), colour_index in zip(statistics_by_energy.items(), colour_indices, strict=True):
         style: dict[str, Any] = {"color": PAPER.escape_time[colour_index], "linewidth": 1.2, "marker": "o", "markersize": 2.4}
-        escapes = counted.crossing_counts[: MOST_CROSSINGS + 1]
-        remaining = counted.decided - np.cumsum(escapes) + escapes
+        escapes = statistics.crossing_counts[: MOST_CROSSINGS + 1]
+        remaining = statistics.decided - np.cumsum(escapes) + escapes
         with np.errstate(divide="ignore"):
-            log_shares = np.where(escapes > 0, np.log10(escapes / counted.starts), np.nan)
+            log_shares = np.where(escapes > 0, np.log10(escapes / statistics.starts), np.nan)
         n = np.arange(escapes.size)
-        probabilities = np.where(remaining >= FEWEST_REMAINING, counted.escape_probabilities[: escapes.size], np.nan)
+        probabilities = np.where(remaining >= FEWEST_REMAINING, statistics.escape_probabilities[: escapes.size], np.nan)
         share_axes.plot(n, log_shares, label=f"$h = {energy:.2f}$", **style)
         probability_axes.plot(n, probabilities, **style)
     label_axes(share_axes, "$n$", r"$\log_{10}(dN_n/N_0)$")
@@ -93,8 +93,7 @@ def draw_percentages(case: str, cache: MapCache) -> Figure:
     panels = list(figure.subplots(1, 2, sharey=True))
     planes = (Plane.X_Y, Plane.X_PX)
     for axes, plane in zip(panels, planes, strict=True):
-        table = cache.curves(case, plane)
-        shares, *_ = sweep_charts(table, PAPER)
+        shares, *_ = sweep_charts(cache.curves(case, plane), PAPER)
         draw_chart(axes, shares, corner=None)
         label_axes(axes, "$h$", "percentage of starts" if axes is panels[0] else "")
     set_titles(panels, [f"the {plane_label(plane)} plane" for plane in planes])

@@ -30,7 +30,7 @@ from reproduction.paper_ranges import STICKY_CASE, STICKY_ENERGY
 from reproduction.sample_orbits import find_lyapunov_r2
 
 LONGEST_DRAWN = 4e6
-"""Latest escape time of a drawn orbit, dimensionless. Integration takes a second per 1e5 time units."""
+"""Latest escape time of a drawn orbit, dimensionless, unless all escape later. Integration takes a second per 1e5 time units."""
 
 # Number of time intervals in each panel. The minimum and maximum of R² in each interval are drawn.
 _INTERVALS = 1000
@@ -69,7 +69,7 @@ def draw_super_sticky(cache: MapCache) -> Figure:
         _draw_history(panels[0], _sample_r2(search, index, 0.0, cache), end, search.spec.t_max)
         _draw_departure(panels[1], _sample_r2(search, index, (1.0 - _DEPARTURE_SHARE) * end, cache), end)
     for axes in panels:
-        _draw_exits(axes, search)
+        _draw_lyapunov_range(axes, search)
         style_axes(axes)
     label_axes(panels[0], "$t / 10^5$", "$R^2 = x^2 + y^2$")
     label_axes(panels[1], r"$t - t_{\mathrm{esc}}$", "")
@@ -120,8 +120,8 @@ def _draw_band(axes: Axes, r2: np.ndarray, begin: float, end: float) -> None:
     axes.fill_between(edges, lowest, highest, step="post", color=MEASURED, linewidth=0.2)
 
 
-def _draw_exits(axes: Axes, search: SuperStickySearch) -> None:
-    """Draw the range of R² on the Lyapunov orbits."""
+def _draw_lyapunov_range(axes: Axes, search: SuperStickySearch) -> None:
+    """Draw the range of R² on the Lyapunov orbits, and set the limits of the R² axis."""
     assert search.spec.common_energy is not None
     low, high = find_lyapunov_r2(search.spec.potential, search.spec.common_energy)
     label = f"Lyapunov orbits, $R^2 = {low:.3f}$ to ${high:.3f}$"

@@ -41,7 +41,7 @@ class Comparison:
         Shares are relative to the starts inside. A missing value is NaN.
     windows
         For each energy, the window that best explains the stated shares; empty if the number needs no window.
-    counted
+    counted_shares
         Computed shares in these windows, with starts outside counted.
     reason
         Reason for a difference.
@@ -50,7 +50,7 @@ class Comparison:
     stated: StatedNumber
     computed: tuple[float, ...]
     windows: tuple[FittedWindow, ...] = ()
-    counted: tuple[float, ...] = ()
+    counted_shares: tuple[float, ...] = ()
     reason: str = ""
 
     @property
@@ -64,7 +64,7 @@ class Comparison:
     @property
     def counted_difference(self) -> float:
         """Largest difference when starts outside count; NaN if the number needs no window."""
-        return _largest_difference(self.stated, self.counted)
+        return _largest_difference(self.stated, self.counted_shares)
 
     @property
     def agrees(self) -> bool:
@@ -104,16 +104,16 @@ def compare_all(
 def _compare(number: StatedNumber, measures: Measures, windows: _Windows) -> Comparison:
     """Compare one number. The reason is computed only if there is a difference."""
     fitted_windows = tuple(windows.fit(number, energy) for energy in number.energies) if number.needs_window else ()
-    counted = tuple(_count(number, window) for window in fitted_windows)
-    row = Comparison(number, measures.values(number), fitted_windows, counted)
+    counted_shares = tuple(_count(number, window) for window in fitted_windows)
+    row = Comparison(number, measures.values(number), fitted_windows, counted_shares)
     return row if row.agrees else replace(row, reason=explain(measures, number))
 
 
 def _count(number: StatedNumber, window: FittedWindow) -> float:
     """Return a share in a window, with starts outside counted."""
     if number.quantity is Quantity.IN_BASINS:
-        return share_in_basins(window.counted, count_outside=True)
-    return window.share(counted_codes(number))
+        return share_in_basins(window.escape_map, count_outside=True)
+    return window.percentage(counted_codes(number))
 
 
 class _Windows:
@@ -121,7 +121,7 @@ class _Windows:
 
     def __init__(self, cache: MapCache, numbers: tuple[StatedNumber, ...]) -> None:
         self.cache = cache
-        self.fitting = [number for number in numbers if number.needs_window and number.quantity in _WINDOW_QUANTITIES]
+        self.window_numbers = [number for number in numbers if number.needs_window and number.quantity in _WINDOW_QUANTITIES]
         self.windows: dict[tuple[str, Plane, float], FittedWindow] = {}
 
     def fit(self, number: StatedNumber, energy: float) -> FittedWindow:
@@ -131,8 +131,8 @@ class _Windows:
         if key not in self.windows:
             stated = {
                 counted_codes(other): other.value
-                for other in self.fitting
-                if (other.case, other.plane) == key[:2] and energy in other.energies
+                for other in self.window_numbers
+                if (other.case, other.plane) == (number.case, number.plane) and energy in other.energies
             }
             self.windows[key] = fit_window(self.cache, number.case, self.cache.map(*key), stated, POINTS)
         return self.windows[key]

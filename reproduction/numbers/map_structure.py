@@ -13,15 +13,15 @@ BOUNDARY_PIXELS = 2
 _NEIGHBOURHOOD = (3, 3)
 
 
-def neighbouring_fates(fate: np.ndarray, counts: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the lowest and the highest fate among each start and its eight neighbours, of those where `counts` is true.
+def neighbouring_fates(fate: np.ndarray, is_counted: np.ndarray, highest_fate: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the lowest and the highest fate among each start and its eight neighbours, without those that are not counted.
 
-    The fates that count are from 0 to `most`.
+    The counted fates are from 0 to `highest_fate`.
     """
     from scipy import ndimage
 
-    lowest = ndimage.minimum_filter(np.where(counts, fate, most), _NEIGHBOURHOOD, mode="nearest")
-    return lowest, ndimage.maximum_filter(np.where(counts, fate, 0), _NEIGHBOURHOOD, mode="nearest")
+    lowest = ndimage.minimum_filter(np.where(is_counted, fate, highest_fate), _NEIGHBOURHOOD, mode="nearest")
+    return lowest, ndimage.maximum_filter(np.where(is_counted, fate, 0), _NEIGHBOURHOOD, mode="nearest")
 
 
 def share_in_basins(frame: EscapeMap, *, count_outside: bool = False) -> float:

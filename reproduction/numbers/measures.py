@@ -52,7 +52,7 @@ class Measures:
         """Return the map on (x, h)."""
         return self.cache.map(case, Plane.X_H, plane_energies(case))
 
-    def last_bounded(self, case: str) -> float:
+    def last_bounded_energy(self, case: str) -> float:
         """Return the highest h on (x, h) with a bounded start; NaN if there is none."""
         frame = self.energy_plane(case)
         rows = np.flatnonzero((frame.fate == Fate.BOUNDED).any(axis=1))
@@ -99,6 +99,7 @@ def _last_escape(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
 
 
 def _nearest_escape(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
+    """Return the escape time closest to the stated time, of the orbits that escape through the channels of the number."""
     times = measures.search.escape_time[np.isin(measures.search.fate, number.channels)]
     return (float(times[np.argmin(np.abs(times - number.value))]) if times.size else float("nan"),)
 
@@ -119,7 +120,7 @@ _MEASURES: Mapping[Quantity, Measure] = MappingProxyType(
         Quantity.ESCAPED: _shares,
         Quantity.DIRECT: _of_each_map(lambda frame: 100.0 * compute_statistics(frame).direct_share),
         Quantity.CHAOTIC: _chaotic_shares,
-        Quantity.LAST_BOUNDED_ENERGY: lambda measures, number: (measures.last_bounded(number.case),),
+        Quantity.LAST_BOUNDED_ENERGY: lambda measures, number: (measures.last_bounded_energy(number.case),),
         Quantity.MEDIAN_ESCAPE_TIME: _of_each_map(lambda frame: compute_statistics(frame).median_escape_time),
         Quantity.ENERGY_ERROR: _energy_error,
         Quantity.ACCURATE: _of_each_map(_accurate_share),

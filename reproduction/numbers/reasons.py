@@ -21,7 +21,7 @@ def explain(measures: Measures, number: StatedNumber) -> str:
     return number.remark.format(**{name: FACTS[name](measures, number) for name in names})
 
 
-def _late_escapes(measures: Measures, number: StatedNumber) -> float:
+def _late_share(measures: Measures, number: StatedNumber) -> float:
     times = compute_statistics(measures.maps(number)[0]).escape_times
     return 100.0 * float(np.mean(times > number.value))
 
@@ -48,16 +48,8 @@ def _bounded_above(measures: Measures, number: StatedNumber) -> int:
     return int(np.count_nonzero(frame.fate[frame.ordinate > number.value] == Fate.BOUNDED))
 
 
-def _last_bounded(measures: Measures, number: StatedNumber) -> float:
-    return measures.last_bounded(number.case)
-
-
 def _paper_direct(measures: Measures, number: StatedNumber) -> float:
     return 100.0 * float(PAPER_FITS[number.case].direct(number.energies[0]))
-
-
-def _share_at_last(measures: Measures, number: StatedNumber) -> float:
-    return measures.values(number)[-1]
 
 
 def _below_largest(measures: Measures, number: StatedNumber) -> float:
@@ -67,15 +59,15 @@ def _below_largest(measures: Measures, number: StatedNumber) -> float:
 
 FACTS: Mapping[str, Callable[[Measures, StatedNumber], float]] = MappingProxyType(
     {
-        "late_escapes": _late_escapes,
+        "late_share": _late_share,
         "bounded_at_5000": _bounded_at(5e3),
         "bounded_at_20000": _bounded_at(2e4),
         "chaotic_orbits": _chaotic_orbits,
         "chaotic_escapes": _chaotic_escapes,
         "bounded_above": _bounded_above,
-        "last_bounded": _last_bounded,
+        "last_bounded": lambda measures, number: measures.last_bounded_energy(number.case),
         "paper_direct": _paper_direct,
-        "share_at_last": _share_at_last,
+        "share_at_last": lambda measures, number: measures.values(number)[-1],
         "below_largest": _below_largest,
     }
 )

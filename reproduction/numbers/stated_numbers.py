@@ -117,7 +117,7 @@ _INTERIOR, _WINDOW = Counting.INTERIOR, Counting.WINDOW
 _X_Y, _X_PX, _X_H = Plane.X_Y, Plane.X_PX, Plane.X_H
 
 # Remarks, whose fields in braces are names of `reproduction.numbers.reasons.FACTS`.
-_MEDIAN = "Only {late_escapes:.1f} % of the escapes are so late."
+_MEDIAN = "Only {late_share:.1f} % of the escapes are so late."
 _HALF = "{bounded_at_5000:.1f} % of the starts are bounded at t = 5000, {bounded_at_20000:.1f} % at t = 20 000."
 _REGULAR = (
     "Bounded orbits whose SALI falls below its threshold: {chaotic_orbits}, of which leave later: {chaotic_escapes}; see "
@@ -148,11 +148,11 @@ _TENS = "tens of thousands for most"
 _WADA = "definition of Wada basins"
 
 # Energies around the stated turning point.
-_TURN = tuple(round(0.15 + 0.0025 * step, 4) for step in range(17))
+_TURN_H = tuple(round(0.15 + 0.0025 * step, 4) for step in range(17))
 # Energies from the first map to the end of the paper's curves.
-_EXPONENTS = (*nine_energies("I")[::2], 0.4, 0.5)
+_EXPONENT_H = (*nine_energies("I")[::2], 0.4, 0.5)
 # All energies of the maps except the last, at which no orbit is bounded.
-_ISLANDS = nine_energies("III")[:-1]
+_ISLAND_H = nine_energies("III")[:-1]
 
 _CASE_I = (
     StatedNumber("I", None, (), "", Quantity.ESCAPE_ENERGY, _EXACTLY, 1 / 8),
@@ -165,9 +165,9 @@ _CASE_I = (
     StatedNumber("I", _X_Y, (0.285, 0.3, 0.4), "> 0.28", _BOUNDED, _ABOUT, 0.0),
     StatedNumber("I", _X_Y, (0.38, 0.44, 0.5), "> 0.35", _THROUGH, _ABOUT, 65.0, (1,), _WINDOW),
     StatedNumber("I", _X_Y, (0.38, 0.44, 0.5), "> 0.37", _THROUGH, _ABOUT, 35.0, (2,), _WINDOW),
-    StatedNumber("I", _X_Y, _TURN, "0.15 to 0.19", Quantity.LARGEST_SHARE_ENERGY, _ABOUT, 0.17, (2,), _INTERIOR, _FLAT),
+    StatedNumber("I", _X_Y, _TURN_H, "0.15 to 0.19", Quantity.LARGEST_SHARE_ENERGY, _ABOUT, 0.17, (2,), _INTERIOR, _FLAT),
     StatedNumber("I", _X_Y, (0.5,), "high", _IN_BASINS, _ABOUT, 90.0, (), _WINDOW, _GRID),
-    StatedNumber("I", _X_Y, _EXPONENTS, "high", Quantity.EXPONENT, Relation.RISES_TO, 1.0, (), _INTERIOR, _STILL_FRACTAL),
+    StatedNumber("I", _X_Y, _EXPONENT_H, "high", Quantity.EXPONENT, Relation.RISES_TO, 1.0, (), _INTERIOR, _STILL_FRACTAL),
     StatedNumber("I", _X_PX, (0.13,), "0.13", _BOUNDED, _ABOUT, 50.0, remark=_HALF),
     StatedNumber("I", _X_PX, (0.13,), "0.13", _THROUGH, _ABOUT, 25.0, (1,), remark=_HALF, derivation=_HALVED),
     StatedNumber("I", _X_PX, (0.13,), "0.13", _THROUGH, _ABOUT, 25.0, (2,), remark=_HALF, derivation=_HALVED),
@@ -222,7 +222,7 @@ _CASE_III = (
     StatedNumber("III", _X_Y, (0.6,), "0.6", _THROUGH, _ABOUT, 65.0, (1, 2), _WINDOW),
     StatedNumber("III", _X_Y, (0.6,), "0.6", _THROUGH, _ABOUT, 35.0, (3, 4), _WINDOW),
     StatedNumber("III", _X_Y, (0.6,), "high", _IN_BASINS, _ABOUT, 90.0, (), _WINDOW, _GRID),
-    StatedNumber("III", _X_Y, _ISLANDS, "0.26 to 0.55", Quantity.TIME_ORDERS, _ABOUT, 2.0, (), _INTERIOR, _NEAR),
+    StatedNumber("III", _X_Y, _ISLAND_H, "0.26 to 0.55", Quantity.TIME_ORDERS, _ABOUT, 2.0, (), _INTERIOR, _NEAR),
     StatedNumber("III", _X_PX, (0.26,), "0.26", _BOUNDED, _ABOUT, 90.0),
     StatedNumber("III", _X_PX, (0.26, 0.27, 0.28, 0.29), "< 0.3", _BOUNDED, _MORE, 50.0, derivation=_MOST),
     StatedNumber("III", _X_PX, (0.36, 0.4, 0.5), "> 0.35", _ESCAPED, _MORE, 50.0, derivation=_OUTNUMBERED),

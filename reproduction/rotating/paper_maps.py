@@ -1,6 +1,6 @@
 """Choose maps of the systems in rotating frames, and with bodies, that papers study.
 
-Planes, windows and grids are our choice, because we could not look up those of the papers.
+Planes, windows and grids may differ from those of the papers, which were not available.
 """
 
 from __future__ import annotations

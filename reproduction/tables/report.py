@@ -21,13 +21,13 @@ from reproduction.tables.fit_sections import write_fits, write_laws
 from reproduction.tables.late_sections import write_late_escapes, write_super_sticky
 
 # Headings of the tables of the report.
-_HEADINGS = ("quantity", "h", "paper", "computed, inside", "difference", "best window", "computed in it", "reason")
+_REPORT_HEADINGS = ("quantity", "h", "paper", "computed, inside", "difference", "best window", "computed in it", "reason")
 # Headings of the CSV table.
-_COLUMNS = (
+_CSV_HEADINGS = (
     "case", "plane", "h", "what", "relation", "stated", "unit", "computed", "difference", "needs_window", "agrees",
     "half_side", "right_edge", "outside_share", "counted", "counted_difference", "agrees_when_counted", "derivation", "reason",
 )  # fmt: skip
-# Smallest number of computed values that are listed with their energies instead of their range.
+# Smallest number of computed values that are listed with their energies after their range.
 _SHORTEST_LIST = 4
 
 
@@ -51,10 +51,10 @@ def write_report(cache: MapCache, search: SuperStickySearch, rows: tuple[Compari
     parts = ["# Comparison with the numbers of the paper", _introduce(cache, search), "## Summary", describe_verdict(rows)]
     for case, potential in CASES.items():
         case_rows = [row for row in rows if row.stated.case == case]
-        parts += [f"## Case {case}: {potential.channels} channels", write_rows(_HEADINGS, map(_page_row, case_rows))]
+        parts += [f"## Case {case}: {potential.channels} channels", write_rows(_REPORT_HEADINGS, map(_report_row, case_rows))]
     parts += ["## Fits", write_fits(cache), "## Late escapes", write_laws(cache)]
     parts += ["## Chaotic bounded orbits", write_late_escapes(cache), "## Super-sticky orbits", write_super_sticky(search)]
-    parts += ["## Open points of the paper", _OPEN]
+    parts += ["## Open points of the paper", _OPEN_POINTS]
     return "\n\n".join(parts) + "\n"
 
 
@@ -64,31 +64,31 @@ def describe_verdict(rows: Sequence[Comparison]) -> str:
     free_shares = [row for row in shares if not row.stated.needs_window]
     window_shares = [row for row in shares if row.stated.needs_window]
     other_numbers = [row for row in rows if not row.stated.is_share]
-    counted = sum(row.agrees or row.agrees_when_counted for row in window_shares)
+    counted_agreeing = sum(row.agrees or row.agrees_when_counted for row in window_shares)
     sentences = (
         f"**Of the {len(free_shares)} percentages that do not depend on a window, {_count_agreeing(free_shares)} agree within "
         f"{POINTS:g} percentage points.** "
         f"Of the {len(window_shares)} that depend on a window that is not stated, {_count_agreeing(window_shares)} agree for the "
         f"starts inside alone, "
-        f"and {counted} if starts outside are counted in the best window. "
+        f"and {counted_agreeing} if starts outside are counted in the best window. "
         f"Of the {len(other_numbers)} other numbers, {_count_agreeing(other_numbers)} agree within {PERCENT:g} %."
     )
     failing = [row for row in (*free_shares, *other_numbers) if not row.agrees]
     lines = [
-        f"- {_describe_place(row.stated)}: {_value(row.stated)} {'derived' if row.stated.derivation else 'stated'}, "
-        f"{_computed(row)} computed. {row.reason}".rstrip()
+        f"- {_describe_place(row.stated)}: {_describe_value(row.stated)} {'derived' if row.stated.derivation else 'stated'}, "
+        f"{_describe_computed(row)} computed. {row.reason}".rstrip()
         for row in failing
     ]
-    return (
-        "\n\n".join([sentences, "Numbers that do not depend on a window and differ:", "\n".join(lines)]) if lines else sentences
-    )
+    if not lines:
+        return sentences
+    return "\n\n".join([sentences, "Numbers that do not depend on a window and differ:", "\n".join(lines)])
 
 
 def write_table(rows: Sequence[Comparison]) -> str:
     """Write the rows as CSV, with one line per energy, shares in percent, and empty cells for missing values."""
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
-    table.writerow(_COLUMNS)
+    table.writerow(_CSV_HEADINGS)
     for row in rows:
         for index, value in enumerate(row.computed):
             table.writerow(_table_row(row, index, value))
@@ -102,17 +102,17 @@ def _table_row(row: Comparison, index: int, value: float) -> tuple[object, ...]:
     is_by_energy = len(row.computed) == len(stated.energies)
     return (
         stated.case, stated.plane.title if stated.plane else "", stated.energies[index] if is_by_energy else stated.at,
-        _describe_quantity(stated), stated.relation.value, f"{stated.value:.6g}", _unit(stated), _cell(value),
-        _cell(row.difference), int(stated.needs_window), int(row.agrees),
+        _describe_quantity(stated), stated.relation.value, f"{stated.value:.6g}", _unit(stated), _format_cell(value),
+        _format_cell(row.difference), int(stated.needs_window), int(row.agrees),
         *(("",) * 6 if window is None else (
-            f"{window.half_side:g}", f"{window.window.x_high:g}", f"{window.outside_share:.4g}", f"{row.counted[index]:.6g}",
-            f"{row.counted_difference:.6g}", int(row.agrees_when_counted),
+            f"{window.half_side:g}", f"{window.window.x_high:g}", f"{window.outside_share:.4g}",
+            f"{row.counted_shares[index]:.6g}", f"{row.counted_difference:.6g}", int(row.agrees_when_counted),
         )),
         stated.derivation, row.reason,
     )  # fmt: skip
 
 
-def _cell(value: float) -> str:
+def _format_cell(value: float) -> str:
     return "" if np.isnan(value) else f"{value:.6g}"
 
 
@@ -132,18 +132,20 @@ def _introduce(cache: MapCache, search: SuperStickySearch) -> str:
     )
 
 
-def _page_row(row: Comparison) -> tuple[str, ...]:
+def _report_row(row: Comparison) -> tuple[str, ...]:
+    """Return the cells of a number in the report, in the order of `_REPORT_HEADINGS`."""
     stated = row.stated
     plane = f" on {stated.plane.title}" if stated.plane else ""
-    difference = _signed(row.difference, stated)
+    difference = _format_difference(row.difference, stated)
     window, counted = "not needed" if stated.is_share else "", ""
     if stated.counting is Counting.INTERIOR:
         window = "inside"
     if row.windows:
-        window = f"{_describe_windows(row)}, {_range([100 * fitted.outside_share for fitted in row.windows], '{:.0f}')} % outside"
-        counted = f"{_range(row.counted, '{:.1f}')} % ({_signed(row.counted_difference, stated)})"
+        percentages_outside = [100 * fitted.outside_share for fitted in row.windows]
+        window = f"{_describe_windows(row)}, {_format_range(percentages_outside, '{:.0f}')} % outside"
+        counted = f"{_format_range(row.counted_shares, '{:.1f}')} % ({_format_difference(row.counted_difference, stated)})"
     return (
-        f"{_describe_quantity(stated)}{plane}", stated.at or "", _stated(stated), _computed(row),
+        f"{_describe_quantity(stated)}{plane}", stated.at, _describe_stated(stated), _describe_computed(row),
         difference if row.agrees else f"**{difference}**", window, counted, "" if row.agrees else _explain(row),
     )  # fmt: skip
 
@@ -151,10 +153,10 @@ def _page_row(row: Comparison) -> tuple[str, ...]:
 def _describe_windows(row: Comparison) -> str:
     """Describe the range of half sides, and of right edges that differ."""
     windows = [fitted.window for fitted in row.windows]
-    square = f"±{_range([window.ordinate_high for window in windows], '{:.2f}')}"
+    square = f"±{_format_range([window.ordinate_high for window in windows], '{:.2f}')}"
     if all(window.x_high == window.ordinate_high for window in windows):
         return square
-    return f"{square}, right edge {_range([window.x_high for window in windows], '{:.2f}')}"
+    return f"{square}, right edge {_format_range([window.x_high for window in windows], '{:.2f}')}"
 
 
 def _explain(row: Comparison) -> str:
@@ -179,20 +181,20 @@ def _describe_quantity(stated: StatedNumber) -> str:
     return f"{stated.quantity.value} {channels}".strip()
 
 
-def _stated(stated: StatedNumber) -> str:
+def _describe_stated(stated: StatedNumber) -> str:
     """Return the number of the paper, with its derivation."""
-    return f"{_value(stated)} (derived: {stated.derivation})" if stated.derivation else _value(stated)
+    return f"{_describe_value(stated)} (derived: {stated.derivation})" if stated.derivation else _describe_value(stated)
 
 
-def _value(stated: StatedNumber) -> str:
+def _describe_value(stated: StatedNumber) -> str:
     value = f"{stated.value:.3g} %" if stated.is_share else f"{stated.value:.6g}"
     return f"{stated.relation.value} {value}".strip()
 
 
-def _computed(row: Comparison) -> str:
-    """Return the range of the computed values, or many different values with their energies."""
+def _describe_computed(row: Comparison) -> str:
+    """Return the range of the computed values. Several different values are also listed with their energies."""
     form, unit = ("{:.1f}", " %") if row.stated.is_share else ("{:.4g}", "")
-    value_range = _range(row.computed, form)
+    value_range = _format_range(row.computed, form)
     is_single = " to " not in value_range
     if is_single or len(row.computed) < _SHORTEST_LIST:
         return value_range + unit
@@ -201,14 +203,14 @@ def _computed(row: Comparison) -> str:
     return f"{value_range}{unit} ({listed})"
 
 
-def _range(values: Sequence[float], form: str) -> str:
+def _format_range(values: Sequence[float], form: str) -> str:
     if np.isnan(values).all():
         return "none"
     low, high = form.format(np.nanmin(values)), form.format(np.nanmax(values))
     return low if low == high else f"{low} to {high}"
 
 
-def _signed(difference: float, stated: StatedNumber) -> str:
+def _format_difference(difference: float, stated: StatedNumber) -> str:
     if np.isnan(difference):
         return "none"
     return (f"{difference:+.1f}" if stated.is_share else f"{difference:+.3g}").replace("-", "−")
@@ -251,7 +253,7 @@ Some statements need a definition:
 Differences are computed − stated, in percentage points for shares; the largest for several energies; 0 if a stated bound holds.
 Bold differences are larger than {points} points, or {percent} % for numbers that are not shares."""
 
-_OPEN = """\
+_OPEN_POINTS = """\
 - The test for saddles in the paper omits the square of the mixed derivative; it is included here.
 - At h = 0.26 the paper draws the Lyapunov orbits of III at R² = 1.26; the table of case III gives R² on them.
 - The windows of its percentages are not stated; where they matter, a window is fitted.

@@ -21,7 +21,7 @@ from app.browser.module_files import NUMBERS_MODULE
 from app.state.help_texts import title_with_help
 from engine import Window
 from plots.pictures.axis_labels import find_offset
-from plots.pictures.histories import find_decades
+from plots.pictures.histories import logarithmic_limits
 
 _OFFSET_LABEL_CODE = callback_code(Path(__file__).with_name("offset_ticks.js"), "offsetLabel(tick, base, unit)")
 
@@ -209,7 +209,7 @@ def set_range(axis_range: Range1d, low: float, high: float) -> None:
 
 def set_decades(axis_range: Range1d, low: float, high: float) -> None:
     """Set the ends of a logarithmic axis: the power of ten below `low`, and a number a little above `high`."""
-    set_range(axis_range, *find_decades(low, high))
+    set_range(axis_range, *logarithmic_limits(low, high))
 
 
 def moving_line(dimension: str, **options: Any) -> Span:
@@ -219,7 +219,8 @@ def moving_line(dimension: str, **options: Any) -> Span:
 
 def hover_html(text: str) -> str:
     """Return the HTML of a hover text in the type of the page, whose stylesheet does not reach into a tooltip."""
-    return f'<style>b {{ font-weight: 600 }}</style><div style="font-size:12px;line-height:16px;color:var(--ui-ink)">{text}</div>'
+    weighted = text.replace("<b>", '<b style="font-weight:600">')
+    return f'<div style="font-size:12px;line-height:16px;color:var(--ui-ink)">{weighted}</div>'
 
 
 def chart_hover(text: str, renderers: Sequence[GlyphRenderer], **options: Any) -> HoverTool:

@@ -10,7 +10,7 @@ from bokeh.plotting import figure
 from app.state.view_state import ViewState
 from app.views.components.plots import FigurePane, set_borders
 from app.views.components.widgets import FULL_HEIGHT, SegmentedControl
-from plots.layers.table import LAYER_OF, PICTURES
+from plots.layers.table import LAYERS_BY_PICTURE, PICTURES
 
 SHORT_TITLES = {"well": "Well"} | {name: picture.short_title for name, picture in PICTURES.items() if name != "curves"}
 """Short titles of all pictures, in order."""
@@ -83,7 +83,7 @@ class PictureGrid:
     @property
     def _largest_picture(self) -> str:
         """The largest picture: the enlarged picture, or else the picture of the last layer that shows something."""
-        layers = [name for name in self._panes if name in LAYER_OF and name not in self._empty_pictures]
+        layers = [name for name in self._panes if name in LAYERS_BY_PICTURE and name not in self._empty_pictures]
         return self._state.focus if self._is_enlarged else [FIRST_PICTURE, *layers][-1]
 
     @property

@@ -18,7 +18,7 @@ from app.views.components.texts import StatusPane
 from app.views.components.widgets import SegmentedControl, Switches, button
 from engine import EscapeMap
 from engine.slices.axes import highest_energy
-from plots.layers.table import LAYER_OF, TITLES
+from plots.layers.table import LAYERS_BY_PICTURE, TITLES
 from plots.printed.figure_files import (
     curves_figure_bytes,
     map_figure_bytes,
@@ -184,7 +184,8 @@ def figure_choices(shown: ShownResults, state: ViewState) -> dict[str, Make]:
 
 def _map_choices(frame: EscapeMap, shown: ShownResults, state: ViewState) -> dict[str, Make]:
     analyses, orbits = shown.analyses, shown.orbits
-    pictures = [name for name in TITLES if name != "curves" and (name not in LAYER_OF or LAYER_OF[name].name in analyses)]
+    without_result = {picture for picture, layer in LAYERS_BY_PICTURE.items() if layer.name not in analyses}
+    pictures = [name for name in TITLES if name not in {"curves", *without_result}]
 
     def make(names: Sequence[str], format: FigureFormat, style: FigureStyle) -> bytes:
         return map_figure_bytes(frame, names, palette, format, style, analyses=analyses, starts=starts, times=times)

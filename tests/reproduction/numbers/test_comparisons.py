@@ -173,11 +173,11 @@ def counted(window: Window) -> dict[tuple[int, ...], float]:
 @pytest.mark.parametrize("window", [Window(-1.6, 1.6, -1.6, 1.6), Window(-1.2, 2.4, -1.2, 1.2)], ids=str)
 def test_a_window_is_recovered_from_its_percentages(window: Window) -> None:
     cache = MapCache(replace(SMALL, resolution=60))
-    found = fit_window(cache, "II", cache.map("II", Plane.X_PX, 0.5), counted(window), enough=1.0)
+    found = fit_window(cache, "II", cache.map("II", Plane.X_PX, 0.5), counted(window), tolerance=1.0)
     whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.5, (90, 90), window, t_max=1e-9, use_evidence=False))
     outside = np.sum(whole.fate == Fate.OUTSIDE) / np.sum(whole.fate != Fate.FORBIDDEN)
     assert found.outside_share == pytest.approx(outside, abs=0.03)
-    assert found.share((1,)) == pytest.approx(counted(window)[1,], abs=2.0)
+    assert found.percentage((1,)) == pytest.approx(counted(window)[1,], abs=2.0)
 
 
 def test_percentages_in_a_window_are_reported_in_addition_to_those_inside() -> None:
@@ -185,6 +185,6 @@ def test_percentages_in_a_window_are_reported_in_addition_to_those_inside() -> N
         share_of((1,)), case="II", plane=Plane.X_PX, counting=Counting.WINDOW, value=70.0, quantity=Quantity.ESCAPED_BY
     )
     row = measure(number)
-    assert len(row.windows) == len(row.counted) == 1
-    assert row.counted[0] == row.windows[0].share((1,)) > row.computed[0]
+    assert len(row.windows) == len(row.counted_shares) == 1
+    assert row.counted_shares[0] == row.windows[0].percentage((1,)) > row.computed[0]
     assert abs(row.counted_difference) < abs(row.difference)

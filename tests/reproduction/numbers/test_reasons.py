@@ -35,7 +35,7 @@ def test_bounded_shares_at_earlier_times_count_later_escapes(measures: Measures)
 
 def test_late_escapes_are_a_share_of_the_escapes(measures: Measures) -> None:
     frame = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.13, (22, 22), t_max=6e3))
-    number = replace(NUMBER, quantity=Quantity.MEDIAN_ESCAPE_TIME, value=500.0, remark="{late_escapes}")
+    number = replace(NUMBER, quantity=Quantity.MEDIAN_ESCAPE_TIME, value=500.0, remark="{late_share}")
     expected = 100.0 * np.sum(frame.escape_time > 500.0) / np.sum(frame.fate >= 1)
     assert float(explain(measures, number)) == pytest.approx(expected)
 

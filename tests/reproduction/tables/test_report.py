@@ -49,7 +49,7 @@ def test_the_table_has_one_line_per_energy() -> None:
     assert [(line["case"], line["h"]) for line in lines] == [("I", "0.3"), ("I", "0.5"), ("II", "0.5"), ("III", "")]
     assert float(lines[1]["computed"]) == pytest.approx(rows[0].computed[1], rel=1e-5)
     assert float(lines[2]["half_side"]) == rows[1].windows[0].half_side
-    assert float(lines[2]["counted"]) == pytest.approx(rows[1].counted[0], rel=1e-5)
+    assert float(lines[2]["counted"]) == pytest.approx(rows[1].counted_shares[0], rel=1e-5)
     assert [line["half_side"] for line in lines if line["case"] != "II"] == ["", "", ""]
 
 

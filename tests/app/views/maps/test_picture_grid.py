@@ -11,7 +11,7 @@ from app.state.view_state import ViewState
 from app.views.components.plots import FigurePane
 from app.views.maps.map_plots import PLAIN_PICTURES
 from app.views.maps.picture_grid import SHORT_TITLES, PictureGrid
-from plots.layers.table import LAYER_OF
+from plots.layers.table import LAYERS_BY_PICTURE
 from tests.app.map_actions import make_maps
 
 ALWAYS = [*PLAIN_PICTURES]
@@ -19,7 +19,7 @@ ALWAYS = [*PLAIN_PICTURES]
 
 def grid(*on_demand: str, **values: Any) -> PictureGrid:
     """Return the grid of a view with the layers of these pictures."""
-    return make_maps(ViewState(layers=frozenset(LAYER_OF[name].name for name in on_demand), **values)).grid
+    return make_maps(ViewState(layers=frozenset(LAYERS_BY_PICTURE[name].name for name in on_demand), **values)).grid
 
 
 def panes(of: PictureGrid) -> list[FigurePane]:
@@ -50,11 +50,11 @@ def test_one_picture_is_enlarged_and_the_others_have_no_axes() -> None:
 
 
 def test_one_of_many_pictures_is_twice_as_large_and_the_rest_have_no_axes() -> None:
-    pictures = grid(*LAYER_OF)
+    pictures = grid(*LAYERS_BY_PICTURE)
     assert "many" in pictures.layout().css_classes
-    last = [*LAYER_OF][-1]
+    last = [*LAYERS_BY_PICTURE][-1]
     assert named(pictures, "picked") == [last]
-    assert len(named(pictures, "compact")) == len(ALWAYS) + len(LAYER_OF) - 1
+    assert len(named(pictures, "compact")) == len(ALWAYS) + len(LAYERS_BY_PICTURE) - 1
     assert not any(pane.object.left[0].visible for pane in panes(pictures) if pane.object.name != last)
 
 
@@ -64,7 +64,7 @@ def test_one_of_many_pictures_is_twice_as_large_and_the_rest_have_no_axes() -> N
 def test_the_size_of_the_largest_picture_and_the_empty_cell_follow_from_the_number_of_pictures(
     layers: int, classes: set[str]
 ) -> None:
-    pictures = grid(*[*LAYER_OF][:layers])
+    pictures = grid(*[*LAYERS_BY_PICTURE][:layers])
     assert {"many", "crowded", "gap"} & set(pictures.layout().css_classes) == classes
 
 
