@@ -42,7 +42,7 @@ def opened(open_for_all: Callable[..., ExplorerPage], window: Window) -> Explore
 def test_ticks_are_distances_from_a_stated_number_and_the_frame_stays_square(explorer: ExplorerPage, window: Window) -> None:
     explorer.hover("basins", 0.5 * (window.x_low + window.x_high), 0.5 * (window.ordinate_low + window.ordinate_high))
     # Enough digits to distinguish neighbouring pixels.
-    expect(explorer.text(re.compile(r"\(-?0\.\d{14,17}, -?0\.\d{14,17}\)"))).to_be_visible()
+    expect(explorer.text(re.compile(r"\(−?0\.\d{14,17}, −?0\.\d{14,17}\)"))).to_be_visible()
     expect(explorer.text("Labels: (x − 0.1149")).to_be_visible()
     width, height = explorer.page.evaluate(_FRAME)
     assert abs(width - height) <= 1

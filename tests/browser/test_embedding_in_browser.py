@@ -70,7 +70,7 @@ def test_a_wheel_zooms_without_an_entry_of_the_page_around_and_the_link_opens_th
     wait_until_complete(frame)
     entries = page.evaluate("history.length")
     move_to_middle(page)
-    expect(frame.get_by_text(re.compile(r"\(-?0\.\d+, -?0\.\d+\)")).first).to_be_visible()
+    expect(frame.get_by_text(re.compile(r"\(−?0\.\d+, −?0\.\d+\)")).first).to_be_visible()
     page.mouse.wheel(0, -240)
     frame.wait_for_url(re.compile("window="))
     assert page.evaluate("history.length") == entries
