@@ -4,20 +4,20 @@ from __future__ import annotations
 
 import errno
 
-_WRITABLE = "choose a folder that you may write to"
-_SPACE = "free some space or choose another disk, then run the same command again"
+_CHOOSE_WRITABLE = "choose a folder that you may write to"
+_FREE_SPACE = "free some space or choose another disk, then run the same command again"
 # Remedies by number of the error.
 _ADVICE = {
     errno.ENOENT: "check the path",
     errno.ENOTDIR: "a part of this path is a file; choose another path",
     errno.EISDIR: "name a file",
     errno.EEXIST: "a file is in the place of this folder; choose another path",
-    errno.EACCES: _WRITABLE,
-    errno.EPERM: _WRITABLE,
-    errno.EROFS: _WRITABLE,
-    errno.ENOSPC: _SPACE,
-    errno.EDQUOT: _SPACE,
-    errno.EFBIG: _SPACE,
+    errno.EACCES: _CHOOSE_WRITABLE,
+    errno.EPERM: _CHOOSE_WRITABLE,
+    errno.EROFS: _CHOOSE_WRITABLE,
+    errno.ENOSPC: _FREE_SPACE,
+    errno.EDQUOT: _FREE_SPACE,
+    errno.EFBIG: _FREE_SPACE,
     errno.EIO: "the disk may be failing; choose another one",
     errno.ENAMETOOLONG: "choose a shorter name",
     errno.EMFILE: "allow more open files (ulimit -n)",

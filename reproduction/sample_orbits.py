@@ -31,8 +31,8 @@ def find_sample_starts(frame: EscapeMap) -> dict[int, tuple[float, float, float,
         if rows.size == 0:
             continue
         crossings = frame.crossings[rows, columns]
-        is_enough = crossings >= SHOWN_CROSSINGS
-        selected = int(crossings[is_enough].min()) if is_enough.any() else int(crossings.max())
+        has_enough = crossings >= SHOWN_CROSSINGS
+        selected = int(crossings[has_enough].min()) if has_enough.any() else int(crossings.max())
         times = np.where(crossings == selected, frame.escape_time[rows, columns], np.inf)
         index = int(np.argmin(times))
         # `start_states` takes arrays, here of a single start.

@@ -87,6 +87,7 @@ def run(
         raise ValueError(f"count={count}: movies and files of paths have at most {MOST_PATHS} orbits")
     entrances, starts = _draw_starts(potential, energy, count, seed, plane, window, entering)
 
+    # Called only when the outcomes, and the orbits if needed, are computed below.
     def make_content(ending: str) -> Content:
         if ending == "csv":
             return _starts_csv(starts, outcomes)
@@ -149,13 +150,12 @@ def _print(
         "escape_laws": laws.describe(),
     }
     rows = [(name, f"{shares[code]:.4f}", "{:.4f} … {:.4f}".format(*intervals[code])) for code, name in names.items()]
-    table = Table(("outcome", "share", "95 % interval"), rows)
-    mean = f"Mean time of the escapes: {statistics.mean_escape_time:.4g}."
-    parts: list[Table | str] = [table]
+    parts: list[Table | str] = [Table(("outcome", "share", "95 % interval"), rows)]
     if matching is not None:
         answer["matching"] = list_rows(matching.columns())
         parts += [_matching_table(matching), matching.describe()]
-    print_result(as_json, answer, *parts, mean, laws.describe(), flux.describe(), files=files)
+    mean_time = f"Mean time of the escapes: {statistics.mean_escape_time:.4g}."
+    print_result(as_json, answer, *parts, mean_time, laws.describe(), flux.describe(), files=files)
 
 
 def _matching_table(matching: ExitMatching) -> Table:

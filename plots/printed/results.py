@@ -184,7 +184,7 @@ def _draw_layer(layer: Layer, result: Result, axes: Axes, palette: Palette) -> N
     """Draw the result of a layer without the map."""
     spec = layer.spec_of(result)
     window = spec.find_window()
-    panel = _panel(axes, window)
+    panel = _add_panel(axes, window)
     if layer.pixels is not None:
         codes = layer.pixels.codes(result, None)
         pixels = rgba([*layer.pixels.colours(palette)])[codes]
@@ -199,7 +199,7 @@ def _draw_layer(layer: Layer, result: Result, axes: Axes, palette: Palette) -> N
     set_title(panel, layer.title)
 
 
-def _panel(axes: Axes, window: Window) -> Axes:
+def _add_panel(axes: Axes, window: Window) -> Axes:
     """Give `axes` the coordinates of a window, and return new axes behind them, for drawings in shares of the window."""
     panel = axes.inset_axes((0.0, 0.0, 1.0, 1.0), zorder=-1.0)
     axes.set_xlim(window.x_low, window.x_high)
@@ -211,7 +211,7 @@ def _panel(axes: Axes, window: Window) -> Axes:
 
 @_draw.register
 def _draw_map(result: EscapeMap, axes: Axes, palette: Palette, *, picture: str = "basins") -> None:
-    panel = _panel(axes, result.spec.find_window())
+    panel = _add_panel(axes, result.spec.find_window())
     draw_picture(panel, result, picture, palette)
     legend = map_legend(picture, ShownMap.of(result, palette, {}))
     if entries := [*legend.entries, *legend.others]:
@@ -232,7 +232,7 @@ def _draw_orbit(result: Orbit, axes: Axes, palette: Palette, *, show: str = "pat
     if show == "path":
         # The axes are square until `draw_path` has given the panel the aspect of the window.
         axes.set_box_aspect(1.0)
-        panel = _panel(axes, curves.window)
+        panel = _add_panel(axes, curves.window)
         draw_path(panel, result.potential, [curves], palette)
         axes.set_box_aspect(panel.get_box_aspect())
         return

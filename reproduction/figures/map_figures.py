@@ -43,17 +43,22 @@ def draw_nine_maps(case: str, cache: MapCache, *, plane: Plane, picture: str) ->
     for axes, frame in zip(panels.flat, frames, strict=True):
         draw_map_panel(axes, frame, picture, window, times=times)
         set_title(axes, f"$h = {frame.spec.energy:.2f}$")
-        # Only the outer panels keep their labels.
-        position = axes.get_subplotspec()
-        x_label = axes.get_xlabel() if position.is_last_row() else ""
-        y_label = axes.get_ylabel() if position.is_first_col() else ""
-        label_axes(axes, x_label, y_label)
+        _remove_inner_labels(axes)
     if picture == "times":
         scale = ColourScale(times.low, times.high, PAPER.escape_time)
         bar = add_colour_bar(figure, scale, ax=panels.ravel().tolist(), shrink=0.75, aspect=34, pad=0.015, extend="both")
         bar.set_label(r"escape time $t_{\mathrm{esc}}$", fontsize=SCREEN.font_size)
     add_figure_legend(figure, [*_colour_handles(case, picture), *panels[0, 0].collections])
     return figure
+
+
+def _remove_inner_labels(axes: Axes) -> None:
+    """Remove the label of the x axis except in the last row, and that of the y axis except in the first column."""
+    position = axes.get_subplotspec()
+    assert position is not None
+    x_label = axes.get_xlabel() if position.is_last_row() else ""
+    y_label = axes.get_ylabel() if position.is_first_col() else ""
+    label_axes(axes, x_label, y_label)
 
 
 def draw_energy_plane(case: str, cache: MapCache) -> Figure:
