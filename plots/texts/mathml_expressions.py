@@ -18,7 +18,7 @@ def signed_parts(expression: Expression) -> list[str]:
 
 def _signed(coefficient: float, part: Expression) -> str:
     factors = part.factors if isinstance(part, Product) else ((part, 1.0),)
-    factors = tuple(sorted(factors, key=lambda factor: _place(factor[0])))
+    factors = tuple(sorted(factors, key=lambda factor: _factor_order(factor[0])))
     numerator = "".join(_write_power(base, exponent) for base, exponent in factors if exponent > 0.0)
     denominator = "".join(_write_power(base, -exponent) for base, exponent in factors if exponent < 0.0)
     magnitude = "" if abs(coefficient) == 1.0 and numerator else number(abs(coefficient), COEFFICIENT_DIGITS)
@@ -26,7 +26,7 @@ def _signed(coefficient: float, part: Expression) -> str:
     return op("−" if coefficient < 0.0 else "+") + fraction
 
 
-def _place(base: Expression) -> int:
+def _factor_order(base: Expression) -> int:
     """Return the sort key of a factor. Coordinates come first, functions last."""
     return 0 if isinstance(base, CoordinateNode) else 2 if isinstance(base, Function) else 1
 

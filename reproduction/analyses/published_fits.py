@@ -57,10 +57,11 @@ class Polynomial:
     @property
     def formula(self) -> str:
         """The formula as text."""
-        powers = ("", " h", *(f" h{str(power).translate(_SUPERSCRIPTS)}" for power in range(2, len(self.coefficients))))
-        # `powers` has at least two entries, and a constant has a single coefficient.
-        first, *others = zip(self.coefficients, powers, strict=False)
-        return " ".join([format_number(first[0]), *(_format_term(c) + power for c, power in others)])
+        constant, *others = self.coefficients
+        powers = ("h", *(f"h{str(power).translate(_SUPERSCRIPTS)}" for power in range(2, len(self.coefficients))))
+        # A constant has no other coefficients.
+        terms = [f"{_format_term(c)} {power}" for c, power in zip(others, powers, strict=False)]
+        return " ".join([format_number(constant), *terms])
 
 
 ShareCurve = HyperbolicTangent | Polynomial
