@@ -20,42 +20,42 @@ from engine.results import RegularityMap
 class SuperStickySearch:
     """The chaotic bounded starts of a map, integrated beyond its t_max.
 
-    The starts are ordered row by row. In a symmetric map, both of two mirror images are listed, but only the first is integrated:
-    the second escapes at the same time through the mirrored exit.
+    The starts are ordered row by row. In a symmetric map, both starts of a mirror pair are listed, but only the first is
+    integrated: the second escapes at the same time through the mirrored exit.
 
     Attributes
     ----------
     spec
         The map's request.
-    bounded
-        Number of regular and chaotic starts that are bounded until the map's t_max.
+    bounded_count
+        Number of starts that are bounded until the map's t_max, whether regular, chaotic or undecided.
     x, ordinate
         Coordinates of the starts on the plane, each of shape (n,).
     states
         x, y, px, py of the starts, of shape (n, 4).
     fate, escape_time, crossings
         As in `engine.results.Outcomes`, each of shape (n,). The fate is `Fate.BOUNDED` for orbits that do not escape by `t_max`.
-    images
-        Number of starts per integrated orbit: 2 for a mirror symmetric map, else 1.
+    is_mirror_symmetric
+        Whether the map is symmetric under x → −x, so that mirror images share an integrated orbit.
     t_max
-        Integration time, dimensionless.
+        Integration time of the orbits from the start, dimensionless.
     """
 
     spec: MapSpec
-    bounded: int
+    bounded_count: int
     x: np.ndarray
     ordinate: np.ndarray
     states: np.ndarray
     fate: np.ndarray
     escape_time: np.ndarray
     crossings: np.ndarray
-    images: int
+    is_mirror_symmetric: bool
     t_max: float
 
     @property
     def chaotic_share(self) -> float:
         """Share of the map's bounded starts that are chaotic; NaN if there are no bounded starts."""
-        return self.fate.size / self.bounded if self.bounded else float("nan")
+        return self.fate.size / self.bounded_count if self.bounded_count else float("nan")
 
     @property
     def escapers(self) -> np.ndarray:
@@ -64,24 +64,23 @@ class SuperStickySearch:
         return escapers[np.argsort(self.escape_time[escapers], kind="stable")]
 
     def describe(self) -> str:
-        """Describe the result in two sentences."""
+        """Describe the result in one or two sentences."""
         if not self.fate.size:
-            return f"None of the {self.bounded} bounded starts is chaotic."
-        counting = ", both mirror images counted" if self.images > 1 else ""
-        sentence = (
-            f"{self.fate.size} of the {self.bounded} bounded starts are chaotic ({100 * self.chaotic_share:.1f} %{counting})."
-        )
+            return f"None of the {self.bounded_count} bounded starts is chaotic."
+        counting = ", both mirror images counted" if self.is_mirror_symmetric else ""
+        share = f"{100 * self.chaotic_share:.1f} %{counting}"
+        sentence = f"{self.fate.size} of the {self.bounded_count} bounded starts are chaotic ({share})."
         return f"{sentence} {self._describe_escapers()}"
 
     def _describe_escapers(self) -> str:
         escapers = self.escapers
         if not escapers.size:
-            return f"None of them leaves by t = {self.t_max:.4g}."
+            return f"None of them escapes by t = {self.t_max:.4g}."
         channels, counts = np.unique(self.fate[escapers], return_counts=True)
         by_channel = ", ".join(f"{count} through exit {channel}" for channel, count in zip(channels, counts, strict=True))
         times = self.escape_time[escapers]
         return (
-            f"{escapers.size} of them leave by t = {self.t_max:.4g} ({by_channel}): the first at t = {times[0]:.6g}, "
+            f"{escapers.size} of them escape by t = {self.t_max:.4g} ({by_channel}): the first at t = {times[0]:.6g}, "
             f"half of these by {np.median(times):.6g}, the last at {times[-1]:.6g}."
         )
 
@@ -98,27 +97,29 @@ def find_super_sticky_orbits(
     regularity
         The complete result of `compute_regularity` for the same map.
     t_max
-        Integration time from the start, dimensionless. The last orbit of Zotos (2014) escapes at 3.5e6.
+        Integration time from the start, dimensionless, above the map's t_max. The last orbit of Zotos (2014) escapes at 3.5e6.
     execution
         How the computation runs.
 
     Returns
     -------
-    `SuperStickySearch`, identical to the bit for every executor. After such long times, rounding errors have grown to order 1:
-    rounding determines which orbit escapes when, but not how many orbits escape.
+    The search, equal to the bit for every executor. Over such long times, rounding errors grow to order 1: the escape time of
+    each orbit depends on rounding, but the number of escapes hardly does.
 
     Raises
     ------
+    ValueError
+        If the map is on a slice with an axis h.
     concurrent.futures.CancelledError
         When cancelled.
     """
     spec = escape_map.spec
-    assert spec.common_energy is not None
+    if spec.common_energy is None:
+        raise ValueError(f"escape_map: must be on a slice of one energy, not on {spec.plane.title}")
     pixels = np.flatnonzero(regularity.character.ravel() == Regularity.CHAOTIC)
     x, ordinate = escape_map.coordinates(pixels)
     states = spec.start_states(x, ordinate)
     mirror = MirrorPixels(spec, escape_map.x, escape_map.ordinate)
-    # Of two mirror images, the first is integrated.
     first_pixels = mirror.find_first_images(pixels)
     is_integrated = np.isin(pixels, first_pixels)
     outcomes = classify_orbits(spec.potential, spec.common_energy, states[is_integrated], t_max, execution=execution)
@@ -129,6 +130,7 @@ def find_super_sticky_orbits(
     if mirror.symmetric:
         fate = np.where(is_integrated, fate, spec.potential.well.mirror_fates[fate])
     return SuperStickySearch(
-        spec, int(np.count_nonzero(escape_map.fate == Fate.BOUNDED)), x, ordinate, states, fate,
-        outcomes.escape_time[outcome_index], outcomes.crossings[outcome_index], images=2 if mirror.symmetric else 1, t_max=t_max,
+        spec=spec, bounded_count=int(np.count_nonzero(escape_map.fate == Fate.BOUNDED)),
+        x=x, ordinate=ordinate, states=states, fate=fate, escape_time=outcomes.escape_time[outcome_index],
+        crossings=outcomes.crossings[outcome_index], is_mirror_symmetric=mirror.symmetric, t_max=t_max,
     )  # fmt: skip

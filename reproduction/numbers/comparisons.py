@@ -13,7 +13,7 @@ from engine import Plane
 from reproduction.analyses.super_sticky import SuperStickySearch
 from reproduction.map_cache import MapCache
 from reproduction.numbers.map_structure import share_in_basins
-from reproduction.numbers.measures import Measures, counted_codes
+from reproduction.numbers.measures import ComputedNumbers, counted_codes
 from reproduction.numbers.reasons import explain
 from reproduction.numbers.stated_numbers import STATED_NUMBERS, Quantity, Relation, StatedNumber
 from reproduction.numbers.unknown_windows import FittedWindow, fit_window
@@ -96,17 +96,17 @@ def compare_all(
     concurrent.futures.CancelledError
         If the cache is cancelled.
     """
-    measures = Measures(cache, search)
+    computed_numbers = ComputedNumbers(cache, search)
     windows = _Windows(cache, numbers)
-    return tuple(_compare(number, measures, windows) for number in numbers)
+    return tuple(_compare(number, computed_numbers, windows) for number in numbers)
 
 
-def _compare(number: StatedNumber, measures: Measures, windows: _Windows) -> Comparison:
+def _compare(number: StatedNumber, computed_numbers: ComputedNumbers, windows: _Windows) -> Comparison:
     """Compare one number. The reason is computed only if there is a difference."""
     fitted_windows = tuple(windows.fit(number, energy) for energy in number.energies) if number.needs_window else ()
     counted_shares = tuple(_count(number, window) for window in fitted_windows)
-    row = Comparison(number, measures.values(number), fitted_windows, counted_shares)
-    return row if row.agrees else replace(row, reason=explain(measures, number))
+    row = Comparison(number, computed_numbers.values(number), fitted_windows, counted_shares)
+    return row if row.agrees else replace(row, reason=explain(computed_numbers, number))
 
 
 def _count(number: StatedNumber, window: FittedWindow) -> float:

@@ -11,63 +11,51 @@ import numpy as np
 
 from engine import Fate, compute_statistics
 from reproduction.analyses.published_fits import PAPER_FITS
-from reproduction.numbers.measures import Measures
+from reproduction.numbers.measures import ComputedNumbers
 from reproduction.numbers.stated_numbers import Quantity, StatedNumber
 
 
-def explain(measures: Measures, number: StatedNumber) -> str:
+def explain(computed: ComputedNumbers, number: StatedNumber) -> str:
     """Return the remark of a number. The fields in braces, which are names of `FACTS`, are filled in."""
     names = [name for _, name, _, _ in Formatter().parse(number.remark) if name]
-    return number.remark.format(**{name: FACTS[name](measures, number) for name in names})
+    return number.remark.format(**{name: FACTS[name](computed, number) for name in names})
 
 
-def _late_share(measures: Measures, number: StatedNumber) -> float:
-    times = compute_statistics(measures.maps(number)[0]).escape_times
+def _late_share(computed: ComputedNumbers, number: StatedNumber) -> float:
+    times = compute_statistics(computed.maps(number)[0]).escape_times
     return 100.0 * float(np.mean(times > number.value))
 
 
-def _bounded_at(time: float) -> Callable[[Measures, StatedNumber], float]:
-    def measure(measures: Measures, number: StatedNumber) -> float:
-        frame = measures.maps(number)[0]
+def _bounded_at(time: float) -> Callable[[ComputedNumbers, StatedNumber], float]:
+    def measure(computed: ComputedNumbers, number: StatedNumber) -> float:
+        frame = computed.maps(number)[0]
         fate, escape_time = frame.fate[frame.interior], frame.escape_time[frame.interior]
         return 100.0 * float(np.mean((fate == Fate.BOUNDED) | (escape_time > time)))
 
     return measure
 
 
-def _chaotic_orbits(measures: Measures, number: StatedNumber) -> int:
-    return sum(search.fate.size for search in measures.searches(number))
-
-
-def _chaotic_escapes(measures: Measures, number: StatedNumber) -> int:
-    return sum(search.escapers.size for search in measures.searches(number))
-
-
-def _bounded_above(measures: Measures, number: StatedNumber) -> int:
-    frame = measures.energy_plane(number.case)
+def _bounded_above(computed: ComputedNumbers, number: StatedNumber) -> int:
+    frame = computed.energy_map(number.case)
     return int(np.count_nonzero(frame.fate[frame.ordinate > number.value] == Fate.BOUNDED))
 
 
-def _paper_direct(measures: Measures, number: StatedNumber) -> float:
-    return 100.0 * float(PAPER_FITS[number.case].direct(number.energies[0]))
-
-
-def _below_largest(measures: Measures, number: StatedNumber) -> float:
-    shares = measures.values(replace(number, quantity=Quantity.ESCAPED_BY))
+def _below_largest(computed: ComputedNumbers, number: StatedNumber) -> float:
+    shares = computed.values(replace(number, quantity=Quantity.ESCAPED_BY))
     return max(shares) - shares[number.energies.index(number.value)]
 
 
-FACTS: Mapping[str, Callable[[Measures, StatedNumber], float]] = MappingProxyType(
+FACTS: Mapping[str, Callable[[ComputedNumbers, StatedNumber], float]] = MappingProxyType(
     {
         "late_share": _late_share,
         "bounded_at_5000": _bounded_at(5e3),
         "bounded_at_20000": _bounded_at(2e4),
-        "chaotic_orbits": _chaotic_orbits,
-        "chaotic_escapes": _chaotic_escapes,
+        "chaotic_orbits": lambda computed, number: sum(search.fate.size for search in computed.searches(number)),
+        "chaotic_escapes": lambda computed, number: sum(search.escapers.size for search in computed.searches(number)),
         "bounded_above": _bounded_above,
-        "last_bounded": lambda measures, number: measures.last_bounded_energy(number.case),
-        "paper_direct": _paper_direct,
-        "share_at_last": lambda measures, number: measures.values(number)[-1],
+        "last_bounded": lambda computed, number: computed.last_bounded_energy(number.case),
+        "paper_direct": lambda computed, number: 100.0 * float(PAPER_FITS[number.case].direct(number.energies[0])),
+        "share_at_last": lambda computed, number: computed.values(number)[-1],
         "below_largest": _below_largest,
     }
 )

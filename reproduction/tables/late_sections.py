@@ -21,14 +21,14 @@ Case III at h = {h:g} on (x, px), {side} × {side} starts. {found} {stays} have 
 
 The paper states that all escape by 3.5e6, and shows one that escapes through exit 2 at about 851 000. At such times rounding
 errors have grown to the size of the well: the escape time of a given orbit depends on rounding, in the paper and here; the number
-of escapes does not."""
+of escapes hardly does."""
 
 
 def write_late_escapes(cache: MapCache) -> str:
     """Return a table of the bounded orbits of I and II: how many are chaotic, and how many chaotic orbits leave later."""
     cases = [case for case in CASES if case != STICKY_CASE]
     searches = [(case, h, cache.late_escapes(case, h)) for case in cases for h in nine_energies(case)]
-    rows = [(case, f"{h:g}", *_describe_late(search)) for case, h, search in searches if search.bounded]
+    rows = [(case, f"{h:g}", *_describe_late(search)) for case, h, search in searches if search.bounded_count]
     quality = cache.quality
     introduction = _CHAOTIC_INTRODUCTION.format(
         side=quality.classified_resolution, t_max=f"{quality.t_max:g}", search_t_max=f"{quality.search_t_max:g}"
@@ -42,7 +42,7 @@ def _describe_late(search: SuperStickySearch) -> tuple[str, ...]:
     escapers = search.escapers
     last_time = f"{search.escape_time[escapers[-1]]:.4g}" if escapers.size else "none"
     share = f"{100.0 * search.chaotic_share:.1f} %"
-    return str(search.bounded), str(search.fate.size), share, str(escapers.size), last_time
+    return str(search.bounded_count), str(search.fate.size), share, str(escapers.size), last_time
 
 
 def write_super_sticky(search: SuperStickySearch) -> str:

@@ -59,13 +59,13 @@ def test_escapers_are_sorted_by_escape_time_and_escape_after_the_map() -> None:
 def test_description_gives_escapes_by_channel_and_their_times() -> None:
     found = replace(
         search("II", 0.17),
-        bounded=50,
+        bounded_count=50,
         fate=np.array([2, 0, 1, 2, 0], np.int8),
         escape_time=np.array([5e5, np.nan, 2e5, 851000.0, np.nan]),
         t_max=4e6,
     )
     assert found.describe() == (
-        "5 of the 50 bounded starts are chaotic (10.0 %). 3 of them leave by t = 4e+06 (1 through exit 1, 2 through exit "
+        "5 of the 50 bounded starts are chaotic (10.0 %). 3 of them escape by t = 4e+06 (1 through exit 1, 2 through exit "
         "2): the first at t = 200000, half of these by 500000, the last at 851000."
     )
 

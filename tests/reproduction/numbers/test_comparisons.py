@@ -36,7 +36,7 @@ def make_search(fate: list[int], times: list[float]) -> SuperStickySearch:
     n = len(fate)
     zeros = np.zeros(n)
     return SuperStickySearch(
-        spec, 40, zeros, zeros, np.zeros((n, 4)), np.array(fate, np.int8), np.array(times), np.arange(n), images=2, t_max=4e6
+        spec, 40, zeros, zeros, np.zeros((n, 4)), np.array(fate, np.int8), np.array(times), np.arange(n), True, t_max=4e6
     )
 
 

@@ -32,7 +32,7 @@ SADDLE = StatedNumber("III", None, (), "", Quantity.ESCAPE_ENERGY, Relation.EXAC
 def make_search() -> SuperStickySearch:
     spec = MapSpec(CASES["III"], Plane.X_PX, 0.26, (9, 9))
     fate, times, zeros = np.array([2, 0], np.int8), np.array([8.2e5, np.nan]), np.zeros(2)
-    return SuperStickySearch(spec, 40, zeros, zeros, np.zeros((2, 4)), fate, times, np.array([7, 9]), images=2, t_max=4e6)
+    return SuperStickySearch(spec, 40, zeros, zeros, np.zeros((2, 4)), fate, times, np.array([7, 9]), True, t_max=4e6)
 
 
 def test_the_summary_counts_agreements_and_lists_differences() -> None:
@@ -81,7 +81,7 @@ def test_late_escapes_are_counted_at_each_energy_with_bounded_starts() -> None:
     counts = [cache.late_escapes("I", h) for h in nine_energies("I")]
     rows = [line.split(" | ") for line in write_late_escapes(cache).splitlines() if line.startswith("| I |")]
     assert [(row[2], row[3], row[5]) for row in rows] == [
-        (str(s.bounded), str(s.fate.size), str(s.escapers.size)) for s in counts if s.bounded
+        (str(s.bounded_count), str(s.fate.size), str(s.escapers.size)) for s in counts if s.bounded_count
     ]
 
 
