@@ -28,7 +28,7 @@ from engine import ParameterAxis, Potential, Slice, SweepSpec, System, compute_s
 from engine.results import Sweep
 from engine.sweeps.measures import CURVES, QUICK_CURVES
 from engine.systems.parameters import WELL_PARAMETERS
-from plots.printed.figure_files import curves_figure_bytes
+from plots.printed.figure_files import sweep_figure_bytes
 from plots.printed.figure_style import FigureFormat, FigureStyle
 from plots.texts.exports import curves_csv, dataset_bytes
 
@@ -88,7 +88,7 @@ def _make_content(curves: Sweep, ending: str, style: FigureStyle) -> Content:
         return dataset_bytes(curves.dataset)
     if ending == "csv":
         return curves_csv(curves)
-    return curves_figure_bytes(curves, FigureFormat(ending), style)
+    return sweep_figure_bytes(curves, FigureFormat(ending), style)
 
 
 def _print(curves: Sweep, files: Sequence[str], as_json: bool) -> None:

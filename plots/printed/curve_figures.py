@@ -26,7 +26,7 @@ _LINES = {Shape.DASHED: (0, (4.0, 3.0)), Shape.POINTS: ""}
 _MARKERS = {Shape.POINTS: "o", Shape.JOINED_POINTS: "o"}
 
 
-def draw_curves_figure(curves: Sweep, style: FigureStyle) -> Figure:
+def draw_sweep_figure(sweep: Sweep, style: FigureStyle) -> Figure:
     """Draw the shares and the other measures of a sweep against the energy or a parameter, with their error bars.
 
     Raises
@@ -34,13 +34,13 @@ def draw_curves_figure(curves: Sweep, style: FigureStyle) -> Figure:
     ValueError
         If there is no point yet.
     """
-    if not curves.values.size:
-        raise ValueError("curves: must have at least one point")
-    request = curves.dataset.attrs
+    if not sweep.values.size:
+        raise ValueError("sweep: must have at least one point")
+    request = sweep.dataset.attrs
     starts = " × ".join(str(side) for side in request["resolution"])
     title = f"{request['potential']}, {request['plane']}, {starts} starts, t_max = {request['t_max']:g}"
     height = style.width * (_HEIGHT if style.columns(2) == 2 else _ONE_COLUMN_HEIGHT)
-    return _draw_figure(sweep_charts(curves, PAPER), new_figure(style, height, title), style)
+    return _draw_figure(sweep_charts(sweep, PAPER), new_figure(style, height, title), style)
 
 
 def draw_statistics_figure(statistics: EscapeStatistics, style: FigureStyle) -> Figure:

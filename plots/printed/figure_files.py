@@ -1,4 +1,4 @@
-"""Make files of figures as PNG, SVG or PDF. The first file loads Matplotlib, which is slow to import."""
+"""Contents of figure files in PNG, SVG or PDF. The functions import Matplotlib when called, because its import is slow."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def map_figure_bytes(
     """
     from plots.printed.map_figure import draw_map_figure
 
-    return _make_file(
+    return _figure_bytes(
         lambda: draw_map_figure(frame, pictures, palette, style, analyses=analyses, starts=starts, times=times),
         format,
         frame.provenance(),
@@ -52,6 +52,22 @@ def orbits_figure_bytes(
     """Return the content of a file with the figure of `plots.printed.orbit_figure.draw_orbits_figure`.
 
     The metadata contain the starts, energies and verdicts.
+
+    Parameters
+    ----------
+    potential
+        The potential of the orbits.
+    orbits
+        Curves of the orbits, at least one.
+    palette, format, style
+        As in `map_figure_bytes`.
+    verdicts
+        A sentence for each orbit.
+
+    Raises
+    ------
+    ValueError
+        If there is no orbit, or not one verdict for each orbit.
     """
     from plots.printed.orbit_figure import draw_orbits_figure
 
@@ -59,7 +75,7 @@ def orbits_figure_bytes(
     for number, (curves, verdict) in enumerate(zip(orbits, verdicts, strict=True), 1):
         facts[f"start {number}"] = ", ".join(map(repr, initial_state(curves.orbit)))
         facts |= {f"energy {number}": repr(curves.orbit.energy), f"verdict {number}": verdict}
-    return _make_file(lambda: draw_orbits_figure(potential, orbits, palette, verdicts, style), format, facts)
+    return _figure_bytes(lambda: draw_orbits_figure(potential, orbits, palette, verdicts, style), format, facts)
 
 
 def well_figure_bytes(
@@ -70,11 +86,23 @@ def well_figure_bytes(
     format: FigureFormat,
     style: FigureStyle,
 ) -> bytes:
-    """Return the content of a file with the figure of `plots.printed.orbit_figure.draw_well_figure`."""
+    """Return the content of a file with the figure of `plots.printed.orbit_figure.draw_well_figure`.
+
+    Parameters
+    ----------
+    potential
+        The potential.
+    energy
+        The energy h of the zero-velocity curve, dimensionless.
+    orbits
+        Curves of the orbits to draw; may be empty.
+    palette, format, style
+        As in `map_figure_bytes`.
+    """
     from plots.printed.orbit_figure import draw_well_figure
 
     facts = {"potential": potential.name, "energy": repr(energy)}
-    return _make_file(lambda: draw_well_figure(potential, energy, orbits, palette, style), format, facts)
+    return _figure_bytes(lambda: draw_well_figure(potential, energy, orbits, palette, style), format, facts)
 
 
 def statistics_figure_bytes(frame: EscapeMap, box: Window | None, format: FigureFormat, style: FigureStyle) -> bytes:
@@ -84,18 +112,21 @@ def statistics_figure_bytes(frame: EscapeMap, box: Window | None, format: Figure
     """
     from plots.printed.curve_figures import draw_statistics_figure
 
-    facts = frame.provenance() | ({} if box is None else {"box": box})
-    return _make_file(lambda: draw_statistics_figure(compute_statistics(frame, box), style), format, facts)
+    facts = frame.provenance()
+    if box is not None:
+        facts["box"] = box
+    statistics = compute_statistics(frame, box)
+    return _figure_bytes(lambda: draw_statistics_figure(statistics, style), format, facts)
 
 
-def curves_figure_bytes(curves: Sweep, format: FigureFormat, style: FigureStyle) -> bytes:
-    """Return the content of a file with the figure of `plots.printed.curve_figures.draw_curves_figure`."""
-    from plots.printed.curve_figures import draw_curves_figure
+def sweep_figure_bytes(sweep: Sweep, format: FigureFormat, style: FigureStyle) -> bytes:
+    """Return the content of a file with the figure of `plots.printed.curve_figures.draw_sweep_figure`."""
+    from plots.printed.curve_figures import draw_sweep_figure
 
-    return _make_file(lambda: draw_curves_figure(curves, style), format, curves.dataset.attrs)
+    return _figure_bytes(lambda: draw_sweep_figure(sweep, style), format, sweep.dataset.attrs)
 
 
-def _make_file(draw: Callable[[], Figure], format: FigureFormat, facts: Mapping[str, object]) -> bytes:
+def _figure_bytes(draw: Callable[[], Figure], format: FigureFormat, facts: Mapping[str, object]) -> bytes:
     """Draw a figure and return the content of its file. Matplotlib is not thread-safe, so only one thread draws at a time."""
     from plots.printed.figure_axes import RENDER_LOCK, save_figure
 

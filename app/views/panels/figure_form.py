@@ -20,10 +20,10 @@ from engine import EscapeMap
 from engine.slices.axes import highest_energy
 from plots.layers.table import LAYERS_BY_PICTURE, TITLES
 from plots.printed.figure_files import (
-    curves_figure_bytes,
     map_figure_bytes,
     orbits_figure_bytes,
     statistics_figure_bytes,
+    sweep_figure_bytes,
     well_figure_bytes,
 )
 from plots.printed.figure_style import FigureFormat, FigureStyle
@@ -178,7 +178,7 @@ def figure_choices(shown: ShownResults, state: ViewState) -> dict[str, Make]:
     if frame is not None:
         choices[STATISTICS] = partial(statistics_figure_bytes, frame, state.box)
     if shown.curves is not None and shown.curves.values.size:
-        choices[CURVES] = partial(curves_figure_bytes, shown.curves)
+        choices[CURVES] = partial(sweep_figure_bytes, shown.curves)
     return choices
 
 
