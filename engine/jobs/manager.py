@@ -28,8 +28,8 @@ from engine.jobs.subscription import Subscription
 DEFAULT_CACHE_BYTES = 512 * 2**20
 """Default memory limit of cached results, in bytes."""
 
-DEFAULT_ORBITS = 4 * 2**20
-"""Default limit on the number of orbits of all large running jobs. So many orbits take about 500 MiB."""
+DEFAULT_MOST_ORBITS = 4 * 2**20
+"""Default limit on the number of orbits of all large running jobs. This many orbits take about 500 MiB."""
 
 # Number of coordinating threads, one for each running job. They mostly wait for the executor. Further jobs are queued.
 _COORDINATING_THREADS = 1024
@@ -60,7 +60,8 @@ class _Run:
 
     def release(self) -> list[Subscription]:
         """Return the subscriptions, and drop all references so that reference counting alone frees the memory."""
-        subscriptions, self.subscriptions, self.executors, self.partial_result = self.subscriptions, [], {}, None
+        subscriptions = self.subscriptions
+        self.subscriptions, self.executors, self.partial_result = [], {}, None
         return subscriptions
 
     def priority(self) -> Priority:
@@ -82,20 +83,25 @@ class Jobs:
     most_orbits
         Largest number of orbits of all large running jobs together, at about 120 bytes per orbit.
     threads
-        Size of the manager's own thread pool; None for the default pool of this process.
+        Number of threads of the manager's own pool, at least 1; None for the default pool of this process.
     run_limited
         Runs a function in a resource-limited process, which it ends when the event is set; None for a thread of this process.
     most_limited_calls
         Largest number of calls of `run_limited` at a time, each for a different account.
     clock
         The clock; by default the clock of this process.
+
+    Attributes
+    ----------
+    cache
+        The complete and interrupted results.
     """
 
     def __init__(
         self,
         executor: Executor | None = None,
         cache_bytes: int = DEFAULT_CACHE_BYTES,
-        most_orbits: int = DEFAULT_ORBITS,
+        most_orbits: int = DEFAULT_MOST_ORBITS,
         threads: int | None = None,
         run_limited: Callable[[Callable[[], Any], threading.Event], Any] | None = None,
         most_limited_calls: int = 1,
@@ -113,7 +119,7 @@ class Jobs:
         self._ended: Counter[str] = Counter()
         self._coordinators = ThreadPoolExecutor(_COORDINATING_THREADS, thread_name_prefix="jobs")
         self._lock = threading.RLock()
-        self._in_flight: dict[Job[Any], _Run] = {}
+        self._runs: dict[Job[Any], _Run] = {}
         self.cache = ResultCache(cache_bytes)
 
     def request[Result](
@@ -142,21 +148,26 @@ class Jobs:
             Identifies the client for fair scheduling: clients are served in turn, and the first frame of every map comes before
             the second frame of any map.
         account
-            The account whose limit of compiled code the job uses. Limited calls and compilations take turns by account. Without
-            an account, no limit is charged, and these calls take turns by client.
+            The account that is charged for the code that the job compiles. Limited calls and compilations take turns by account.
+            Without an account, nothing is charged, and these calls take turns by client.
+
+        Returns
+        -------
+        The subscription. Cancel it when the result is no longer wanted: a job without subscriptions is stopped.
         """
         subscription = Subscription(partial(self._unsubscribe, job), on_result, on_error)
         with self._lock:
             cached_result = self.cache.get(job, ABSENT)
             is_complete = _is_complete(cached_result)
             partial_result: Any = None
-            if not is_complete and job in self._in_flight:
-                run = self._in_flight[job]
+            if not is_complete and job in self._runs:
+                run = self._runs[job]
                 run.subscriptions.append(subscription)
                 partial_result = run.partial_result
             elif not is_complete:
-                priority = self._map_priority() if job.queue is Queue.FIRST_FRAME else None
-                run = self._in_flight[job] = _Run(job, [subscription], client, account, priority)
+                is_map = job.queue is Queue.FIRST_FRAME
+                priority = MapPriority(lambda: self._scheduler.first_frames_preferred, self._clock) if is_map else None
+                run = self._runs[job] = _Run(job, [subscription], client, account, priority)
                 self._coordinators.submit(self._run_job, run)
         if is_complete:
             subscription.deliver(cached_result, last=True)
@@ -167,7 +178,7 @@ class Jobs:
     @property
     def in_flight(self) -> int:
         """Number of running and queued jobs."""
-        return len(self._in_flight)
+        return len(self._runs)
 
     def stats(self) -> JobStats:
         """Return the current load, totals and memory."""
@@ -185,10 +196,6 @@ class Jobs:
             processor_time=sum(each.processor_time for each in (self._scheduler, self._compilations)),
         )
 
-    def _map_priority(self) -> MapPriority:
-        """Return the priority of a map that is requested now."""
-        return MapPriority(lambda: self._scheduler.first_frames_preferred, self._clock)
-
     def prefer_first_frames(self, preferred: bool) -> None:
         """Start or end the preference for first frames, see `FairScheduler.prefer_first_frames`."""
         self._scheduler.prefer_first_frames(preferred)
@@ -201,20 +208,20 @@ class Jobs:
     def stop(self) -> None:
         """Cancel all jobs and subscriptions; the computations end within about 0.2 s."""
         with self._lock:
-            subscriptions = [subscription for run in self._in_flight.values() for subscription in run.subscriptions]
+            subscriptions = [subscription for run in self._runs.values() for subscription in run.subscriptions]
         for subscription in subscriptions:
             subscription.cancel()
 
     def _unsubscribe(self, job: Job[Any], subscription: Subscription) -> None:
         """Remove a subscription; a job without subscriptions is stopped."""
         with self._lock:
-            run = self._in_flight.get(job)
+            run = self._runs.get(job)
             if run is None or subscription not in run.subscriptions:
                 return
             run.subscriptions.remove(subscription)
             if not run.subscriptions:
                 run.stop()
-                del self._in_flight[job]
+                del self._runs[job]
 
     def _run_job(self, run: _Run) -> None:
         """Compute a job, and deliver its result or its error; a coordinating thread calls this."""
@@ -238,7 +245,7 @@ class Jobs:
                 subscription.deliver(result, last=True)
 
     def _call_function(self, job: Job[Any], run: _Run, publish: Callable[[Any], None] | None) -> Any:
-        """Call the function of a job: of the run's own job, or of a job whose result that job needs."""
+        """Call the function of the job of a run, or of a job whose result that job needs. `publish` receives partial results."""
         arguments = [self._find_result(run, value) if isinstance(value, Job) else value for value in job.arguments]
         executors: Mapping[Queue, Executor] = dict.fromkeys(Queue, self._executor) if self._executor else run.executors
         offered_arguments = {
@@ -255,7 +262,7 @@ class Jobs:
         return call()
 
     def _find_result[Result](self, run: _Run, job: Job[Result]) -> Result:
-        """Return the complete result of a job that the job of the run needs, from the cache or computed and cached."""
+        """Return the complete result of a job that the job of the run needs. If it is not cached, compute and cache it."""
         result: Any = self.cache.get(job, ABSENT)
         if not _is_complete(result):
             result = self._call_function(job, run, None)
@@ -266,7 +273,7 @@ class Jobs:
 
     def _create_executors(self, run: _Run) -> Mapping[Queue, QueueExecutor]:
         """Return an executor for each `Queue`."""
-        # One limited call or compilation may occupy a thread for seconds, so all pages of an account share a turn.
+        # One limited call or compilation may occupy a thread for seconds, so all clients of an account share a turn.
         turn = run.client if run.account is None else run.account
         short_calls = self._scheduler.executor(run.client, run.priority)
         return {
@@ -283,8 +290,8 @@ class Jobs:
             # An interrupted result must not replace a complete result.
             if result is not ABSENT and (_is_complete(result) or not _is_complete(self.cache.get(run.job, ABSENT))):
                 self.cache.put(run.job, result)
-            if self._in_flight.get(run.job) is run:
-                del self._in_flight[run.job]
+            if self._runs.get(run.job) is run:
+                del self._runs[run.job]
             outcome = "cancelled" if run.cancel.is_set() else "done"
             self._ended["failed" if error else outcome] += 1
             return run.release()

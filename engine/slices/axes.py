@@ -1,4 +1,4 @@
-"""Axes of a slice: what varies along them, and the energy of its starts."""
+"""The axes of a slice, and the energy or range of energies of a map."""
 
 from __future__ import annotations
 
@@ -56,8 +56,9 @@ class Coordinate(Enum):
 
     def unit(self, units: WellUnits) -> float:
         """Return the unit of the coordinate, in which values inside the well are of order 1."""
-        momentum = {"px": units.momentum, "py": units.momentum, "v": units.momentum}
-        return {"x": units.length, "y": units.length, **momentum, "h": units.energy}.get(self.value, 1.0)
+        lengths = dict.fromkeys(("x", "y"), units.length)
+        momenta = dict.fromkeys(("px", "py", "v"), units.momentum)
+        return {**lengths, **momenta, "h": units.energy}.get(self.value, 1.0)
 
     @property
     def components(self) -> dict[Coordinate, float]:
@@ -68,7 +69,7 @@ class Coordinate(Enum):
         """Return the coordinate itself. Only the values along the axis have a unit."""
         return self
 
-    def move(self, start: MutableMapping[Coordinate, np.ndarray], axis_values: np.ndarray) -> None:
+    def set_along_axis(self, start: MutableMapping[Coordinate, np.ndarray], axis_values: np.ndarray) -> None:
         """Set this coordinate of n starts, in place, to the values along the axis, of shape (n,)."""
         start[self] = axis_values
 
@@ -79,7 +80,7 @@ MOMENTA = (Coordinate.PX, Coordinate.PY)
 ANGLES = (Coordinate.THETA, Coordinate.BETA)
 STATE = (*POSITIONS, *MOMENTA)
 
-# Values of a parameter below this share of its range are rounding errors, too small for a coefficient, and count as 0.
+# Magnitudes of a parameter below this share of the axis's range are rounding errors, too small for a coefficient, and count as 0.
 _ROUNDING = 1e-12
 
 
@@ -92,12 +93,12 @@ class Direction:
     key
         Name of the direction, an identifier such as "u".
     x, y, px, py
-        Change of each coordinate of a start per unit along the axis, finite, not all 0.
+        Change of each coordinate of a start per unit along the axis, from -1e9 to 1e9, not all 0.
 
     Raises
     ------
     ValueError
-        If the name is not an identifier or is the name of a coordinate, or the components are not finite or all 0.
+        If the name is not an identifier or is the name of a coordinate, a component is not finite or beyond ±1e9, or all are 0.
     """
 
     key: str
@@ -136,7 +137,7 @@ class Direction:
         return parities.pop() if len(parities) == 1 else None
 
     def unit(self, units: WellUnits) -> float:
-        """Return the unit of the values along the axis, a power of 2, in which those inside the well are of order 1."""
+        """Return the unit of the values along the axis, a power of 2. In this unit, values inside the well are of order 1."""
         scaled_components = [value / coordinate.unit(units) for coordinate, value in self.components.items()]
         return 1.0 / nearest_power_of_two(float(np.hypot.reduce(scaled_components)))
 
@@ -145,8 +146,8 @@ class Direction:
         unit = self.unit(units)
         return Direction(self.key, **{c.value: value * unit / c.unit(units) for c, value in self.components.items()})
 
-    def move(self, start: MutableMapping[Coordinate, np.ndarray], axis_values: np.ndarray) -> None:
-        """Move n starts, in place, along the direction by the values along the axis, of shape (n,)."""
+    def set_along_axis(self, start: MutableMapping[Coordinate, np.ndarray], axis_values: np.ndarray) -> None:
+        """Displace n starts, in place, along the direction by the values along the axis, of shape (n,)."""
         for coordinate, component in self.components.items():
             start[coordinate] = start[coordinate] + component * axis_values
 
@@ -178,7 +179,7 @@ class _SystemAxis:
         """Return the axis itself."""
         return self
 
-    def move(self, start: MutableMapping[Coordinate, np.ndarray], axis_values: np.ndarray) -> None:
+    def set_along_axis(self, start: MutableMapping[Coordinate, np.ndarray], axis_values: np.ndarray) -> None:
         """Leave starts unchanged."""
 
 
@@ -193,7 +194,8 @@ class ParameterAxis(_SystemAxis):
     low, high
         Range of the parameter in the default window, dimensionless, low < high, within `System.range_of`.
     system
-        The system, or its potential. At all values of the parameter, an exit keeps its number at this system's own value.
+        The system, or its potential. An exit of this system has the same number at every value of the parameter; other exits
+        have the next numbers.
 
     Raises
     ------
@@ -236,7 +238,7 @@ class ParameterAxis(_SystemAxis):
         return self.system.with_parameter(self.key, 0.0 if is_zero else value).potential
 
     def at(self, value: float) -> HeldParameter:
-        """Return the axis of a line of starts on which the parameter has one value."""
+        """Return the parameter held at one value, as an axis of a row or column of a map."""
         return HeldParameter(self.key, value)
 
 
@@ -249,7 +251,7 @@ class HeldParameter(_SystemAxis):
     key
         Name of the parameter.
     value
-        Value of the parameter in the potential of this row or column.
+        Value of the parameter, dimensionless.
     """
 
     key: str
@@ -260,8 +262,8 @@ def _system_of(potential: Potential) -> System:
     """Return the system that made a potential; ValueError if there is none."""
     if potential.system is None:
         raise ValueError(
-            f"system={potential.name}: its letters are not known; must be a System, or the potential of one, such as "
-            "System.from_formula(text, b=0.5)"
+            f"system={potential.name}: the parameters of this potential are not known; must be a System, such as "
+            "System.from_formula(text, b=0.5), or its potential"
         )
     return potential.system
 

@@ -121,7 +121,7 @@ def _start_coordinates(plane: Slice, x: np.ndarray, ordinate: np.ndarray) -> dic
     start = {coordinate: np.full_like(x, fixed.get(coordinate, 0.0)) for coordinate in (*STATE, *fixed)}
     # Coordinates are set first; directions move starts from there.
     for axis, axis_values in sorted(zip(plane.axes, (x, ordinate), strict=True), key=lambda pair: isinstance(pair[0], Direction)):
-        axis.move(start, axis_values)
+        axis.set_along_axis(start, axis_values)
     return start
 
 

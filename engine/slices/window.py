@@ -13,9 +13,19 @@ from engine.integrator.kernels.slice_starts import interval_centre
 
 @dataclass(frozen=True)
 class Window:
-    """A rectangle of a slice, including its edges, dimensionless.
+    """A rectangle of a slice, including its edges.
 
-    Raises ValueError if an edge is not finite or lies beyond ±1e9, or if a lower edge is not below the upper edge.
+    Parameters
+    ----------
+    x_low, x_high
+        Edges along the abscissa, which may be another coordinate than x: from -1e9 to 1e9, dimensionless, ``x_low < x_high``.
+    ordinate_low, ordinate_high
+        The same along the ordinate.
+
+    Raises
+    ------
+    ValueError
+        If an edge is not finite or lies beyond ±1e9, or a lower edge is not below the upper edge.
     """
 
     x_low: float
@@ -25,8 +35,8 @@ class Window:
 
     def __post_init__(self) -> None:
         for name, (low, high) in zip(("x", "ordinate"), self.ranges, strict=True):
-            edges = [checked_number(f"window {name} edge", edge) for edge in (low, high)]
-            if not edges[0] < edges[1]:
+            low_edge, high_edge = (checked_number(f"window {name} edge", edge) for edge in (low, high))
+            if not low_edge < high_edge:
                 raise ValueError(f"window {name} range {low} … {high}: the lower edge must be below the upper edge")
 
     @property
@@ -50,12 +60,15 @@ class Window:
         return self.ordinate_high - self.ordinate_low
 
     def scaled(self, x_factor: float, ordinate_factor: float) -> Window:
-        """Return the window with its edges multiplied by two factors."""
+        """Return the window with its edges multiplied by a positive factor along each axis."""
         x, ordinate = self.ranges
         return Window(*(x_factor * edge for edge in x), *(ordinate_factor * edge for edge in ordinate))
 
     def pixel_centres(self, columns: int, rows: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return x, (columns,), and ordinate, (rows,), of the pixel centres, exactly symmetric if the window is symmetric."""
+        """Return the pixel centres along the abscissa, of shape (columns,), and along the ordinate, of shape (rows,).
+
+        The centres are exactly symmetric if the window is symmetric. There is at least one column and one row.
+        """
         x = interval_centre(self.x_low, self.x_high, np.arange(columns), columns)
         return x, interval_centre(self.ordinate_low, self.ordinate_high, np.arange(rows), rows)
 
@@ -65,7 +78,7 @@ type GivenWindow = Window | tuple[float, float, float, float]
 
 
 def checked_window(window: Any) -> Window:
-    """Return a `Window`, given as a `Window` or as (x_low, x_high, ordinate_low, ordinate_high)."""
+    """Return a `GivenWindow` as a `Window`; ValueError for anything else, and for illegal edges."""
     if isinstance(window, Window):
         return window
     try:

@@ -164,7 +164,7 @@ WRONG_CALLS = (
     ),
     (
         'ParameterAxis("b", 0.0, 1.0, well)',
-        "system=x² + y²: its letters are not known; must be a System, or",
+        "system=x² + y²: the parameters of this potential are not known; must be a System",
     ),
     ("parse_formula(3)", "text=3: must be text"),
     ('parse_formula("")', "formula, character 1: the formula ends where a number, x, y, r or a bracket is expected"),

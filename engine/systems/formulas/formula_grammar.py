@@ -31,7 +31,6 @@ from engine.systems.formulas.formula_tokens import (
     tokenize,
 )
 from engine.systems.formulas.formula_values import (
-    LARGEST_EXPONENT,
     NAMED_FUNCTIONS,
     FormulaValue,
     add,
@@ -41,6 +40,9 @@ from engine.systems.formulas.formula_values import (
     raise_to,
     times,
 )
+
+LARGEST_EXPONENT = 12
+"""Largest magnitude of an exponent in a formula."""
 
 DEEPEST_NESTING = 50
 """Largest depth of nested brackets, or of roots of roots, in a formula."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from fractions import Fraction
+from functools import partial
 
 from flint import fmpq_mpoly
 
@@ -34,9 +35,6 @@ from engine.expressions.nodes import (
 
 FormulaValue = fmpq_mpoly | Expression
 """A polynomial with exact coefficients, or an expression."""
-
-LARGEST_EXPONENT = 12
-"""Largest magnitude of an exponent."""
 
 
 def add(one: FormulaValue, other: FormulaValue) -> FormulaValue:
@@ -68,24 +66,31 @@ def divide(one: FormulaValue, other: FormulaValue) -> FormulaValue:
 
 def raise_to(base: FormulaValue, exponent: Fraction) -> FormulaValue:
     """Return a power; ArithmeticError or ValueError if the power is a number that is not finite and real."""
-    if exponent.denominator == 1 and exponent >= 0 and not isinstance(base, Expression):
-        return limited_power(base, int(exponent))
-    if exponent.denominator == 1 and base and not isinstance(base, Expression):
-        return _simplify(_power_of_factors(base, int(exponent)))
+    if exponent.denominator == 1 and not isinstance(base, Expression):
+        if exponent >= 0:
+            return limited_power(base, int(exponent))
+        # For a negative power of 0, `power` raises the error.
+        if base:
+            return _simplify(_power_of_factors(base, int(exponent)))
     return _simplify(power(_as_expression(base), float(exponent)))
 
 
 def _power_of_factors(base: fmpq_mpoly, exponent: int) -> Expression:
-    """Return a power of a polynomial. Repeated factors get powers of their own: 1/(x² + 2x + 1) is (x + 1)^−2."""
+    """Return a negative power of a polynomial other than 0.
+
+    If a square-free factor is repeated, the power is a product of powers of the factors: 1/(x² + 2x + 1) is (x + 1)^−2.
+    """
     constant, factors = base.factor_squarefree()
     if all(multiplicity == 1 for _, multiplicity in factors):
         return power(_as_expression(base), float(exponent))
+    # The factors in the product are monic; their leading coefficients are collected in `constant`.
     factor_powers = []
     for factor, multiplicity in factors:
         leading = factor.leading_coefficient()
         constant *= leading**multiplicity
         factor_powers.append(power(_as_expression(factor * (1 / leading)), float(multiplicity * exponent)))
-    return multiply(number(float(Fraction(int(constant.p), int(constant.q)) ** exponent)), *factor_powers)
+    coefficient = Fraction(int(constant.p), int(constant.q)) ** exponent
+    return multiply(number(float(coefficient)), *factor_powers)
 
 
 def apply_named(name: str, argument: FormulaValue) -> FormulaValue:
@@ -101,6 +106,7 @@ def constant_of(value: FormulaValue) -> Fraction | None:
 
 
 def _as_expression(value: FormulaValue) -> Expression:
+    """Return a value as an expression; the exact coefficients of a polynomial are rounded to doubles."""
     if isinstance(value, Expression):
         return value
     return from_terms({powers: float(c) for powers, c in exact_terms(value).items()})
@@ -116,8 +122,8 @@ def _simplify(value: Expression) -> FormulaValue:
 
 
 NAMED_FUNCTIONS: dict[str, Callable[[FormulaValue], FormulaValue]] = {
-    **{name: lambda argument, name=name: apply_named(name, argument) for name in FUNCTIONS},  # type: ignore[misc]
-    "ln": lambda argument: apply_named("log", argument),
+    **{name: partial(apply_named, name) for name in FUNCTIONS},
+    "ln": partial(apply_named, "log"),
     "sqrt": lambda argument: raise_to(argument, Fraction(1, 2)),
 }
 """The functions of formulas by name."""
