@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from app.job_clients.latest_request import LatestRequest, Locked
-from app.job_clients.orbit_requests import ChosenOrbit
+from app.job_clients.orbit_requests import StartOrbit
 from app.state.view import Start
 from app.state.view_state import ViewState
 from engine import Orbit, compute_separation, find_divergent_start
@@ -37,7 +37,7 @@ class SeparationRequests:
         state.param.watch(lambda event: setattr(self, "_previous_index", event.old), "chosen")
         self._request = LatestRequest(jobs, lambda separation: show(self._pair, separation), notify, locked)
 
-    def follow(self, orbits: Sequence[ChosenOrbit]) -> None:
+    def follow(self, orbits: Sequence[StartOrbit]) -> None:
         """Request the separation of the chosen orbit from the previously chosen orbit, or else from a neighbour in the list."""
         self._pair = self._find_pair(orbits)
         job = None if self._pair is None else self._separation_job(*(orbits[index].orbit for index in self._pair))
@@ -47,7 +47,7 @@ class SeparationRequests:
             self._request.cancel()
             self._show(None, None)
 
-    def _find_pair(self, orbits: Sequence[ChosenOrbit]) -> Pair | None:
+    def _find_pair(self, orbits: Sequence[StartOrbit]) -> Pair | None:
         """Return the pair to compare; None unless both orbits are computed."""
         chosen = self._state.chosen
         candidates = [self._previous_index, chosen - 1, chosen + 1]

@@ -21,7 +21,7 @@ from plots.pictures.orbit_curves import OrbitCurves, compute_orbit_curves
 
 
 @dataclass(frozen=True)
-class ChosenOrbit:
+class StartOrbit:
     """A start, and what is known about its orbit.
 
     Attributes
@@ -81,14 +81,14 @@ class OrbitRequests:
         self,
         state: ViewState,
         jobs: JobSubmitter,
-        show: Callable[[tuple[ChosenOrbit, ...]], None],
+        show: Callable[[tuple[StartOrbit, ...]], None],
         notify: Callable[[str], None],
         latest: Locked,
     ) -> None:
         self._state, self._show, self._notify = state, show, notify
         self._orbits = RequestedResults(jobs, _curves_or_sentence, lambda arrived: self._update(), latest)
         self._digits = RequestedResults(jobs, _digits_or_sentence, self._take_digits, latest)
-        self._shown_orbits: tuple[ChosenOrbit, ...] = ()
+        self._shown_orbits: tuple[StartOrbit, ...] = ()
         state.param.watch(lambda *events: self.follow(), ["starts", "system", "plane", "energy", "t_max"])
 
     def follow(self) -> None:
@@ -112,16 +112,16 @@ class OrbitRequests:
             self._shown_orbits = orbits
             self._show(orbits)
 
-    def _orbit_of(self, start: Start) -> ChosenOrbit:
+    def _orbit_of(self, start: Start) -> StartOrbit:
         """Return a start with what is known about its orbit."""
         job = self._state.orbit_job(start)
         if job is None:
-            return ChosenOrbit(start, problem=describe_fate(Fate.FORBIDDEN))
+            return StartOrbit(start, problem=describe_fate(Fate.FORBIDDEN))
         curves = self._orbits.found.get(job)
         if isinstance(curves, str):
-            return ChosenOrbit(start, problem=curves)
+            return StartOrbit(start, problem=curves)
         digits = self._digits.found.get(_digits_job(job))
-        return ChosenOrbit(start, curves, digits=None if isinstance(digits, str) else digits)
+        return StartOrbit(start, curves, digits=None if isinstance(digits, str) else digits)
 
 
 def _is_bounded(result: OrbitCurves | str) -> bool:

@@ -13,7 +13,7 @@ class ShownResults(param.Parameterized):
 
     frame = param.Parameter(default=None, doc="the `engine.EscapeMap` in view, complete or not; None before its first frame")
     analyses = param.Parameter(default=NO_ANALYSES, doc="complete results of the layers of the map, by name")
-    orbits = param.Parameter(default=(), doc="a `ChosenOrbit` for each start")
+    orbits = param.Parameter(default=(), doc="a `StartOrbit` for each start")
     curves = param.Parameter(default=None, doc="the `engine.Sweep` of the curves against energy or a parameter")
 
     @property

@@ -165,4 +165,4 @@ class LinkPresenter:
                 self.open_link.show(write_link(self.state))
 
     def _write_address(self, entry: int) -> None:
-        self._browser.write_link(write_link(self.state, embedded=self.embedded), entry)
+        self._browser.show_address(write_link(self.state, embedded=self.embedded), entry)

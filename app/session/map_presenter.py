@@ -14,7 +14,7 @@ from app.job_clients.error_messages import ZOOM_ENDS
 from app.job_clients.map_requests import MapRequests
 from app.runtime.process_state import process_state
 from app.session.context import History, SessionContext
-from app.state.navigation import DIVE_FACTOR, zoom
+from app.state.navigation import DOUBLE_CLICK_ZOOM_FACTOR, zoom
 from app.state.view import Analysis, Start
 from app.views.maps.map_plots import MapActions, MapsView, prepare_curves
 from app.views.maps.map_toolbar import MapToolbar
@@ -51,7 +51,7 @@ class MapPresenter:
             state,
             MapActions(
                 tap=locked(self.add_start),
-                dive=locked(self._dive),
+                zoom_to_point=locked(self._zoom_to_point),
                 zoom=locked(self._zoom_to),
                 end_gesture=locked(history.end_gesture),
                 count_in=locked(self._count_in),
@@ -104,12 +104,12 @@ class MapPresenter:
             # A default window that is not known yet arrives with the map.
             return
 
-    def _dive(self, x: float, ordinate: float) -> None:
+    def _zoom_to_point(self, x: float, ordinate: float) -> None:
         """Zoom to a double-clicked point, and remove the start that the first click has added."""
         state = self._state
         if self._added_start in state.starts:
             state.remove_start(state.starts.index(self._added_start))
-        self.move(lambda window: zoom(window, DIVE_FACTOR, (x, ordinate)))
+        self.move(lambda window: zoom(window, DOUBLE_CLICK_ZOOM_FACTOR, (x, ordinate)))
 
     def add_middle(self) -> None:
         """Add the start in the middle of the window."""

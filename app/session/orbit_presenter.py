@@ -12,7 +12,7 @@ from param.parameterized import Event
 
 from app.browser.components.orbit_components import OrbitPlayer
 from app.job_clients.chosen_orbit_requests import DivergentStartRequests, SeparationRequests
-from app.job_clients.orbit_requests import ChosenOrbit, OrbitRequests
+from app.job_clients.orbit_requests import OrbitRequests, StartOrbit
 from app.session.context import SessionContext
 from app.state.view import Start
 from app.views.maps.markers import NO_POINTS, Markers
@@ -30,7 +30,7 @@ ORBITS_REMOVED = "The orbits are removed, because they start on another slice. T
 """Message after a change of the slice."""
 
 Interval = tuple[float, float]
-"""Begin and end of an interval of time, dimensionless."""
+"""Start and end of a time interval, dimensionless."""
 
 
 class OrbitPresenter:
@@ -40,8 +40,10 @@ class OrbitPresenter:
     ----------
     context
         The session.
-    marks, well
-        Marks on the maps, and the picture of the paths.
+    marks
+        Draws the starts and sections of the orbits on the maps.
+    well
+        Draws the paths of the orbits in (x, y).
     add_start
         Adds a typed start, given by x and ordinate.
     """
@@ -56,24 +58,24 @@ class OrbitPresenter:
         state, jobs, locked, latest = context.state, context.jobs, context.locked, context.latest
         self._state, self._results, self._marks, self._well = state, context.results, marks, well
         self._open_view, self._notice = context.open_view, context.notice
-        # The start of the last tap, until a message about its orbit is shown.
-        self._tapped_start: Start | None = None
-        self._orbits: tuple[ChosenOrbit, ...] = ()
+        # On a touch screen, the start that was added last, until a message about its orbit is shown.
+        self._added_start: Start | None = None
+        self._orbits: tuple[StartOrbit, ...] = ()
         # The interval of time in view, None for the whole duration, and the curves restricted to the interval.
         self._interval: Interval | None = None
         self._restricted_curves: list[OrbitCurves | None] = []
         # What the pictures show: the starts with their curves, the index of the chosen start, and the palette.
         self._picture_content: Any = None
-        self._show_restricted = locked(self._take_restricted)
+        self._draw_restricted_later = locked(self._draw_restricted)
         actions = OrbitActions(
             add=locked(add_start),
             find_divergent_start=lambda: self._divergent_start_requests.search(),
             open_section=self._open_section,
-            show_all_times=lambda: self._brush(None),
+            show_all_times=lambda: self._set_interval(None),
             copy=context.copy,
         )
         self.controls: OrbitControls = OrbitControls(state, actions)
-        self.plots: OrbitPlots = OrbitPlots(state, locked(self._brush))
+        self.plots: OrbitPlots = OrbitPlots(state, locked(self._set_interval))
         # Under load the server skips times, to keep up with the player.
         self.player = OrbitPlayer(latest(self._set_time), sizing_mode="stretch_width", margin=(4, 10), css_classes=["player"])
         self._separation_plot: SeparationPlot = SeparationPlot(state)
@@ -81,40 +83,41 @@ class OrbitPresenter:
         self._orbit_requests = OrbitRequests(state, jobs, self._show, self.controls.say, latest)
         self._divergent_start_requests = DivergentStartRequests(state, jobs, self.controls.say, locked)
         self._separation_requests = SeparationRequests(state, jobs, self._separation_plot.show, self.controls.say, locked)
-        state.param.watch(self._end_message, ["starts", "chosen", "system", "plane", "energy", "t_max"])
+        state.param.watch(self._update_message, ["starts", "chosen", "system", "plane", "energy", "t_max"])
         state.param.watch(lambda *events: self._show(self._orbits), ["chosen", "palette"])
-        state.param.watch(self._note_tapped, "starts")
+        state.param.watch(self._record_added_start, "starts")
 
     def begin(self) -> None:
         """Request the orbits of the first view state."""
-        self._end_message()
+        self._update_message()
         self._orbit_requests.follow()
 
-    def _note_tapped(self, event: Event) -> None:
+    def _record_added_start(self, event: Event) -> None:
+        """Record a start that is added on a touch screen, for `_announce_added_start`."""
         added = [start for start in event.new if start not in event.old]
-        self._tapped_start = added[0] if len(added) == 1 and self._state.touch else None
+        self._added_start = added[0] if len(added) == 1 and self._state.touch else None
 
-    def _announce_tapped(self, orbits: Sequence[ChosenOrbit]) -> None:
-        """Show verdict and path of the tapped start in a message, because on a phone the panel and the path are out of view."""
-        for one, colour in zip(orbits, self._state.colours.orbits, strict=False):
-            if one.start == self._tapped_start and one.curves is not None:
-                self._tapped_start = None
-                self._notice.show(one.headline(), path_picture(one.curves, colour))
+    def _announce_added_start(self, orbits: Sequence[StartOrbit]) -> None:
+        """Show verdict and path of the added start in a message, because on a phone the panel and the path are out of view."""
+        for orbit, colour in zip(orbits, self._state.colours.orbits, strict=False):
+            if orbit.start == self._added_start and orbit.curves is not None:
+                self._added_start = None
+                self._notice.show(orbit.headline(), path_picture(orbit.curves, colour))
 
-    def _end_message(self, *events: Event) -> None:
-        """Remove a message about earlier orbits, or explain that a change of the plane has removed the orbits."""
+    def _update_message(self, *events: Event) -> None:
+        """Show the hint without orbits, or that a change of the plane has removed the orbits; clear other messages."""
         self.controls.end_message(has_orbits=bool(self._state.starts))
         changed = {event.name: event for event in events}
         if "plane" in changed and "starts" in changed and changed["starts"].old and not changed["starts"].new:
             self.controls.say(ORBITS_REMOVED)
 
     def _open_section(self) -> None:
-        """Open the section at the energy, or the parameter value, of the chosen orbit."""
+        """Open the Poincaré section of the system of the chosen orbit, at the energy of the orbit."""
         state, start = self._state, self._state.chosen_start
         if start is None:
             return
         x, y, px, py = state.start_state(start)
-        # Only a start of the section itself can be kept.
+        # A start is kept only if it lies on the section, y = 0, with the sign of py of the section.
         starts = ((x, px),) if y == 0.0 and SECTION.sign * py > 0.0 else ()
         energy = float(state.plane.energies(state.energy, *start))
         self._open_view(
@@ -122,16 +125,16 @@ class OrbitPresenter:
             {"plane": SECTION, "energy": energy, "window": None, "starts": starts, "chosen": 0},
         )
 
-    def _show(self, orbits: Sequence[ChosenOrbit]) -> None:
+    def _show(self, orbits: Sequence[StartOrbit]) -> None:
         """Show the orbits. Update only the texts if only Birkhoff digits are new."""
         state = self._state
-        if [one.curves for one in orbits] != [one.curves for one in self._orbits]:
+        if [orbit.curves for orbit in orbits] != [orbit.curves for orbit in self._orbits]:
             self._interval, self._restricted_curves = None, []
         self._orbits = tuple(orbits)
-        # These orbits are of an earlier, shorter list of starts.
+        # The chosen index is already that of a longer list of starts, whose orbits follow soon.
         if state.chosen >= len(orbits) and orbits:
             return
-        content = [(one.start, one.curves) for one in orbits], state.chosen, state.palette
+        content = [(orbit.start, orbit.curves) for orbit in orbits], state.chosen, state.palette
         with pn.io.hold():
             if content != self._picture_content:
                 self._picture_content = content
@@ -139,26 +142,27 @@ class OrbitPresenter:
                 self._draw()
                 self._separation_requests.follow(orbits)
             self._show_texts()
-            self._announce_tapped(orbits)
-            # This comes last: Panel links stylesheets of another host when it changes a text that is not in the document yet.
-            # Orbits that are being integrated also count: removing and adding plots takes four times as long as integrating.
-            self.inspector.follow(len(orbits), sum(not one.problem for one in orbits))
+            self._announce_added_start(orbits)
+            # The inspector adds its panes last: a text that changes before it is in the document gets links to stylesheets of
+            # another host. Orbits that are still being integrated count, because removing the plots and adding them again takes
+            # four times as long as an integration.
+            self.inspector.follow(len(orbits), sum(not orbit.problem for orbit in orbits))
 
     def _mark(self) -> None:
         """Mark starts and sections on the maps."""
-        self._marks.show_starts([one.start for one in self._orbits])
+        self._marks.show_starts([orbit.start for orbit in self._orbits])
         on_section = self._state.plane == SECTION
-        curves = [one.curves for one in self._orbits]
-        self._marks.show_sections([one.section if one is not None and on_section else NO_POINTS for one in curves])
+        all_curves = [orbit.curves for orbit in self._orbits]
+        self._marks.show_sections([curves.section if curves is not None and on_section else NO_POINTS for curves in all_curves])
 
     def _draw(self) -> None:
         """Draw the orbits in the interval of time in view."""
-        curves = [one.curves for one in self._orbits] if self._interval is None else self._restricted_curves
+        all_curves = [orbit.curves for orbit in self._orbits] if self._interval is None else self._restricted_curves
         chosen = self._state.chosen
-        chosen_curves = curves[chosen] if curves else None
+        chosen_curves = all_curves[chosen] if all_curves else None
         duration = (0.0, float(chosen_curves.orbit.t[-1])) if chosen_curves is not None else None
-        self._well.show_orbits(curves, chosen)
-        self.plots.show(curves, chosen, self._interval)
+        self._well.show_orbits(all_curves, chosen)
+        self.plots.show(all_curves, chosen, self._interval)
         self.player.follow(self._interval or duration)
         self.controls.show_interval(self._interval, duration[1] if duration is not None else 0.0)
 
@@ -169,32 +173,34 @@ class OrbitPresenter:
 
     def _show_texts(self) -> None:
         """Show the results of the orbits as text."""
-        one = self._orbits[self._state.chosen] if self._orbits else None
+        orbit = self._orbits[self._state.chosen] if self._orbits else None
         self.controls.show(self._orbits, self._state.chosen)
-        self.controls.show_indicators(() if one is None or one.orbit is None else evaluate_indicators(one.orbit, one.digits))
+        verdicts = () if orbit is None or orbit.orbit is None else evaluate_indicators(orbit.orbit, orbit.digits)
+        self.controls.show_indicators(verdicts)
         self._results.orbits = self._orbits
 
-    def _brush(self, interval: Interval | None) -> None:
+    def _set_interval(self, interval: Interval | None) -> None:
         """Restrict the curves to an interval of time; None shows the whole duration."""
-        curves = [one.curves for one in self._orbits]
+        all_curves = [orbit.curves for orbit in self._orbits]
         if interval is None:
-            self._take_restricted(curves, None, [])
+            self._draw_restricted(all_curves, None, [])
         else:
-            # The curves of a long orbit take up to a second, so a thread computes them.
-            pn.state.execute(partial(self._restrict, curves, interval))
+            # Restricting the curves of a long orbit takes up to a second, so it runs in a thread.
+            pn.state.execute(partial(self._restrict_in_thread, all_curves, interval))
 
-    async def _restrict(self, curves: list[OrbitCurves | None], interval: Interval) -> None:
-        self._show_restricted(curves, interval, await asyncio.to_thread(_restrict_all, curves, interval))
+    async def _restrict_in_thread(self, all_curves: list[OrbitCurves | None], interval: Interval) -> None:
+        restricted = await asyncio.to_thread(_restrict_all, all_curves, interval)
+        self._draw_restricted_later(all_curves, interval, restricted)
 
-    def _take_restricted(
-        self, curves: list[OrbitCurves | None], interval: Interval | None, restricted: list[OrbitCurves | None]
+    def _draw_restricted(
+        self, all_curves: list[OrbitCurves | None], interval: Interval | None, restricted: list[OrbitCurves | None]
     ) -> None:
         """Draw restricted curves, unless the orbits have changed in the meantime."""
-        if curves == [one.curves for one in self._orbits]:
+        if all_curves == [orbit.curves for orbit in self._orbits]:
             self._interval, self._restricted_curves = interval, restricted
             with pn.io.hold():
                 self._draw()
 
 
-def _restrict_all(curves: Sequence[OrbitCurves | None], interval: Interval) -> list[OrbitCurves | None]:
-    return [restrict_curves(one, *interval) if one is not None else None for one in curves]
+def _restrict_all(all_curves: Sequence[OrbitCurves | None], interval: Interval) -> list[OrbitCurves | None]:
+    return [restrict_curves(curves, *interval) if curves is not None else None for curves in all_curves]

@@ -10,7 +10,7 @@ from app.views.maps.map_plots import MapActions, MapsView
 
 _NOTHING = MapActions(
     tap=lambda x, ordinate: None,
-    dive=lambda x, ordinate: None,
+    zoom_to_point=lambda x, ordinate: None,
     zoom=lambda window: None,
     end_gesture=lambda: None,
     count_in=lambda box: None,

@@ -12,7 +12,7 @@ import panel as pn
 import pytest
 from playwright.sync_api import Browser
 
-from app.job_clients.orbit_requests import ChosenOrbit
+from app.job_clients.orbit_requests import StartOrbit
 from app.state.system_review import review_catalogue_entry
 from app.state.view_state import ViewState
 from app.views.analysis.basin_measures import BasinMeasuresView
@@ -41,7 +41,7 @@ def test_quoted_text_is_escaped() -> None:
         (notice.warn, notice.layout()),
         (notice.show, notice.layout()),
         (controls.say, controls.note),
-        (lambda text: controls.show([ChosenOrbit((0.1, 0.2), problem=text)], 0), controls.text),
+        (lambda text: controls.show([StartOrbit((0.1, 0.2), problem=text)], 0), controls.text),
         (curves.say, curves.text),
         (partial(measures.say, "wada"), measures.text),
         (panel.say, panel.message),

@@ -56,7 +56,7 @@ class MapActions:
     ----------
     tap
         Handles a click on the pixel at x and ordinate.
-    dive
+    zoom_to_point
         Handles a double click at x and ordinate; `tap` has handled the first click.
     zoom
         Shows the window to which the user has moved the pictures; None is the whole interior.
@@ -67,7 +67,7 @@ class MapActions:
     """
 
     tap: Callable[[float, float], None]
-    dive: Callable[[float, float], None]
+    zoom_to_point: Callable[[float, float], None]
     zoom: Callable[[Window | None], None]
     end_gesture: Callable[[], None]
     count_in: Callable[[Window], None]
@@ -216,7 +216,7 @@ class MapsView:
         """Handle the second of two quick clicks. Bokeh reports a double tap even if the clicks are at different positions."""
         if self.snapped(event.x, event.y) == self._last_tap:
             self._last_tap = None
-            self._actions.dive(event.x, event.y)
+            self._actions.zoom_to_point(event.x, event.y)
         else:
             self._tap(event)
 

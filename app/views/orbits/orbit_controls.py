@@ -11,7 +11,7 @@ from itertools import groupby
 import panel as pn
 
 from app.browser.components.orbit_components import OrbitList
-from app.job_clients.orbit_requests import ChosenOrbit
+from app.job_clients.orbit_requests import StartOrbit
 from app.state.glossary import with_terms
 from app.state.view_state import ViewState
 from app.views.components.collapsible_section import Fold
@@ -49,7 +49,7 @@ class OrbitControls:
 
     def __init__(self, state: ViewState, actions: OrbitActions) -> None:
         self._state, self._actions = state, actions
-        self._orbits_and_chosen: tuple[tuple[ChosenOrbit, ...], int] = ((), 0)
+        self._orbits_and_chosen: tuple[tuple[StartOrbit, ...], int] = ((), 0)
         # Text boxes, because number boxes do not report Enter.
         self.x = pn.widgets.TextInput(label="x", value="0", max_length=_LONGEST_NUMBER, width=_BOX_WIDTH)
         self.ordinate = pn.widgets.TextInput(label="px", value="0", max_length=_LONGEST_NUMBER, width=_BOX_WIDTH)
@@ -125,7 +125,7 @@ class OrbitControls:
         rows = _indicator_rows(verdicts)
         self.indicators.object = with_terms(f"<table aria-label='chaos indicators'>{rows}</table>") if rows else ""
 
-    def show(self, orbits: Sequence[ChosenOrbit], chosen: int) -> None:
+    def show(self, orbits: Sequence[StartOrbit], chosen: int) -> None:
         """Show the list of the orbits, and verdict and values of the chosen orbit."""
         self._orbits_and_chosen = (tuple(orbits), chosen)
         rows = [_list_label(orbits, index) for index in range(len(orbits))]
@@ -176,7 +176,7 @@ def _indicator_rows(verdicts: Sequence[IndicatorVerdict]) -> str:
     return rows
 
 
-def _list_label(orbits: Sequence[ChosenOrbit], index: int) -> str:
+def _list_label(orbits: Sequence[StartOrbit], index: int) -> str:
     """Return the label of an orbit in the list. A start that looks like an earlier start is written as a difference."""
     x, ordinate = orbits[index].start
     text = f"{format_number(x)}, {format_number(ordinate)}"
@@ -192,7 +192,7 @@ def _value(value: float) -> str:
     return format_number(value, 3) if math.isfinite(value) else ""
 
 
-def _short_outcome(orbit: ChosenOrbit) -> str:
+def _short_outcome(orbit: StartOrbit) -> str:
     if orbit.verdict is not None:
         return orbit.verdict.summarize()
     return "none" if orbit.problem else "…"

@@ -24,47 +24,53 @@ PICTURE_KEYS: Mapping[str, str] = MappingProxyType({str(number): name for number
 
 KEYS: Mapping[str, str] = MappingProxyType(
     {
-        **{key: move.words for key, move in WINDOW_MOVES.items()},
-        "b": "back",
-        "f": "forward",
-        "p": "play or stop the energy",
-        "Enter": "orbit in the middle of the maps",
-        "Escape": "show all pictures, or stop the computation",
-        "?": "these keys",
+        **{key: move.label for key, move in WINDOW_MOVES.items()},
+        "b": "go back",
+        "f": "go forward",
+        "p": "play or stop the animation of the energy",
+        "Enter": "add the orbit that starts in the middle of the maps",
+        "Escape": "close the drawer, stop the animation, show all pictures, or stop the computation",
+        "?": "open or close the help",
         **{key: f"enlarge: {_TITLES[name]}" for key, name in PICTURE_KEYS.items()},
     }
 )
 """The action of each key of the page, by the name of the key."""
 
-# Labels of keys whose names are not their labels.
+# Labels of keys in the legend that differ from the name in `KeyboardEvent.key`.
 _KEY_LABELS = {"ArrowLeft": "←", "ArrowRight": "→", "ArrowUp": "↑", "ArrowDown": "↓", "-": "−", "Escape": "Esc"}
 
 
 class BrowserEvents(JSComponent):
-    """An invisible component that passes events of the browser to the view state or to callbacks, and commands to the browser.
+    """An invisible component that passes browser events to the view state or to callbacks, and sends commands to the browser.
 
-    The browser sends {key}, {link, entry, steps}, {touch}, {narrow}, {enlarge} or {copied}.
+    The browser sends {key}, {link, entry, steps}, {touch}, {narrow}, {enlarge} or {copied}. It receives
+
+    - `address`: {link, entry, steps, number}, the link of the view, the number of its entry in the history, the number of steps
+      through the history that the view has followed, and a serial number,
+    - `command`: {name, number}, or {name, text, number} to copy a text; the name is copy, back, forward, focus or return.
+
+    The serial number makes equal addresses and equal commands differ.
 
     Parameters
     ----------
     state
-        View state, which gets touch, width and the enlarged picture.
+        View state, whose `touch`, `narrow` and enlarged picture are set.
     keys
         Some of `KEYS`, which the page uses unless a field, slider or menu uses them.
     locked
-        Wraps a function to run under the session's lock. `pn.io.hold` would fail for events that arrive before the page is ready.
+        Wraps a function to run under the session's lock. Events can arrive before the page is ready, when `pn.io.hold` fails.
     on_key
         Handles one of the keys.
     on_navigate
-        Shows the entry to which the browser's Back or Forward leads, given by query string and number, and notes the number of
-        such steps so far.
+        Called when the browser's Back or Forward leads to an entry of the history, with the query string and the number of the
+        entry, and the number of such steps so far.
     on_copied
-        Handles whether a text could be copied.
+        Called after a copy, with True if the text was copied.
     """
 
     keys = param.List(default=list(KEYS), doc="names of the keys that the page uses")
-    address = param.Dict(default={}, doc="link of the view, its entry in the history, steps followed; number: see `command`")
-    command = param.Dict(default={}, doc="name, such as back or copy; text to copy; number: makes equal commands differ")
+    address = param.Dict(default={}, doc="the latest address, see the class")
+    command = param.Dict(default={}, doc="the latest command, see the class")
 
     _esm = Path(__file__).with_suffix(".js")
 
@@ -85,9 +91,9 @@ class BrowserEvents(JSComponent):
 
     def copy(self, text: str | None) -> None:
         """Copy a text; None copies the address of the page. Browsers allow copying only soon after a click or a key."""
-        self._command("copy", text=text)
+        self._send_command("copy", text=text)
 
-    def write_link(self, link: str, entry: int) -> None:
+    def show_address(self, link: str, entry: int) -> None:
         """Show a link as the address of the page, in this entry of the browser's history."""
         self.address = {"link": link, "entry": entry, "steps": self._steps, "number": next(self._numbers)}
 
@@ -97,17 +103,17 @@ class BrowserEvents(JSComponent):
 
     def go_back(self) -> None:
         """Go back in the browser's history."""
-        self._command("back")
+        self._send_command("back")
 
     def go_forward(self) -> None:
         """Go forward in the browser's history."""
-        self._command("forward")
+        self._send_command("forward")
 
     def focus_drawer(self, is_open: bool) -> None:
         """Move the keyboard's focus into an opened drawer, or back to the place before the drawer opened."""
-        self._command("focus" if is_open else "return")
+        self._send_command("focus" if is_open else "return")
 
-    def _command(self, name: str, **details: Any) -> None:
+    def _send_command(self, name: str, **details: Any) -> None:
         self.command = {"name": name, **details, "number": next(self._numbers)}
 
     def _handle_msg(self, message: Any) -> None:

@@ -65,14 +65,14 @@ class BrowserEngine(JSComponent):
             self.stop()
         elif state.plane.energy_axis is None:
             self.playing = True
-            self._command("play", energy=state.energy, low=energies.low, high=energies.high)
+            self._send_command("play", energy=state.energy, low=energies.low, high=energies.high)
 
     def stop(self) -> None:
         """Stop the animation at the current energy."""
         if self.playing:
-            self._command("stop")
+            self._send_command("stop")
 
-    def _command(self, name: str, **details: float) -> None:
+    def _send_command(self, name: str, **details: float) -> None:
         self.command = {"name": name, **details, "number": next(self._command_numbers)}
 
     def _handle_msg(self, message: Any) -> None:

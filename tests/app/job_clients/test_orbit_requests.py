@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from app.job_clients.chosen_orbit_requests import DivergentStartRequests, SeparationRequests
-from app.job_clients.orbit_requests import ChosenOrbit, OrbitRequests
+from app.job_clients.orbit_requests import OrbitRequests, StartOrbit
 from app.state.view_state import ViewState
 from engine import System, integrate_orbit
 from engine.jobs.client import JobClient
@@ -23,7 +23,7 @@ class Recorder:
     """Records calls to the views."""
 
     def __init__(self) -> None:
-        self.orbits: tuple[ChosenOrbit, ...] = ()
+        self.orbits: tuple[StartOrbit, ...] = ()
         self.messages: list[str] = []
         self.separations: list[tuple[tuple[int, int] | None, Separation | None]] = []
         self.changed = threading.Condition()
@@ -33,7 +33,7 @@ class Recorder:
             act()
             self.changed.notify_all()
 
-    def show(self, orbits: tuple[ChosenOrbit, ...]) -> None:
+    def show(self, orbits: tuple[StartOrbit, ...]) -> None:
         self.record(lambda: setattr(self, "orbits", orbits))
 
     def notify(self, sentence: str) -> None:

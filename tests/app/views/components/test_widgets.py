@@ -6,7 +6,7 @@ from dataclasses import fields
 
 import pytest
 
-from app.job_clients.orbit_requests import ChosenOrbit
+from app.job_clients.orbit_requests import StartOrbit
 from app.state.view_state import ViewState
 from app.views.analysis.basin_measures import BasinMeasuresView
 from app.views.components.widgets import copy_button, number_rows
@@ -40,7 +40,7 @@ def test_an_orbit_is_copied_with_its_indicators(copied: list[str]) -> None:
     controls = OrbitControls(ViewState(), OrbitActions(**nothing | {"copy": copied.append}))
     controls.copy.clicks += 1
     orbit = integrate_orbit(CASES["I"], (0.1, 0.0, 0.05, 0.6), 50.0)
-    controls.show([ChosenOrbit((0.1, 0.05), compute_orbit_curves(CASES["I"], orbit))], 0)
+    controls.show([StartOrbit((0.1, 0.05), compute_orbit_curves(CASES["I"], orbit))], 0)
     controls.show_indicators(evaluate_indicators(orbit))
     controls.copy.clicks += 1
     assert copied[0] == ""

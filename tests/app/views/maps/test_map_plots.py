@@ -62,7 +62,7 @@ def test_on_touch_screens_the_wheel_tool_ignores_two_fingers(state: ViewState, m
 def clicks(*points: tuple[float, float]) -> list[tuple[str, float, float]]:
     """Return the calls after quick clicks on points of a map, one after the other."""
     called: list[tuple[str, float, float]] = []
-    view = make_maps(tap=lambda x, y: called.append(("tap", x, y)), dive=lambda x, y: called.append(("dive", x, y)))
+    view = make_maps(tap=lambda x, y: called.append(("tap", x, y)), zoom_to_point=lambda x, y: called.append(("zoom", x, y)))
     frame = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19, (10, 10), (0.0, 1.0, 0.0, 1.0), t_max=10.0))
     view.show(frame, map_columns(frame))
     document = Document()
@@ -74,7 +74,7 @@ def clicks(*points: tuple[float, float]) -> list[tuple[str, float, float]]:
 
 
 def test_two_clicks_on_one_pixel_are_a_dive_to_the_point() -> None:
-    assert clicks((0.31, 0.52), (0.33, 0.54)) == [("tap", pytest.approx(0.35), pytest.approx(0.55)), ("dive", 0.33, 0.54)]
+    assert clicks((0.31, 0.52), (0.33, 0.54)) == [("tap", pytest.approx(0.35), pytest.approx(0.55)), ("zoom", 0.33, 0.54)]
 
 
 def test_two_quick_clicks_on_two_pixels_are_two_taps() -> None:

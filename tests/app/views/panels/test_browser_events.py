@@ -28,7 +28,7 @@ def test_each_change_of_the_address_names_the_last_known_steps_through_the_histo
     events.param.watch(lambda event: written.append(event.new), "address")
     for steps in (0, 0, 3):
         events.follow_steps(steps)
-        events.write_link("?case=II", 1)
+        events.show_address("?case=II", 1)
     assert [(address["link"], address["entry"], address["steps"]) for address in written] == [
         ("?case=II", 1, steps) for steps in (0, 0, 3)
     ]

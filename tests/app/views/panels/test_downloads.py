@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from app.job_clients.orbit_requests import ChosenOrbit
+from app.job_clients.orbit_requests import StartOrbit
 from app.job_clients.shown_results import ShownResults
 from app.runtime.process_state import ProcessState
 from app.state.view_state import ViewState
@@ -33,7 +33,7 @@ def escape_map() -> EscapeMap:
 @pytest.fixture
 def results(escape_map: EscapeMap) -> ShownResults:
     orbit = integrate_orbit(CASES["I"], STATE, 50.0)
-    return ShownResults(frame=escape_map, orbits=(ChosenOrbit((0.1, 0.05), compute_orbit_curves(CASES["I"], orbit)),))
+    return ShownResults(frame=escape_map, orbits=(StartOrbit((0.1, 0.05), compute_orbit_curves(CASES["I"], orbit)),))
 
 
 @pytest.fixture

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from app.browser.components.file_components import FileSaver
-from app.job_clients.orbit_requests import ChosenOrbit
+from app.job_clients.orbit_requests import StartOrbit
 from app.job_clients.shown_results import ShownResults
 from app.state.view_state import ViewState
 from app.views.panels.figure_form import ALL_MAPS, FigureForm, figure_choices
@@ -44,7 +44,7 @@ def shown(escape_map: EscapeMap) -> ShownResults:
     curves = compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.2, 0.3), (12, 12), t_max=100.0, measures="shares"))
     orbit = compute_orbit_curves(CASES["I"], integrate_orbit(CASES["I"], (0.1, 0.0, 0.05, 0.6), 50.0))
     analyses = {"judge": compute_regularity(escape_map)}
-    return ShownResults(frame=escape_map, analyses=analyses, orbits=(ChosenOrbit((0.1, 0.05), orbit),), curves=curves)
+    return ShownResults(frame=escape_map, analyses=analyses, orbits=(StartOrbit((0.1, 0.05), orbit),), curves=curves)
 
 
 class KeptFiles(FileSaver):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.job_clients.orbit_requests import ChosenOrbit
+from app.job_clients.orbit_requests import StartOrbit
 from app.job_clients.shown_results import ShownResults
 from app.state.view_state import ViewState
 from app.views.panels.help import AccessibleTable
@@ -13,7 +13,7 @@ from tests.disc import disc_map
 def test_the_table_is_written_while_it_is_open() -> None:
     results = ShownResults()
     table = AccessibleTable(ViewState(system=System("I"), energy=0.19), results)
-    results.orbits = (ChosenOrbit((0.1, 0.1)),)
+    results.orbits = (StartOrbit((0.1, 0.1)),)
     assert table.text.object == ""
     table.fold.button.clicks += 1
     assert "Case I" in table.text.object
