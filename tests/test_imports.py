@@ -54,7 +54,7 @@ def import_page() -> None:
     from app.runtime import process_state
 
     list_imported("app.session.explorer", "matplotlib.figure")
-    assert process_state._started is None
+    assert process_state._current_state is None
 
 
 def serve_with_an_invalid_setting() -> None:

@@ -123,6 +123,7 @@ def python_lines(spec: MapSpec, system: System, starts: Sequence[Sequence[float]
         f"    window=Window{_numbers(spec.find_window().edges)},",
         f"    t_max={spec.t_max!r},",
         f"    use_evidence={spec.use_evidence!r},",
+        *(["    backward=True,"] if spec.backward else []),
         ")",
         "escape_map = compute_map(spec)",
         "escape_map.plot()",

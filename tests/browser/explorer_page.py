@@ -45,6 +45,13 @@ _ADDRESSED = """name => {
     return edges && [x_range.start, x_range.end, y_range.start, y_range.end].every((end, k) => Math.abs(end - edges[k]) < 1e-9)
 }"""
 
+# Remove the focus from a box, which would receive the keys of the page.
+_BLUR = """() => {
+    let focused = document.activeElement
+    while (focused.shadowRoot?.activeElement) focused = focused.shadowRoot.activeElement
+    focused.blur()
+}"""
+
 # Whether browser and page are at the first entry of the history.
 _RETURNED = """() => history.state.entry === 0
     && [...Bokeh.documents[0].all_models].some(model => model.data?.attributes?.address?.entry === 0)"""
@@ -94,7 +101,8 @@ class ExplorerPage:
         expect(self.text("✓ t =")).to_be_visible()
 
     def return_home(self) -> None:
-        """Go back to the view that was opened, and wait for its map."""
+        """Leave the box that has the focus, go back to the view that was opened, and wait for its map."""
+        self.page.evaluate(_BLUR)
         steps = self.page.evaluate("() => history.state.entry")
         if steps:
             self.page.evaluate("steps => history.go(-steps)", steps)

@@ -53,7 +53,7 @@ def test_interpolated_lines_are_the_lines() -> None:
 def test_the_line_beyond_a_neck_that_has_opened_is_refused() -> None:
     # At C = 3.02 the line beyond L2 no longer meets the forbidden region.
     with pytest.raises(
-        ValueError, match="the line at the outer edge of the Lyapunov orbit across channel 2 does not end on the wa"
+        ValueError, match="the line at the outer edge of the Lyapunov orbit across channel 2 does not end on its wa"
     ):
         find_lyapunov_orbits(three_body(EARTH_MOON), at_jacobi_constant(3.02))
 
@@ -124,5 +124,5 @@ def test_orbits_that_have_crossed_the_line_do_not_return_to_the_well(energy: flo
 def test_exits_end_at_the_energies_in_the_document(name: str, highest: float) -> None:
     step = 1e-3 * abs(highest)
     assert find_lyapunov_orbits(POTENTIALS[name], highest - step)
-    with pytest.raises(ValueError, match="does not end on the walls"):
+    with pytest.raises(ValueError, match="does not end on its walls"):
         find_lyapunov_orbits(POTENTIALS[name], highest + step)

@@ -35,8 +35,14 @@ SPECS = {
     "a deep zoom": MapSpec(
         CASES["II"], Plane.X_PX, 0.18, (7, 7), (0.1, 0.1 + 1e-10, 1 / 3, 1 / 3 + 1e-10), 100.0, use_evidence=False
     ),
-    "NumPy's numbers": MapSpec(
-        CASES["II"], Plane.X_PX, np.float64(0.2), (np.int64(9), 9), tuple(np.linspace(-0.3, 0.3, 2)) * 2, np.float64(50.0)
+    "NumPy's numbers, backward in time": MapSpec(
+        CASES["II"],
+        Plane.X_PX,
+        np.float64(0.2),
+        (np.int64(9), 9),
+        tuple(np.linspace(-0.3, 0.3, 2)) * 2,
+        np.float64(50.0),
+        backward=True,
     ),
 }
 
@@ -104,7 +110,7 @@ def test_a_table_of_curves_has_a_row_for_each_energy() -> None:
     np.testing.assert_array_equal([float(row["s_b"]) for row in rows], curves["s_b"])
 
 
-@pytest.mark.parametrize("name", ["energies", "a deep zoom", "NumPy's numbers"])
+@pytest.mark.parametrize("name", ["energies", "a deep zoom", "NumPy's numbers, backward in time"])
 def test_the_script_reproduces_and_draws_the_map_and_the_orbits(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     spec = SPECS[name]
     made: dict[str, Any] = {}
