@@ -225,9 +225,10 @@ class ViewState(param.Parameterized):
         self._review = reviewed
         values["plane"] = plane_of_system(values.get("plane", self.plane), reviewed.system)
         values["system"] = reviewed.system
-        if reviewed.system == self.system:
-            # Param would call the watchers even for an equal system.
-            del values["system"]
+        for name in ("plane", "system"):
+            # Param would call the watchers even for an equal slice or system.
+            if values[name] == getattr(self, name):
+                del values[name]
         self.param.update(**values)
 
     def show_slice(self, plane: Slice) -> None:

@@ -138,9 +138,10 @@ class MapsView:
         """Paint a frame, and go to the window of a new map."""
         if frame.spec != self._spec:
             self.ranges.set_home(replace(frame.spec, window=None))
-            self.ranges.follow(frame.spec.find_window())
             self._spec, self._results = frame.spec, {}
             self._show_curves(frame.spec)
+        # The window may have changed and changed back before a map of the other window was shown.
+        self.ranges.follow(frame.spec.find_window())
         if frame.stride == 1:
             self._fitted_times = fitted_scale(frame)
         self._fates = frozenset(np.unique(frame.fate).tolist())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import deepcopy
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 
 from app.state.view import default_settings
 from app.state.view_state import ViewState
-from engine import CASES, Plane, System
+from engine import CASES, Plane, System, Window
 from engine.systems.catalogue.table import PAPER_ENERGIES
 from plots.pictures.palette import MOST_ORBITS
 
@@ -89,3 +90,10 @@ def test_unknown_layers_and_illegal_settings_are_refused(values: dict[str, Any],
         view.param.update(values)
     assert view.layers == {"trust"}
     assert view.settings == default_settings()
+
+
+def test_an_equal_slice_is_no_change() -> None:
+    state, changed = ViewState(plane=Plane.X_PX), list[str]()
+    state.param.watch(lambda *events: changed.extend(event.name for event in events), ["plane", "system", "window"])
+    state.show(state.reviewed, plane=deepcopy(Plane.X_PX), window=Window(-0.1, 0.1, -0.2, 0.2))
+    assert changed == ["window"]

@@ -13,7 +13,7 @@ from app.state.view import View
 from app.state.view_state import ViewState
 from app.views.maps.map_plots import MAPS, MapsView
 from app.views.maps.map_toolbar import Drag
-from engine import CASES, MapSpec, Plane, compute_map
+from engine import CASES, MapSpec, Plane, Window, compute_map
 from plots.layers.table import LAYERS
 from plots.pictures.image_columns import map_columns
 from plots.pictures.time_scale import TimeScale, fitted_scale
@@ -113,3 +113,13 @@ def test_a_locked_scale_of_times_keeps_its_ends_until_it_is_unlocked(state: View
     state.lock_times = None
     assert maps.times == fitted_scale(frame)
     assert "locked" not in maps.figures["times"].elements[0].html
+
+
+def test_the_pictures_return_to_a_window_whose_map_was_the_last_one_shown(maps: MapsView) -> None:
+    frame = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19, (8, 8), t_max=10.0))
+    home = frame.spec.find_window()
+    for _ in range(2):
+        maps.show(frame, map_columns(frame))
+        assert (maps.ranges.x.start, maps.ranges.x.end) == (home.x_low, home.x_high)
+        # The map of this window never arrives.
+        maps.ranges.go_to(Window(-0.1, 0.1, -0.2, 0.2))
