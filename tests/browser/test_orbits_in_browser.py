@@ -41,7 +41,9 @@ def click_all(explorer: ExplorerPage, starts: list[tuple[float, float]]) -> None
 def test_another_orbit_can_be_chosen_and_removed(explorer: ExplorerPage) -> None:
     click_all(explorer, STARTS[:2])
     # The server confirms the choice, so the button may be checked a moment after the click.
-    explorer.page.get_by_role("radio", name=re.compile("^1: ")).click()
+    first = explorer.page.get_by_role("radio", name=re.compile("^1: "))
+    first.click()
+    expect(first).to_be_checked()
     explorer.page.wait_for_url(lambda url: "look=" not in url)
     explorer.press("Remove")
     explorer.wait_for_data("starts", "data.x.length == 1")

@@ -73,8 +73,7 @@ def test_any_formula_is_reviewed_or_refused(text: str) -> None:
 @given(st.integers(0, 2**32))
 def test_a_link_with_a_formula_of_any_kind_is_reviewed_or_refused(seed: int) -> None:
     values, _ = read_link({"case": TYPED, **random_link(random.Random(seed))})
-    names = ["formula", "potential", *WELL_PARAMETERS]
-    reviewed_system = result_or_error(lambda: review_system(linked_view(values).system), names)
+    reviewed_system = result_or_error(lambda: review_system(linked_view(values).system), ["formula", *WELL_PARAMETERS])
     if reviewed_system is not None and reviewed_system.refusal is None:
         check_display(reviewed_system.system, reviewed_system)
 
