@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from fractions import Fraction
 from math import isqrt
 
 from engine.expressions.text import short_fraction
 
 # Largest distance of a number, or of its square, from a short fraction by which it is written.
 _ROUNDING = 1e-10
+# Largest number that is written as a fraction. Any larger double is close to some short fraction.
+_LARGEST_FRACTION = 1e6
+# Largest square of a number that is written as a root. It also limits the factors that are tried.
+_LARGEST_SQUARE = 1e4
+
 COORDINATE_DIGITS = 4
 """Significant digits of coordinates that are decimal numbers."""
 
@@ -19,13 +26,25 @@ def number(value: float, shown: int = COORDINATE_DIGITS) -> str:
     """Return a number as a fraction, the square root of a fraction, or a decimal number with `shown` significant digits."""
     if value < 0.0:
         return row(op("−") + number(-value, shown))
-    for power in (1, 2):
-        exact = short_fraction(value**power, _ROUNDING)
-        # A small number that is not 0 is not written as 0.
-        if exact is not None and (exact or not value):
-            numerator, denominator = (_root(n) if power == 2 else digits(n) for n in exact.as_integer_ratio())
-            return numerator if denominator == digits(1) else f"<mfrac>{numerator}{denominator}</mfrac>"
+    fraction, square = _as_fraction(value, _LARGEST_FRACTION), _as_fraction(value * value, _LARGEST_SQUARE)
+    if fraction is not None:
+        return _write_fraction(fraction, digits)
+    if square is not None:
+        return _write_fraction(square, _root)
     return digits(f"{value:.{shown}g}")
+
+
+def _as_fraction(value: float, largest: float) -> Fraction | None:
+    """Return the fraction to be written in place of a number up to `largest`; None if a decimal number is clearer."""
+    fraction = short_fraction(value, _ROUNDING) if value <= largest else None
+    # A small number that is not 0 is not written as 0.
+    return fraction if fraction or not value else None
+
+
+def _write_fraction(fraction: Fraction, write: Callable[[int], str]) -> str:
+    """Return a fraction, or an integer, whose numerator and denominator are written by a function."""
+    numerator, denominator = map(write, fraction.as_integer_ratio())
+    return numerator if denominator == digits(1) else f"<mfrac>{numerator}{denominator}</mfrac>"
 
 
 def _root(number: int) -> str:
