@@ -18,6 +18,7 @@ from urllib.parse import urljoin
 
 from benchmarks.attacks import formula_link
 from benchmarks.hostile import (
+    LONGEST_REVIEW_SECONDS,
     Place,
     count_delayed_messages,
     end_with,
@@ -77,15 +78,15 @@ A formula without Enter takes a fifth of the time of a formula with a map, and a
 """
 
 
-async def send_formulas(places: Sequence[Place], visitors: int, count: int, seed: int) -> tuple[Record, Record, int]:
-    """Send `count` formulas from visitors of each place.
+async def send_formulas(places: Sequence[Place], visitors: int, numbers: range, seed: int) -> tuple[Record, Record, int]:
+    """Send the formulas with these numbers from visitors of each place.
 
-    Return an empty record of normal visitors, the record of the senders, and `count`.
+    Return an empty record of normal visitors, the record of the senders, and the number of formulas.
     """
-    numbers, record = iter(range(count)), Record()
+    remaining, record = iter(numbers), Record()
     senders = [(place, seed + number) for number, place in enumerate([*places] * visitors)]
-    await asyncio.gather(*(_send(place, address, numbers, record) for place, address in senders))
-    return Record(), record, count
+    await asyncio.gather(*(_send(place, address, remaining, record) for place, address in senders))
+    return Record(), record, len(numbers)
 
 
 async def _send(place: Place, address: int, numbers: Iterator[int], record: Record) -> None:
@@ -97,8 +98,11 @@ async def _send(place: Place, address: int, numbers: Iterator[int], record: Reco
             [way] = choice.choices(list(WAYS), list(WAYS.values()))
             begin = time.perf_counter()
             await way(visitor, new_session(place, FIRST_ADDRESS + number, record), choice)
+            seconds = time.perf_counter() - begin
             if way is request_page:
-                record.reviews.append(time.perf_counter() - begin)
+                record.reviews.append(seconds)
+            if seconds > LONGEST_REVIEW_SECONDS:
+                print(f"formula {number} by {way.__name__}: {seconds:.1f} s", file=sys.stderr, flush=True)
             while not visitor.is_open:
                 await asyncio.sleep(REOPEN_SECONDS)
                 await visitor.open()
@@ -109,12 +113,14 @@ def main() -> int:
     parser.add_argument("--processes", type=int, default=1)
     parser.add_argument("--proxy", action="store_true", help="two processes behind nginx")
     parser.add_argument("--count", type=int, default=20_000, help="formulas")
+    parser.add_argument("--first", type=int, default=0, help="number of the first formula, on which alone each formula depends")
     parser.add_argument("--visitors", type=int, default=4, help="addresses for each process")
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
+    numbers = range(options.first, options.first + options.count)
     with running(options.processes, proxy=options.proxy) as (servers, places):
         begin, before = time.perf_counter(), count_delayed_messages(servers)
-        effect = asyncio.run(observe(servers, send_formulas(places, options.visitors, options.count, options.seed)))
+        effect = asyncio.run(observe(servers, send_formulas(places, options.visitors, numbers, options.seed)))
         print(row("formulas", effect, count_delayed_messages(servers) - before))
         print(f"\n{options.count} formulas in {time.perf_counter() - begin:.0f} s, {effect.attackers.refused} pages refused.")
         return end_with(servers, list(find_problems(effect)))

@@ -293,7 +293,7 @@ def running(processes: int, *, proxy: bool) -> Iterator[tuple[list[Server], list
 
 def end_with(servers: Sequence[Server], problems: Sequence[str]) -> int:
     """Print these problems and the errors in the logs; return the exit code."""
-    found = [*problems, *list(dict.fromkeys(line for server in servers for line in server.error_lines()))[:5]]
+    found = [*problems, *list(dict.fromkeys(line for server in servers for line in server.error_lines()))[:10]]
     print("\nPassed." if not found else "\nFailed: " + "; ".join(found) + ".")
     return 1 if found else 0
 

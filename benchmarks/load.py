@@ -128,8 +128,14 @@ class Server:
         return (int(fields[11]) + int(fields[12])) / 100.0
 
     def error_lines(self) -> list[str]:
-        """Return the lines of the log with errors."""
-        return [line for line in self.log_lines() if _ERROR_LINE.search(line)]
+        """Return the lines of the log with errors, and the last line of each traceback."""
+        found, in_traceback = list[str](), False
+        for line in self.log_lines():
+            # Frames of a traceback are indented, and the error follows them.
+            if _ERROR_LINE.search(line) or (in_traceback and not line.startswith(" ")):
+                found.append(line)
+            in_traceback = "Traceback" in line or (in_traceback and line.startswith(" "))
+        return found
 
     async def watch(self) -> None:
         """Record the resident memory once per second, until cancelled."""

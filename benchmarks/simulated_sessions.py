@@ -373,7 +373,8 @@ class SimulatedSession:
         """Notice when a formula has been reviewed."""
         if "Reviewing" in text:
             self._reviewing = model
-        elif model == self._reviewing:
+        # If a formula is reviewed at once, only the result is sent to the pane beside the formula.
+        elif model in (self._reviewing, self._models.get("potential-message")):
             self._reviewing = None
             self._reviewed.set()
 
