@@ -16,7 +16,6 @@ from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job, Queue
 from engine.propagation.fates import describe_fate
 from engine.results import BirkhoffDigits, OrbitVerdict
-from engine.trajectories.birkhoff_digits import compute_birkhoff_digits
 from plots.pictures.orbit_curves import OrbitCurves, compute_orbit_curves
 
 
@@ -129,7 +128,8 @@ def _is_bounded(result: OrbitCurves | str) -> bool:
 
 
 def _digits_job(job: Job[Orbit]) -> Job[BirkhoffDigits]:
-    return Job(compute_birkhoff_digits, job.arguments, queue=Queue.LONG_CALL)
+    # The manager passes the orbit in place of its job.
+    return Job(Orbit.compute_birkhoff_digits, (job,), queue=Queue.LONG_CALL)
 
 
 def _digits_or_sentence(job: Job[Any], result: BirkhoffDigits | Exception) -> BirkhoffDigits | str:
@@ -137,4 +137,7 @@ def _digits_or_sentence(job: Job[Any], result: BirkhoffDigits | Exception) -> Bi
 
 
 def _curves_or_sentence(job: Job[Orbit], result: Orbit | Exception) -> OrbitCurves | str:
-    return error_sentence(result) if isinstance(result, Exception) else compute_orbit_curves(job.arguments[0], result)
+    if isinstance(result, Exception):
+        return error_sentence(result)
+    assert result.potential is not None
+    return compute_orbit_curves(result.potential, result)

@@ -10,13 +10,11 @@ import numpy as np
 from app.job_clients.latest_request import LatestRequest
 from app.job_clients.map_requests import jobs_of_map
 from app.session.context import SessionContext
-from app.state.system_review import review_job
+from app.state.system_review import PageReview, review_job
 from app.state.view import View
 from app.views.maps.map_plots import MapsView
 from engine import EscapeMap, Fate, MapSpec
 from engine.foundations.wording import format_share, format_whole
-from engine.systems.review.potential_review import SystemReview
-from plots.texts.accepted_potentials import page_refusal
 
 
 class ComparisonPresenter:
@@ -45,7 +43,7 @@ class ComparisonPresenter:
         self._open_view = context.open_view
         self._map: EscapeMap | None = None
         self._other_map: EscapeMap | None = None
-        self._other_review: SystemReview | None = None
+        self._other_review: PageReview | None = None
         self._review_request = LatestRequest(context.jobs, self._take_review, self._refuse_system, context.locked)
         self._map_request = LatestRequest(context.jobs, self._show, self._fail, context.locked)
         self._state.param.watch(lambda event: self._restart(), "compared")
@@ -82,12 +80,12 @@ class ComparisonPresenter:
             return
         if reviewed is None or reviewed.system != view.system:
             self._review_request.submit(review_job(view.system))
-        elif (problem := page_refusal(reviewed)) is not None:
-            self._refuse_system(problem)
+        elif reviewed.problem is not None:
+            self._refuse_system(reviewed.problem)
         elif self._map is not None:
             self._request_map(view, reviewed, self._map.spec)
 
-    def _request_map(self, view: View, reviewed: SystemReview, shown_spec: MapSpec) -> None:
+    def _request_map(self, view: View, reviewed: PageReview, shown_spec: MapSpec) -> None:
         """Request the map of the other view, with the pixels and t_max of the map in view."""
         try:
             window = shown_spec.find_window()
@@ -97,7 +95,7 @@ class ComparisonPresenter:
         else:
             self._map_request.submit(*jobs_of_map(spec))
 
-    def _take_review(self, reviewed: SystemReview) -> None:
+    def _take_review(self, reviewed: PageReview) -> None:
         self._other_review = reviewed
         self._request_missing()
 

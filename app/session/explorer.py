@@ -98,11 +98,11 @@ class Explorer:
         self.controls = Controls(state, self.engine, self._toggle_drawer, self.comparison.swap_views, lock_times)
         self.drawers = Drawers(
             {
-                "potential": ("", "Potential", lambda: self.potential.panel.build()),
-                "slice": ("", "Slice", lambda: SlicePanel(state).build()),
-                "gallery": ("Gallery", "Gallery", self.gallery.build),
-                "share": ("Share", "Share and download", self.downloads.build),
-                "help": ("Help", "Help", lambda: help_panes(state, results)),
+                "potential": ("", "Potential", self.potential.panel.parts()),
+                "slice": ("", "Slice", [lambda: SlicePanel(state).build()]),
+                "gallery": ("Gallery", "Gallery", [self.gallery.build]),
+                "share": ("Share", "Share and download", [self.downloads.build]),
+                "help": ("Help", "Help", [lambda: help_panes(state, results)]),
             },
             self.browser.focus_drawer,
             self._later,

@@ -23,7 +23,7 @@ from app.state.permalink import (
     without_system,
     write_link,
 )
-from app.state.system_review import is_known, review_catalogue_entry
+from app.state.system_review import PageReview, is_known, review_catalogue_entry
 from app.state.view import PICTURES
 from app.state.view_state import ViewState
 from app.views.components.notice import Notice
@@ -31,7 +31,6 @@ from app.views.maps.progress import ProgressView
 from app.views.panels.browser_events import BrowserEvents
 from app.views.panels.embedding import OpenLink
 from engine import System
-from engine.systems.review.potential_review import SystemReview
 
 
 class LinkPresenter:
@@ -89,7 +88,7 @@ class LinkPresenter:
         else:
             self._review(system, self._begin_with_review, partial(self._begin_with_default, begin_view))
 
-    def open(self, system: System, use: Callable[[SystemReview], object]) -> None:
+    def open(self, system: System, use: Callable[[PageReview], object]) -> None:
         """Review a system, then use it or say why it is refused."""
         self._review(system, use, self._refuse)
 
@@ -113,7 +112,7 @@ class LinkPresenter:
         self._problems += problems
         return ViewState(**fitting)
 
-    def _begin_with_review(self, reviewed: SystemReview) -> None:
+    def _begin_with_review(self, reviewed: PageReview) -> None:
         """Show the view of the first link with its reviewed system."""
         self._problems += self._show(self._link, reviewed)
         self._show_problems()
@@ -128,7 +127,7 @@ class LinkPresenter:
         if self._problems:
             self._notice.warn(" ".join(self._problems))
 
-    def _review(self, system: System, use: Callable[[SystemReview], object], refuse: Callable[[str], None]) -> None:
+    def _review(self, system: System, use: Callable[[PageReview], object], refuse: Callable[[str], None]) -> None:
         """Review a system, and say so while the review runs."""
         if self._potential.open(system, use, refuse):
             self._progress.show_reviewing()
@@ -137,7 +136,7 @@ class LinkPresenter:
         self._progress.fail()
         self._notice.warn(refused_link(problem))
 
-    def _show(self, values: Mapping[str, Any], reviewed: SystemReview) -> list[str]:
+    def _show(self, values: Mapping[str, Any], reviewed: PageReview) -> list[str]:
         """Show the values of a link with a reviewed system; return messages for invalid values."""
         fitting, problems = fit_to_system(values, reviewed)
         shown = ViewState(**fitting)
@@ -150,7 +149,7 @@ class LinkPresenter:
             self._is_navigating = False
         return problems
 
-    def _show_entry(self, values: Mapping[str, Any], reviewed: SystemReview) -> None:
+    def _show_entry(self, values: Mapping[str, Any], reviewed: PageReview) -> None:
         """Show the values of an entry of the browser's history, and write its address in normal form."""
         self._show(values, reviewed)
         self._write_address(self.history.entry)

@@ -116,9 +116,10 @@ class OrbitPresenter:
         state, start = self._state, self._state.chosen_start
         if start is None:
             return
-        x, y, px, py = state.start_state(start)
+        orbit = self._orbits[state.chosen].orbit if state.chosen < len(self._orbits) else None
         # A start is kept only if it lies on the section, y = 0, with the sign of py of the section.
-        starts = ((x, px),) if y == 0.0 and SECTION.sign * py > 0.0 else ()
+        is_kept = orbit is not None and orbit.y[0] == 0.0 and SECTION.sign * orbit.py[0] > 0.0
+        starts = ((float(orbit.x[0]), float(orbit.px[0])),) if orbit is not None and is_kept else ()
         energy = float(state.plane.energies(state.energy, *start))
         self._open_view(
             state.plane.system_at(state.system, *start),

@@ -7,13 +7,11 @@ from dataclasses import dataclass
 
 from app.job_clients.latest_request import LatestRequest
 from app.session.context import History, SessionContext
-from app.state.system_review import is_known, review_catalogue_entry, review_job
+from app.state.system_review import PageReview, is_known, review_catalogue_entry, review_job
 from app.views.analysis.potential_panel import NEW_INTEGRATOR, PotentialPanel
 from engine import System
 from engine.sweeps.warmup import is_ready_for_maps
-from engine.systems.review.potential_review import SystemReview
 from engine.systems.system import TYPED
-from plots.texts.accepted_potentials import page_refusal
 
 
 @dataclass(frozen=True)
@@ -33,7 +31,7 @@ class _Proposal:
     """
 
     system: System
-    use: Callable[[SystemReview], object]
+    use: Callable[[PageReview], object]
     refuse: Callable[[str], None] | None = None
     done: bool = True
 
@@ -57,16 +55,16 @@ class PotentialPresenter:
         self._proposal: _Proposal | None = None
         # The latest system that was proposed during a review.
         self._waiting_proposal: _Proposal | None = None
-        self._last_review: SystemReview | None = None
+        self._last_review: PageReview | None = None
         self.panel = PotentialPanel(state.reviewed, context.locked(self._take))
         self._request = LatestRequest(context.jobs, self._show, self._on_failure, context.locked)
         state.param.watch(lambda *events: self._follow_system(), "system")
         self.panel.show(state.reviewed)
 
-    def open(self, system: System, use: Callable[[SystemReview], object], refuse: Callable[[str], None]) -> bool:
+    def open(self, system: System, use: Callable[[PageReview], object], refuse: Callable[[str], None]) -> bool:
         """Use or refuse the system of a link, a preset or the browser's history; return whether its review is awaited."""
         known = self._known_review(system)
-        if known is not None and page_refusal(known) is None:
+        if known is not None and known.problem is None:
             self._cancel_link_review()
             use(known)
             return False
@@ -87,14 +85,14 @@ class PotentialPresenter:
         else:
             self._waiting_proposal = proposal
 
-    def _use_if_ready(self, reviewed: SystemReview) -> None:
+    def _use_if_ready(self, reviewed: PageReview) -> None:
         """Use an unfinished system if its integrator is compiled, because a server can keep only some dozens of integrators."""
         if is_ready_for_maps(reviewed.potential):
             self._use(reviewed)
         else:
             self.panel.show(reviewed, NEW_INTEGRATOR)
 
-    def _use(self, reviewed: SystemReview) -> None:
+    def _use(self, reviewed: PageReview) -> None:
         """Show a valid system, and write it to the view state. An equal potential keeps energy, window and starts."""
         self.panel.used = reviewed
         self.panel.show(reviewed)
@@ -118,7 +116,7 @@ class PotentialPresenter:
                 self.panel.wait()
             self._request.submit(review_job(proposal.system))
 
-    def _known_review(self, system: System) -> SystemReview | None:
+    def _known_review(self, system: System) -> PageReview | None:
         if is_known(system):
             return review_catalogue_entry(system.case)
         reviews = (self._state.reviewed, self._last_review)
@@ -127,18 +125,17 @@ class PotentialPresenter:
     def _on_failure(self, sentence: str) -> None:
         self._finish(lambda proposal: self.panel.say(sentence) if proposal.refuse is None else proposal.refuse(sentence))
 
-    def _show(self, reviewed: SystemReview) -> None:
+    def _show(self, reviewed: PageReview) -> None:
         self._last_review = reviewed
         self._finish(lambda proposal: self._judge(proposal, reviewed))
 
-    def _judge(self, proposal: _Proposal, reviewed: SystemReview) -> None:
-        problem = page_refusal(reviewed)
-        if problem is None:
+    def _judge(self, proposal: _Proposal, reviewed: PageReview) -> None:
+        if reviewed.problem is None:
             proposal.use(reviewed)
         elif proposal.refuse is None:
-            self.panel.show(reviewed, problem=problem)
+            self.panel.show(reviewed)
         else:
-            proposal.refuse(problem)
+            proposal.refuse(reviewed.problem)
 
     def _finish(self, answer: Callable[[_Proposal], None]) -> None:
         """Pass the current proposal, if any, to `answer`, and continue with the waiting proposal."""
@@ -151,7 +148,7 @@ class PotentialPresenter:
         if self._waiting_proposal is not None:
             self._propose(self._waiting_proposal)
 
-    def _energy_for(self, reviewed: SystemReview) -> float | None:
+    def _energy_for(self, reviewed: PageReview) -> float | None:
         """Return the energy at the same multiple of the well's depth; None if that energy is too high, or the case is another."""
         previous, energies = self._state.reviewed, reviewed.energies
         if reviewed.system.case not in (TYPED, previous.system.case):

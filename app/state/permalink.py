@@ -21,13 +21,13 @@ from app.state.link_formats import (
     number_format,
 )
 from app.state.link_system import SYSTEM_FORMATS, system_of, write_system
+from app.state.system_review import PageReview
 from app.state.view import FIRST_VIEW, PICTURES, Analysis, View, allowed_resolutions, allowed_t_max, default_settings
 from app.state.view_state import ViewState, longest_first_t_max
 from engine import Plane
 from engine.foundations.validation import LARGEST_NUMBER
 from engine.slices.slice_text import read_slice, write_slice
 from engine.systems.formulas.formula_parser import LONGEST_TEXT
-from engine.systems.review.potential_review import SystemReview
 from plots.layers.table import LAYERS, LAYERS_BY_PICTURE, SETTINGS
 from plots.pictures.palette import MOST_ORBITS, PALETTES
 
@@ -164,7 +164,7 @@ def without_system(values: Mapping[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in values.items() if name not in dropped_names}
 
 
-def fit_to_system(values: Mapping[str, Any], reviewed: SystemReview) -> tuple[dict[str, Any], list[str]]:
+def fit_to_system(values: Mapping[str, Any], reviewed: PageReview) -> tuple[dict[str, Any], list[str]]:
     """Return the values of a link, completed for its system, and a message for each value that does not fit the system.
 
     Parameters

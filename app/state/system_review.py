@@ -1,13 +1,44 @@
-"""Reviews of systems, which jobs compute outside the event loop."""
+"""Reviews of systems, which jobs compute outside the event loop, with all that the page derives from a formula."""
 
 from __future__ import annotations
 
-from functools import cache
+import pickle
+from dataclasses import dataclass, fields
+from functools import cache, cached_property
 
 from engine import CASES, System
 from engine.jobs.job import Job, Queue
 from engine.systems.review.potential_review import SystemReview, review_system
 from engine.systems.system import TYPED
+from plots.texts.accepted_potentials import page_refusal
+from plots.texts.mathml import equations, potential_formula
+
+# Size of a review in memory, in units of the size of its pickle.
+_MEMORY_OF_PICKLE = 5
+
+
+@dataclass(frozen=True, repr=False)
+class PageReview(SystemReview):
+    """The review of a system for the page. Nothing that the page then uses needs another derivation from the formula.
+
+    Attributes
+    ----------
+    problem
+        A sentence with the reason why the page cannot show the system; None if it can.
+    typeset
+        V(x, y) = … as HTML, see `potential_formula`.
+    equations
+        The equations of the system as HTML, see `equations`; empty if there is a `problem`.
+    """
+
+    problem: str | None
+    typeset: str
+    equations: str
+
+    @cached_property
+    def nbytes(self) -> int:
+        """Approximate size in memory, in bytes. The objects of an expression take several times as much as their pickle."""
+        return _MEMORY_OF_PICKLE * len(pickle.dumps(self))
 
 
 def is_known(system: System) -> bool:
@@ -15,12 +46,30 @@ def is_known(system: System) -> bool:
     return system.case in CASES and not system.parameters
 
 
-def review_job(system: System) -> Job[SystemReview]:
-    """Return the job of `review_system`. For a typed formula, the job has limits of time and memory."""
-    return Job(review_system, (system,), queue=Queue.LIMITED if system.case == TYPED else Queue.LONG_CALL)
+def review_for_page(system: System) -> PageReview:
+    """Review a system for the page; ValueError if the formula or a parameter is invalid."""
+    review = review_system(system)
+    problem = page_refusal(review)
+    if problem is None:
+        # The page asks whether kernels of this structure are compiled. Its first use finds and caches the structure.
+        _ = review.potential.in_well_units.well.structure
+    page_review = PageReview(
+        **{each.name: getattr(review, each.name) for each in fields(review)},
+        problem=problem,
+        typeset=potential_formula(review.potential),
+        equations=equations(review.potential) if problem is None else "",
+    )
+    # The cache of results asks for the size.
+    _ = page_review.nbytes
+    return page_review
+
+
+def review_job(system: System) -> Job[PageReview]:
+    """Return the job of `review_for_page`. For a typed formula, the job has limits of time and memory."""
+    return Job(review_for_page, (system,), queue=Queue.LIMITED if system.case == TYPED else Queue.LONG_CALL)
 
 
 @cache
-def review_catalogue_entry(case: str) -> SystemReview:
+def review_catalogue_entry(case: str) -> PageReview:
     """Return the cached review of an entry of the catalogue."""
-    return review_system(System(case))
+    return review_for_page(System(case))

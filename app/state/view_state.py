@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import param
 
-from app.state.system_review import review_catalogue_entry
+from app.state.system_review import PageReview, review_catalogue_entry, review_job
 from app.state.view import (
     FIRST_VIEW,
     PICTURES,
@@ -22,13 +22,13 @@ from app.state.view import (
     allowed_t_max,
 )
 from app.state.watched_starts import WatchedStarts
-from engine import MapSpec, Orbit, Potential, Slice, System, Window, integrate_orbit, start_states
+from engine import Fate, MapSpec, Orbit, Potential, Slice, System, Window, integrate_orbit, start_states
 from engine.foundations.validation import LARGEST_NUMBER
 from engine.jobs.job import Job, Queue
+from engine.propagation.fates import describe_fate
 from engine.sweeps.warmup import is_ready_for_maps
 from engine.systems.catalogue.entry import EnergyRange
 from engine.systems.catalogue.table import PAPER_ENERGIES
-from engine.systems.review.potential_review import SystemReview
 from engine.systems.system import TYPED
 from plots.layers.table import LAYERS, SETTINGS
 from plots.pictures.palette import MOST_ORBITS, PALETTES, Palette
@@ -92,6 +92,21 @@ def longest_first_t_max(potential: Potential) -> float:
     return max((each for each in allowed if each <= longest), default=min(allowed))
 
 
+def _start_state(potential: Potential, plane: Slice, energy: float, start: Start) -> tuple[float, ...] | None:
+    """Return x, y, px, py of a start on a slice of one potential; None for a forbidden start."""
+    x, ordinate = (np.array([value]) for value in start)
+    state = start_states(potential, plane, energy, x, ordinate)[0]
+    return tuple(state.tolist()) if np.isfinite(state).all() else None
+
+
+def _integrate_start(reviewed: PageReview, line: Slice, energy: float, start: Start, t_max: float) -> Orbit:
+    """Return the orbit of a start on a slice of a reviewed system; ValueError if the start is forbidden."""
+    state = _start_state(reviewed.potential, line, energy, start)
+    if state is None:
+        raise ValueError(describe_fate(Fate.FORBIDDEN))
+    return integrate_orbit(reviewed.potential, state, t_max)
+
+
 class ViewState(param.Parameterized):
     """What a session shows: the fields of `View` with their legal values, other choices, and what is known of the browser.
 
@@ -145,7 +160,7 @@ class ViewState(param.Parameterized):
         return View(**{name: getattr(self, name) for name in FIRST_VIEW.values()})
 
     @property
-    def reviewed(self) -> SystemReview:
+    def reviewed(self) -> PageReview:
         """The review of the system; RuntimeError outside the catalogue, unless `show` has received the review."""
         if self._review.system != self.system:
             if self.system.case == TYPED or self.system.parameters:
@@ -183,18 +198,21 @@ class ViewState(param.Parameterized):
             raise ValueError(WINDOW_UNKNOWN)
         return self.map_spec().find_window()
 
-    def start_state(self, start: Start) -> tuple[float, ...]:
-        """Return x, y, px, py of a start; NaN for a forbidden start."""
-        x, ordinate = (np.array([value]) for value in start)
-        return tuple(start_states(self.potential, self.plane, self.energy, x, ordinate)[0].tolist())
-
     def orbit_job(self, start: Start) -> Job[Orbit] | None:
-        """Return the job of the orbit of a start; None if the start is forbidden at this energy."""
+        """Return the job of the orbit of a start; None if the start is known to be forbidden.
+
+        Along a parameter, the job fails for a forbidden start, because the potential of the start is found by a job.
+        """
+        axis_index = self.plane.parameter_axis
+        if axis_index is not None:
+            review, line = review_job(self.plane.system_at(self.system, *start)), self.plane.line(start[axis_index])
+            return Job(_integrate_start, (review, line, self.energy, start, self.t_max), queue=Queue.LONG_CALL)
         state = self.start_state(start)
-        if not np.isfinite(state).all():
-            return None
-        arguments = (self.plane.potential_at(self.potential, *start), state, self.t_max)
-        return Job(integrate_orbit, arguments, queue=Queue.LONG_CALL)
+        return None if state is None else Job(integrate_orbit, (self.potential, state, self.t_max), queue=Queue.LONG_CALL)
+
+    def start_state(self, start: Start) -> tuple[float, ...] | None:
+        """Return x, y, px, py of a start on a slice of one potential; None for a forbidden start."""
+        return _start_state(self.potential, self.plane, self.energy, start)
 
     def add_start(self, start: Start) -> bool:
         """Add a start and choose it, or return False if there are already `MOST_ORBITS` other starts."""
@@ -220,7 +238,7 @@ class ViewState(param.Parameterized):
         """Show a picture large; if it is large already, show all pictures side by side."""
         self.focus = "" if name == self.focus else name
 
-    def show(self, reviewed: SystemReview, **values: Any) -> None:
+    def show(self, reviewed: PageReview, **values: Any) -> None:
         """Set a reviewed system together with other values."""
         self._review = reviewed
         values["plane"] = plane_of_system(values.get("plane", self.plane), reviewed.system)
@@ -235,7 +253,7 @@ class ViewState(param.Parameterized):
         """Set a slice, and remove window and starts."""
         self.param.update(plane=plane, window=None, starts=(), chosen=0)
 
-    def show_system(self, reviewed: SystemReview, energy: float | None = None) -> None:
+    def show_system(self, reviewed: PageReview, energy: float | None = None) -> None:
         """Set a reviewed system at an energy, by default its initial energy, and remove window and starts."""
         new_energy = reviewed.energies.first if energy is None else energy
         longest_t_max = self.t_max if reviewed.system.case == self.system.case else longest_first_t_max(reviewed.potential)

@@ -12,7 +12,7 @@ import inspect
 import linecache
 import sys
 import threading
-from collections.abc import Hashable
+from collections.abc import Iterable
 from functools import partial
 from types import ModuleType
 from typing import Any
@@ -20,8 +20,6 @@ from typing import Any
 import numpy as np
 from numba.core.dispatcher import Dispatcher
 
-from engine.expressions.graph import make_graph
-from engine.expressions.nodes import Expression
 from engine.integrator.jit.compiled_operations import compiled_operations
 from engine.integrator.jit.decorator import kernel
 from engine.integrator.jit.disk_cache import DEFINE
@@ -38,8 +36,6 @@ _CACHED_POTENTIALS = 256
 _generation_lock = threading.Lock()
 # Code, module name and functions of each structure. Entries stay, because machine code is never unloaded.
 _code_by_structure: dict[Structure, tuple[GeneratedCode, str, dict[str, CompiledFunction]]] = {}
-# Outlines (see `_outline`) and settings of all potentials for which functions were generated.
-_outlines: set[tuple[Hashable, Setting]] = set()
 
 
 @functools.lru_cache(maxsize=_CACHED_POTENTIALS)
@@ -62,7 +58,6 @@ def load_kernels(definition: Definition, setting: Setting, rotation: float = 0.0
     which takes seconds.
     """
     code, module_name, functions = _find_or_generate(find_structure(definition, setting))
-    _outlines.add((_outline(definition), setting))
     coefficients = code.tabulate(definition, rotation)
     bound_module = ModuleType(module_name)
     for name, function in functions.items():
@@ -71,10 +66,13 @@ def load_kernels(definition: Definition, setting: Setting, rotation: float = 0.0
     return bound_module
 
 
-def is_generated(definition: Definition, setting: Setting) -> bool:
-    """Return whether functions were generated for the structure of a potential. Generating them takes up to 0.3 s."""
-    # Outlines are compared first, because it takes up to 0.2 s to find the structure of a new formula.
-    return (_outline(definition), setting) in _outlines and find_structure(definition, setting) in _code_by_structure
+def is_compiled(structure: Structure, names: Iterable[str]) -> bool:
+    """Return whether kernels with these names are compiled for the potentials of a structure."""
+    if structure not in _code_by_structure:
+        return False
+    _, _, functions = _code_by_structure[structure]
+    kernels: dict[str, Any] = {**_shared_kernels(), **functions}
+    return all(kernels[name].signatures for name in names)
 
 
 class CompiledFunction:
@@ -138,15 +136,24 @@ class _BoundKernel:
 
 def _bind_kernels(bound_module: ModuleType, functions: dict[str, CompiledFunction], coefficients: np.ndarray) -> None:
     """Add the kernels that call generated functions to the module of a potential."""
-    for module in _KERNEL_MODULES:
-        for name, function in vars(module).items():
-            if isinstance(function, Dispatcher) and function.py_func.__module__ == module.__name__:
-                # Parameters for addresses have the names of the generated functions.
-                parameters = inspect.signature(function.py_func).parameters
-                callees = tuple(functions[each] for each in parameters if each in functions)
-                # Kernels without such parameters depend on no potential.
-                if callees:
-                    setattr(bound_module, name, _BoundKernel(function, callees, coefficients))
+    for name, function in _shared_kernels().items():
+        # Parameters for addresses have the names of the generated functions.
+        parameters = inspect.signature(function.py_func).parameters
+        callees = tuple(functions[each] for each in parameters if each in functions)
+        # Kernels without such parameters depend on no potential.
+        if callees:
+            setattr(bound_module, name, _BoundKernel(function, callees, coefficients))
+
+
+@functools.cache
+def _shared_kernels() -> dict[str, Dispatcher]:
+    """Return the kernels that all potentials share, by name."""
+    return {
+        name: function
+        for module in _KERNEL_MODULES
+        for name, function in vars(module).items()
+        if isinstance(function, Dispatcher) and function.py_func.__module__ == module.__name__
+    }
 
 
 def _find_or_generate(structure: Structure) -> tuple[GeneratedCode, str, dict[str, CompiledFunction]]:
@@ -157,14 +164,6 @@ def _find_or_generate(structure: Structure) -> tuple[GeneratedCode, str, dict[st
                 code = generate(structure)
                 _code_by_structure[structure] = code, *_define_module(code)
     return _code_by_structure[structure]
-
-
-def _outline(definition: Definition) -> Hashable:
-    """Return a key that is cheap to compute and that most structures do not share.
-
-    It consists of the powers of a polynomial, or of the graph of an expression.
-    """
-    return make_graph((definition,))[0] if isinstance(definition, Expression) else frozenset((i, j) for i, j, _ in definition)
 
 
 @functools.cache

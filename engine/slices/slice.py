@@ -230,7 +230,8 @@ class Slice:
 
     def of_system(self, system: System) -> Slice:
         """Return the slice with its parameter in another system; ValueError if that system lacks the parameter or its range."""
-        if self.parameter is None or self.parameter.system == system:
+        # A system that is equal may lack a potential that `system` has already derived.
+        if self.parameter is None or self.parameter.system is system:
             return self
         return self._with_axes(*(replace(axis, system=system) if isinstance(axis, ParameterAxis) else axis for axis in self.axes))
 

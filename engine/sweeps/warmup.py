@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
-from types import ModuleType
 
 import numpy as np
 
@@ -17,8 +16,8 @@ from engine.evidence.birkhoff_averages import count_agreeing_digits
 from engine.evidence.invariant_curves import LEAST_POINTS, find_invariant_curve
 from engine.exits.lyapunov_orbits import find_lyapunov_orbits
 from engine.foundations.execution import DEFAULT_EXECUTION
-from engine.integrator.bound_kernels import is_generated
-from engine.integrator.jit.compiled_operations import CompiledCodeLimitError, CompiledOperations, compiled_operations
+from engine.integrator.bound_kernels import is_compiled
+from engine.integrator.jit.compiled_operations import CompiledOperations, compiled_operations
 from engine.integrator.source.recurrence import code_digest
 from engine.maps.compute import compute_map
 from engine.maps.spec import MapSpec
@@ -67,21 +66,9 @@ class Compilations:
 _map_compilations = Compilations()
 
 
-def _find_known_kernels(potential: Potential) -> ModuleType | None:
-    """Return the kernels of a potential; None if they are not generated yet, or can no longer be compiled."""
-    scaled_potential = potential.in_well_units
-    if not is_generated(scaled_potential.form.definition, scaled_potential.well.setting):
-        return None
-    try:
-        return scaled_potential.well.kernels
-    except CompiledCodeLimitError:
-        return None
-
-
 def is_ready_for_maps(potential: Potential) -> bool:
     """Return whether the kernels for the first frame of a map of this potential are compiled."""
-    kernels = _find_known_kernels(potential)
-    return kernels is not None and all(getattr(kernels, name).signatures for name in _MAP_KERNELS)
+    return is_compiled(potential.in_well_units.well.structure, _MAP_KERNELS)
 
 
 def prepare_for_maps(potential: Potential) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import reprlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 from engine.foundations.validation import check_type
 from engine.systems.catalogue.entry import CatalogueEntry
@@ -82,7 +82,7 @@ class System:
         """The entry of the catalogue; for a typed formula, an equivalent entry."""
         return CatalogueEntry("", "Typed potential", self.formula) if self.case == TYPED else CATALOGUE[self.case]
 
-    @property
+    @cached_property
     def potential(self) -> Potential:
         """The potential; ValueError if the formula or a parameter is invalid."""
         return _make_potential(self)

@@ -18,9 +18,10 @@ from app.state.view import Analysis
 from app.state.view_state import ViewState
 from app.views.components.texts import typeset
 from app.views.panels.analysis_choice import ANALYSIS_LABELS
-from engine import CASES, EscapeMap, Fate, MapSpec, Orbit, Plane, compute_map, compute_statistics, integrate_orbit, judge_orbit
+from engine import CASES, EscapeMap, Fate, MapSpec, Orbit, Plane, compute_map, compute_statistics, judge_orbit
+from engine.foundations.execution import DEFAULT_EXECUTION
 from engine.foundations.wording import format_share
-from engine.jobs.job import Job
+from engine.jobs.job import Job, run_job
 from plots.layers.table import LAYERS
 from plots.pictures.image_columns import map_columns
 from plots.pictures.time_scale import fitted_scale
@@ -123,7 +124,7 @@ def computed_map(spec: MapSpec) -> EscapeMap:
 
 @lru_cache(maxsize=100)
 def computed_orbit(job: Job[Orbit]) -> Orbit:
-    return integrate_orbit(*job.arguments)
+    return run_job(job, DEFAULT_EXECUTION, {})
 
 
 def expected_page(address: str) -> dict[str, Any]:
@@ -146,7 +147,7 @@ def expected_page(address: str) -> dict[str, Any]:
         "picture": None if shown.frame is None else expected_picture(shown.frame),
         "texts": expected_texts(state, shown),
         "starts": len(state.starts),
-        "orbits": sum(well in (None, job.arguments[0]) for job in jobs),
+        "orbits": sum(well in (None, computed_orbit(job).potential) for job in jobs),
     }
 
 

@@ -59,8 +59,8 @@ def check(parameters: dict[str, str]) -> None:
         result_or_error(state.map_spec, ["energy", "window", "plane", "t_max", "resolution"])
     assert len(link_sentence(linked_view(read_link(parameters)[0]))) <= LONGEST_MESSAGE
     for start in state.starts:
-        spec = result_or_error(partial(state.orbit_job, start), ["energy", "x", "ordinate", "start", "starts"])
-        assert spec is None or len(spec.arguments[1]) == 4
+        job = result_or_error(partial(state.orbit_job, start), ["energy", "x", "ordinate", "start", "starts"])
+        assert job is None or state.plane.parameter is not None or len(job.arguments[1]) == 4
     assert open_link(dict(parse_qsl(write_link(state)[1:])))[1] == []
 
 

@@ -11,11 +11,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.state.permalink import linked_view, read_link, write_link
+from app.state.system_review import review_for_page
 from app.state.view_state import ViewState
 from engine import Potential, System, parse_formula, review_potential, write_formula
 from engine.results import PotentialReview
 from engine.systems.parameters import WELL_PARAMETERS
-from engine.systems.review.potential_review import review_system
 from engine.systems.system import TYPED
 from plots.texts.accepted_potentials import page_refusal
 from tests.app.state.opened_link import open_link
@@ -45,7 +45,7 @@ def check_display(system: System, review: PotentialReview) -> None:
     if page_refusal(review) is not None:
         return
     state = ViewState()
-    state.show_system(review_system(system))
+    state.show_system(review_for_page(system))
     energies = state.energies
     assert energies.low < energies.first < energies.high
     assert review.escape_energy < energies.first < review.highest_energy
@@ -73,7 +73,7 @@ def test_any_formula_is_reviewed_or_refused(text: str) -> None:
 @given(st.integers(0, 2**32))
 def test_a_link_with_a_formula_of_any_kind_is_reviewed_or_refused(seed: int) -> None:
     values, _ = read_link({"case": TYPED, **random_link(random.Random(seed))})
-    reviewed_system = result_or_error(lambda: review_system(linked_view(values).system), ["formula", *WELL_PARAMETERS])
+    reviewed_system = result_or_error(lambda: review_for_page(linked_view(values).system), ["formula", *WELL_PARAMETERS])
     if reviewed_system is not None and reviewed_system.refusal is None:
         check_display(reviewed_system.system, reviewed_system)
 

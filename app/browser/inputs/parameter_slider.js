@@ -12,10 +12,8 @@ export function render({model, el}) {
   const [slider, box] = [document.createElement("input"), document.createElement("input")]
   el.classList.add("parameter-slider")
   label.htmlFor = slider.id = "rail"
-  label.textContent = model.label
-  Object.assign(slider, {type: "range", min: model.low, max: model.high, step: model.step})
+  Object.assign(slider, {type: "range", step: model.step})
   Object.assign(box, {type: "number", min: model.lowest, max: model.highest, step: model.step, className: "bk-input"})
-  box.setAttribute("aria-label", `${model.label}, number`)
   el.append(label, slider, box)
   const write = (/** @type {HTMLInputElement} */ input, /** @type {number} */ number) => {
     if (input.valueAsNumber !== number) input.valueAsNumber = number
@@ -39,6 +37,12 @@ export function render({model, el}) {
   for (const event of ["pointerup", "pointercancel", "blur"]) slider.addEventListener(event, () => value.finish())
   box.addEventListener("blur", () => value.finish())
   box.addEventListener("keydown", event => event.key === "Enter" && value.finish())
-  model.on("shown", () => value.follow())
-  value.follow()
+  const show = () => {
+    label.textContent = model.label
+    box.setAttribute("aria-label", `${model.label}, number`)
+    Object.assign(slider, {min: model.low, max: model.high})
+    value.follow()
+  }
+  for (const name of ["label", "low", "high", "shown"]) model.on(name, show)
+  show()
 }

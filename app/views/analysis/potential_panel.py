@@ -2,26 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from html import escape
+from itertools import batched, zip_longest
 from typing import Protocol
 
 import panel as pn
 
 from app.browser.inputs.counted_inputs import FormulaBox, ParameterSlider
+from app.state.system_review import PageReview
+from app.views.components.collapsible_section import Build
 from app.views.components.texts import StatusPane, TextPane, describe_outcomes, plain_symbol
 from app.views.components.widgets import button, flex_row
 from engine import System
 from engine.foundations.wording import format_number
-from engine.results import PotentialReview
 from engine.systems.catalogue.table import CATALOGUE
-from engine.systems.formulas.formula_parser import LARGEST_VALUE, LONGEST_TEXT
+from engine.systems.formulas.formula_parser import LARGEST_VALUE, LONGEST_TEXT, MOST_LETTERS
 from engine.systems.parameters import WELL_PARAMETERS
-from engine.systems.review.potential_review import SystemReview
 from engine.systems.system import TYPED
 from plots.pictures.palette import MOST_CHANNELS
-from plots.texts.mathml import potential_formula, potential_symbol
+from plots.texts.mathml import potential_symbol
 
 # Ends of the sliders of most parameters. Boxes, links and the command line allow wider ranges.
 _SLIDER_ENDS = (0.2, 2.0)
@@ -29,6 +31,9 @@ _SLIDER_ENDS = (0.2, 2.0)
 _OTHER_SLIDER_ENDS = {"rotation": (-1.0, 1.0)}
 # Smallest distance of the ends of a letter's slider from 0. For a large initial value, the distance is twice that value.
 _SMALLEST_REACH = 2.0
+# Number of views that are added to the page in one iteration of the event loop. Each may take 20 ms, and the search of the page
+# for new models as much as two.
+_VIEWS_OF_PART = 3
 _PLACEHOLDER = "½(x² + y²) − x²y + y³/3"
 _HINT = (
     f"Numbers, x, y, r², √, exp, log, sin, cos, letters with sliders, and + − * / ^ ( ), at most {LONGEST_TEXT} characters, "
@@ -63,7 +68,7 @@ class PotentialPanel:
         Receives each system that is chosen, typed, or set by a slider.
     """
 
-    def __init__(self, used: SystemReview, propose: Propose) -> None:
+    def __init__(self, used: PageReview, propose: Propose) -> None:
         self._propose = propose
         self._offered_well: tuple[float, float] | None = None
         self.used = used
@@ -78,15 +83,19 @@ class PotentialPanel:
             self._take_text, "", label="V(x, y) =", placeholder=_PLACEHOLDER, sizing_mode="stretch_width", margin=(5, 0)
         )
         self.typeset = TextPane("", css_classes=["typeset"], sizing_mode="stretch_width", margin=0)
-        self.message = StatusPane("", css_classes=["potential-message"], sizing_mode="stretch_width", margin=0)
+        self.message = StatusPane(
+            "", name="potential-message", css_classes=["potential-message"], sizing_mode="stretch_width", margin=0
+        )
         self.use_well = button("Use this well", self._use_well, visible=False, margin=(8, 0))
         self.additions = [
             *(button(label, partial(self._add, term=term), margin=0) for label, term in _TERMS.items()),
             *(button(label, partial(self._add, clause=clause), margin=0) for label, clause in _CLAUSES.items()),
         ]
         self.sliders = {name: self._make_well_slider(name) for name in WELL_PARAMETERS}
-        self.letter_sliders: dict[str, ParameterSlider] = {}
-        self.letters = pn.Column(sizing_mode="stretch_width", margin=0)
+        # These sliders stay on the page, because to add one takes a tenth of a second. Those without a letter are hidden.
+        self.letter_sliders = [self._make_letter_slider(index) for index in range(MOST_LETTERS)]
+        # Half the range of the slider of each letter.
+        self._reaches: dict[str, float] = {}
         reset = lambda: self._choose(System(self.shown.case, self.shown.formula))  # noqa: E731
         self.reset = button("Reset parameters", reset, margin=(8, 0))
         self.definition = TextPane(_DEFINITION, margin=(8, 0), sizing_mode="stretch_width")
@@ -94,64 +103,52 @@ class PotentialPanel:
         self._show(used.system)
         self.known.param.watch(lambda event: self._take_known(event.new), "value")
 
-    def build(self) -> list[pn.viewable.Viewable]:
-        """Return the parts of a column, parts of fixed height first: no part moves while the formula is typed."""
+    def parts(self) -> list[Build]:
+        """Return the makers of a column's parts, parts of fixed height first: no part moves while the formula is typed."""
         buttons = flex_row(self.reset, self.use_well, gap="8px")
-        return [
-            self.known,
-            self.formula,
-            flex_row(*self.additions),
-            self.typeset,
-            self.message,
-            self.letters,
-            self.definition,
-            *self.sliders.values(),
-            buttons,
-            self.facts,
+        views = [
+            *(self.known, self.formula, flex_row(*self.additions), self.typeset, self.message, *self.letter_sliders),
+            *(self.definition, *self.sliders.values(), buttons, self.facts),
         ]
+        return [partial(list, part) for part in batched(views, _VIEWS_OF_PART)]
 
     def _make_well_slider(self, name: str) -> ParameterSlider:
         symbol, _, legal_range = WELL_PARAMETERS[name]
         ends = _OTHER_SLIDER_ENDS.get(name, _SLIDER_ENDS)
-        return self._make_slider(name, 1.0, plain_symbol(symbol), ends, legal_range)
+        return _make_slider(partial(self._slide, name), plain_symbol(symbol), ends, legal_range)
 
-    def _make_letter_slider(self, name: str, value: float) -> ParameterSlider:
-        reach = max(_SMALLEST_REACH, 2.0 * abs(value))
-        return self._make_slider(name, value, name, (-reach, reach), (-LARGEST_VALUE, LARGEST_VALUE))
+    def _make_letter_slider(self, index: int) -> ParameterSlider:
+        """Return the slider of the letter with an index among the letters of the formula."""
 
-    def _make_slider(
-        self, name: str, value: float, label: str, ends: tuple[float, float], legal_range: tuple[float, float]
-    ) -> ParameterSlider:
-        """Return the slider of a parameter between `ends`. Its box takes all numbers of the legal range."""
-        (low, high), (lowest, highest) = ends, legal_range
-        return ParameterSlider(
-            partial(self._slide, name), value, label=label, low=low, high=high, lowest=lowest, highest=highest,
-            sizing_mode="stretch_width", margin=(2, 0),
-        )  # fmt: skip
+        def slide(number: float, done: bool) -> None:
+            # The formula may have fewer letters since the browser has sent the number.
+            for name in _letters_of(self.shown)[index : index + 1]:
+                self._slide(name, number, done)
 
-    def _show_letters(self, system: System) -> None:
-        """Show a slider for each letter of the formula. The slider of a letter that remains keeps its range."""
-        letters = tuple(name for name in system.parameter_names if name not in WELL_PARAMETERS)
-        if letters != tuple(self.letter_sliders):
-            previous_sliders = self.letter_sliders
-            self.letter_sliders = {
-                name: previous_sliders.get(name) or self._make_letter_slider(name, system.value_of(name)) for name in letters
-            }
-            self.letters.objects = list(self.letter_sliders.values())
-        for name, slider in self.letter_sliders.items():
-            slider.show(system.value_of(name))
+        return _make_slider(slide, "", (-_SMALLEST_REACH, _SMALLEST_REACH), (-LARGEST_VALUE, LARGEST_VALUE))
 
-    def follow(self, used: SystemReview) -> None:
+    def _show_letters(self) -> None:
+        """Show a slider for each letter of the formula. A letter that remains in the formula keeps the range of its slider."""
+        values = {name: self.shown.value_of(name) for name in _letters_of(self.shown)}
+        first_reaches = {name: max(_SMALLEST_REACH, 2.0 * abs(value)) for name, value in values.items()}
+        self._reaches = {name: self._reaches.get(name, reach) for name, reach in first_reaches.items()}
+        for slider, name in zip_longest(self.letter_sliders, values):
+            slider.visible = name is not None
+            if name is not None:
+                slider.param.update(label=name, low=-self._reaches[name], high=self._reaches[name])
+                slider.show(values[name])
+
+    def follow(self, used: PageReview) -> None:
         """Show the system of the maps."""
         self.used = used
         self._show(used.system)
         self.show(used)
 
-    def show(self, reviewed: SystemReview, note: str = _HINT, *, problem: str = "") -> None:
+    def show(self, reviewed: PageReview, note: str = _HINT) -> None:
         """Show the properties of the system of the widgets. Add a note, or the reason why the maps cannot show the system."""
-        self.typeset.object = potential_formula(reviewed.potential)
-        self._write(_alert(problem) if problem else _accepted(reviewed, note))
-        self._offer(reviewed.well if problem else None)
+        self.typeset.object = reviewed.typeset
+        self._write(_accepted(reviewed, note) if reviewed.problem is None else _alert(reviewed.problem))
+        self._offer(None if reviewed.problem is None else reviewed.well)
         self.facts.object = _critical_points_table(reviewed) + _remark_paragraphs(reviewed)
 
     def wait(self) -> None:
@@ -195,7 +192,7 @@ class PotentialPanel:
             slider.show(system.value_of(name))
         self.definition.visible = "epsilon" in names
         self.reset.disabled = not system.parameters
-        self._show_letters(system)
+        self._show_letters()
 
     def _take_known(self, case: str) -> None:
         if case == self.shown.case:
@@ -230,9 +227,25 @@ class PotentialPanel:
         self._propose(self.shown, done=done)
 
 
+def _make_slider(
+    on_value: Callable[[float, bool], None], label: str, ends: tuple[float, float], legal_range: tuple[float, float]
+) -> ParameterSlider:
+    """Return the slider of a parameter between `ends`. Its box takes all numbers of the legal range."""
+    (low, high), (lowest, highest) = ends, legal_range
+    return ParameterSlider(
+        on_value, 1.0, label=label, low=low, high=high, lowest=lowest, highest=highest,
+        sizing_mode="stretch_width", margin=(2, 0),
+    )  # fmt: skip
+
+
 def _formula_of(system: System) -> str:
     """Return the formula of a system without the values of its parameters."""
     return system.entry.formula
+
+
+def _letters_of(system: System) -> tuple[str, ...]:
+    """Return the parameters of a system that are letters of its formula."""
+    return tuple(name for name in system.parameter_names if name not in WELL_PARAMETERS)
 
 
 def _typed_system(text: str, previous: System) -> System:
@@ -245,12 +258,12 @@ def _alert(sentence: str) -> str:
     return f"<div class='alert'>{escape(sentence)}</div>"
 
 
-def _accepted(review: PotentialReview, note: str) -> str:
+def _accepted(review: PageReview, note: str) -> str:
     ends = "Orbits end at: " if review.potential.ends else ""
     return f"<p>{ends}{describe_outcomes(review.potential)}</p><p class='quiet'>{escape(note)}</p>"
 
 
-def _critical_points_table(review: PotentialReview) -> str:
+def _critical_points_table(review: PageReview) -> str:
     """Return a table of the critical points, exits first."""
     rows = "".join(
         f"<tr><td>{point.kind.value}</td><td>({format_number(point.x)}, {format_number(point.y)})</td>"
@@ -262,5 +275,5 @@ def _critical_points_table(review: PotentialReview) -> str:
     return f"<table><tr>{head}</tr>{rows}</table>" if rows else ""
 
 
-def _remark_paragraphs(review: PotentialReview) -> str:
+def _remark_paragraphs(review: PageReview) -> str:
     return "".join(f"<p class='quiet'>{escape(remark)}</p>" for remark in review.remarks)

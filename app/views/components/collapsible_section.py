@@ -119,7 +119,7 @@ class Drawers(Stack):
     Parameters
     ----------
     drawers
-        Label of the button, title, and function that makes the content of each drawer, by name. The label is empty if the button
+        Label of the button, title, and functions that make the parts of each drawer, by name. The label is empty if the button
         is elsewhere.
     on_toggle
         Called when a drawer opens or closes. The argument tells whether a drawer is open now.
@@ -129,13 +129,13 @@ class Drawers(Stack):
 
     def __init__(
         self,
-        drawers: Mapping[str, tuple[str, str, Build]],
+        drawers: Mapping[str, tuple[str, str, Sequence[Build]]],
         on_toggle: Callable[[bool], None] = lambda is_open: None,
         later: Later = at_once,
     ) -> None:
         self._on_toggle = on_toggle
         builders: dict[str, list[Build]] = {
-            name: [partial(self._make_head, title), build] for name, (_, title, build) in drawers.items()
+            name: [partial(self._make_head, title), *parts] for name, (_, title, parts) in drawers.items()
         }
         super().__init__(builders, "drawer", later=later)
         options = {label: name for name, (label, _, _) in drawers.items() if label}

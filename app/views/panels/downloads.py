@@ -87,8 +87,9 @@ def file_choices(results: ShownResults, state: ViewState) -> dict[str, File]:
     name = partial(_file_name, results, state)
     system, frame, curves = state.system, results.whole_map, results.curves
     if frame is not None:
-        jobs = [state.orbit_job(one.start) for one in results.orbits]
-        states = [job.arguments[1] for job in jobs if job is not None]
+        # Along a parameter, each orbit belongs to another potential, and the script has no orbits.
+        starts = [one.start for one in results.orbits] if state.plane.parameter is None else []
+        states = [known for known in map(state.start_state, starts) if known is not None]
         choices[MAPS] = name(".nc"), partial(netcdf_bytes, frame, results.analyses)
         choices[SCRIPT] = name(".py"), lambda: python_lines(frame.spec, system, states).encode()
     orbits = [one.orbit for one in results.orbits if one.orbit is not None]

@@ -16,7 +16,6 @@ from app.views.panels.browser_events import key_legend
 from engine import Fate, System, compute_statistics
 from engine.foundations.wording import format_number, format_share, format_whole
 from engine.propagation.fates import UNRESOLVED
-from plots.texts.mathml import equations
 
 
 def help_panes(state: ViewState, results: ShownResults) -> list[pn.viewable.Viewable]:
@@ -34,7 +33,7 @@ def _equations_pane(state: ViewState) -> pn.viewable.Viewable:
     pane = TextPane("", margin=(0, 10), sizing_mode="stretch_width")
 
     def show(system: System) -> None:
-        pane.object = f"<h3>Equations: {escape(system.title)}</h3>{equations(state.potential)}"
+        pane.object = f"<h3>Equations: {escape(system.title)}</h3>{state.reviewed.equations}"
 
     state.follow(show, "system")
     return pane

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from app.job_clients.map_requests import MapRequests
-from app.state.system_review import review_system
+from app.state.system_review import review_for_page
 from app.state.view_state import ViewState
 from engine import CASES, EscapeMap, MapSpec, Plane, System, Window, compute_map
 from engine.jobs.client import JobClient
@@ -194,7 +194,7 @@ def test_a_crowded_server_shows_the_first_frame_of_each_request_alone_before_the
 def test_a_request_that_is_replaced_while_its_integrator_is_compiled_starts_no_map() -> None:
     state, jobs, session = ViewState(), ManualJobs(), LatestCalls()
     # No other test compiles the integrator of this formula.
-    state.show_system(review_system(System(TYPED, "½(x² + y²) + x²y − y³/3 + 0.0013x^6")))
+    state.show_system(review_for_page(System(TYPED, "½(x² + y²) + x²y − y³/3 + 0.0013x^6")))
     requests = MapRequests(state, jobs, Recorder(), session.locked)
     requests.request_map()
     jobs.listeners[0](None)
@@ -209,7 +209,7 @@ def test_a_request_that_is_replaced_while_its_integrator_is_compiled_starts_no_m
 def test_potentials_along_a_parameter_of_a_typed_formula_are_found_within_limits_first() -> None:
     state, recorder, jobs, session = ViewState(), Recorder(), ManualJobs(), LatestCalls()
     MapRequests(state, jobs, recorder, session.locked)
-    reviewed = review_system(System(TYPED, "½(x² + y²) − a x²y + y³/3"))
+    reviewed = review_for_page(System(TYPED, "½(x² + y²) − a x²y + y³/3"))
     prepare_for_maps(reviewed.potential)
     state.show_system(reviewed)
     state.plane = read_slice("x,a=0.5:1.5", "", state.system)

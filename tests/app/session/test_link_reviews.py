@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import asyncio
 import inspect
 import sys
-from collections.abc import Callable, Coroutine, Iterator
+from collections.abc import Callable, Coroutine, Iterable, Iterator
+from contextlib import contextmanager, suppress
 from typing import Any
 from urllib.parse import urlencode
 
@@ -15,37 +17,67 @@ from app.runtime.process_state import ProcessState
 from app.session.explorer import Explorer
 from app.state.system_review import review_catalogue_entry
 from engine import CASES, Plane, System, Window, parse_formula
+from engine.expressions.calculus import derivative, substitute
+from engine.integrator.source.recurrence import find_structure
 from engine.systems.forms.polynomial_form import find_critical_points
 from engine.systems.forms.stored_points import stored_points
 from engine.systems.review.potential_review import review_system
 from engine.systems.system import TYPED
 from engine.systems.well import find_maxima_beside, leads_out_of_well
+from plots.texts.mathml import equations, potential_formula
+from tests.app.browser_messages import send
 from tests.app.other_loop import run_on_new_loop
 from tests.app.session.opened_page import on_loop, opened_page, tell_ready, wait_for
 
 CIRCULAR = {"case": TYPED, "V": "r^2/2 - r^4 + r^6 - r^8 + r^10 - 1.0183r^12"}
 LEGAL = {"case": TYPED, "V": "½(x² + y²) − 0.83x²y²"}
+WITH_FUNCTIONS = {"case": TYPED, "V": "½(x² + y²) − a x²y exp(−0.017 y²)"}
 # Functions that compute slow quantities of a potential, or read them from the disk.
-_FUNCTIONS = [parse_formula, review_system, find_critical_points, stored_points, leads_out_of_well, find_maxima_beside]
-SLOW = [inspect.unwrap(function).__code__ for function in _FUNCTIONS]
+SLOW = [parse_formula, review_system, find_critical_points, stored_points, leads_out_of_well, find_maxima_beside]
+# Functions that derive other formulas, texts and structures of code from a formula.
+DERIVING = [derivative, substitute, equations, potential_formula, find_structure]
 STARTED, TOOL = sys.monitoring.events.PY_START, 4
+
+
+@contextmanager
+def watching(functions: Iterable[Callable[..., Any]], note: Callable[[str], object]) -> Iterator[None]:
+    """Pass the name of each function to `note` when it is called in this process."""
+    # At the start of a server, the cases have been reviewed.
+    for case in CASES:
+        review_catalogue_entry(case)
+    codes = [inspect.unwrap(function).__code__ for function in functions]
+    sys.monitoring.use_tool_id(TOOL, "slow functions")
+    sys.monitoring.register_callback(TOOL, STARTED, lambda code, offset: note(code.co_name))
+    for code in codes:
+        sys.monitoring.set_local_events(TOOL, code, STARTED)
+    try:
+        yield
+    finally:
+        for code in codes:
+            sys.monitoring.set_local_events(TOOL, code, sys.monitoring.events.NO_EVENTS)
+        sys.monitoring.free_tool_id(TOOL)
 
 
 @pytest.fixture
 def called() -> Iterator[list[str]]:
     """Yield the names of the slow functions that are called in this process."""
     called: list[str] = []
-    # At the start of a server, the cases have been reviewed.
-    for case in CASES:
-        review_catalogue_entry(case)
-    sys.monitoring.use_tool_id(TOOL, "slow functions")
-    sys.monitoring.register_callback(TOOL, STARTED, lambda code, offset: called.append(code.co_name))
-    for code in SLOW:
-        sys.monitoring.set_local_events(TOOL, code, STARTED)
-    yield called
-    for code in SLOW:
-        sys.monitoring.set_local_events(TOOL, code, sys.monitoring.events.NO_EVENTS)
-    sys.monitoring.free_tool_id(TOOL)
+    with watching(SLOW, called.append):
+        yield called
+
+
+@pytest.fixture
+def called_on_loop() -> Iterator[list[str]]:
+    """Yield the names of the slow and the deriving functions that are called on an event loop of this process."""
+    called: list[str] = []
+
+    def note(name: str) -> None:
+        with suppress(RuntimeError):
+            asyncio.get_running_loop()
+            called.append(name)
+
+    with watching([*SLOW, *DERIVING], note):
+        yield called
 
 
 def with_page(parameters: dict[str, str], check: Callable[[Explorer], Coroutine[Any, Any, None]]) -> None:
@@ -166,3 +198,33 @@ def test_a_choice_made_during_a_review_is_kept() -> None:
         assert explorer.state.system == System("III")
 
     with_page(LEGAL, check)
+
+
+def test_nothing_is_derived_from_a_formula_on_the_event_loop(called_on_loop: list[str]) -> None:
+    async def check(explorer: Explorer) -> None:
+        panel = explorer.potential.panel
+        await wait_for(explorer.state, "system", lambda system: system.case == TYPED)
+        for drawer in ("potential", "help"):
+            explorer.drawers.show(drawer)
+        refused, of_same_structure, final = "x² + y²", "½(x² + y²) − b x²y exp(−0.02 y²)", "x² + y² − x^4"
+        for count, text in enumerate((refused, of_same_structure, final), 1):
+            panel.message.object = ""
+            send(panel.formula, {"value": text, "count": count, "done": text == final})
+            await wait_for(panel.message, "object", lambda html: html and "Reviewing" not in html)
+        await wait_for(explorer.state, "system", lambda system: system.formula == final)
+        await wait_for(explorer.results, "frame", lambda frame: frame and frame.spec.potential == explorer.state.potential)
+
+    with_page(WITH_FUNCTIONS | {"resolution": "112", "t_max": "100"}, check)
+    assert not called_on_loop
+
+
+def test_no_potential_along_a_parameter_is_derived_on_the_event_loop(called_on_loop: list[str]) -> None:
+    async def check(explorer: Explorer) -> None:
+        await wait_for(explorer.results, "orbits", lambda orbits: orbits and orbits[0].orbit)
+        await wait_for(explorer.results, "frame", bool)
+        explorer.maps.add_start(0.0, 1.03)
+        await wait_for(explorer.results, "orbits", lambda orbits: len(orbits) == 2 and orbits[1].orbit)
+
+    along = {"V": "½(x² + y²) − 0.83a x²y²", "plane": "x,a=0.9:1.1", "orbits": "0.1,1.05", "resolution": "112", "t_max": "100"}
+    with_page(LEGAL | along, check)
+    assert not called_on_loop

@@ -89,6 +89,7 @@ def test_an_orbit_opens_the_section_of_its_system_at_its_energy(
 ) -> None:
     session = begin(plane)
     session.state.add_start(start)
+    session.wait_for_paths()
     session.presenter.controls.open_section.clicks += 1
     [(system, values)] = session.opened
     assert system == expected

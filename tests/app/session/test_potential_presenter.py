@@ -10,11 +10,11 @@ import pytest
 
 from app.session.context import History
 from app.session.potential_presenter import PotentialPresenter
+from app.state.system_review import review_for_page
 from app.state.view_state import ViewState
 from engine import CASES, System
 from engine.jobs.manager import Jobs
 from engine.sweeps.warmup import prepare_for_maps
-from engine.systems.review.potential_review import review_system
 from engine.systems.system import TYPED
 from tests.app.browser_messages import send
 from tests.app.session.session_lock import context_of
@@ -154,7 +154,7 @@ def test_messages_beside_a_refused_text_disappear_with_the_text(session: Session
     leave: list[Callable[[], None]] = [
         lambda: session.type(text, enter=False),
         lambda: session.panel.known.param.update(value="I"),
-        lambda: session.state.show_system(review_system(System("III"))),
+        lambda: session.state.show_system(review_for_page(System("III"))),
     ]
     for act, exits in zip(leave, (2, 2, 4), strict=True):
         session.type(WELL_ELSEWHERE, enter=False)
@@ -186,8 +186,28 @@ def test_a_slider_keeps_the_ratio_to_the_escape_energy_and_its_last_number(sessi
     assert ratio == pytest.approx(0.25 / CASES["I"].escape_energy, rel=1e-2)
 
 
+def shown_letters(session: Session) -> dict[str, tuple[float, float]]:
+    """Return value and upper end of each slider of a letter that is on the page."""
+    return {slider.label: (slider.value, slider.high) for slider in session.panel.letter_sliders if slider.visible}
+
+
+def test_letters_of_a_formula_have_sliders_with_ranges_that_remain(session: Session) -> None:
+    session.type("½(x² + y²) − a x²y + b y³/3")
+    assert shown_letters(session) == {"a": (1.0, 2.0), "b": (1.0, 2.0)}
+    session.wait_for(lambda: session.state.system.case == TYPED)
+    send(session.panel.letter_sliders[1], {"value": -7.0, "count": 1, "done": True})
+    session.wait_for(lambda: session.state.system.parameters == {"b": -7.0})
+    session.type("½(x² + y²) + b y³/3 − c xy²")
+    assert shown_letters(session) == {"b": (-7.0, 2.0), "c": (1.0, 2.0)}
+    # This number comes from the slider of a letter that the formula no longer has.
+    session.type("½(x² + y²) − xy²")
+    send(session.panel.letter_sliders[1], {"value": 0.3, "count": 2, "done": True})
+    session.wait_for(lambda: session.state.system.formula == "½(x² + y²) − xy²")
+    assert session.state.system.parameters == {}
+
+
 def test_a_typed_formula_keeps_the_parameters_which_can_be_reset(session: Session) -> None:
-    session.state.show_system(review_system(System("III", parameters={"omega_1": 1.13, "epsilon": 0.5})))
+    session.state.show_system(review_for_page(System("III", parameters={"omega_1": 1.13, "epsilon": 0.5})))
     assert session.panel.sliders["epsilon"].value == 0.5
     session.panel.reset.clicks += 1
     session.wait_for(lambda: not session.state.system.parameters)
@@ -199,7 +219,7 @@ def test_a_typed_formula_keeps_the_parameters_which_can_be_reset(session: Sessio
 
 
 def test_typing_starts_from_coefficients_without_rounding_errors(session: Session) -> None:
-    session.state.show_system(review_system(System("I", parameters={"omega_1": 1.46, "epsilon": 0.7})))
+    session.state.show_system(review_for_page(System("I", parameters={"omega_1": 1.46, "epsilon": 0.7})))
     before = session.state.potential
     session.panel.known.value = TYPED
     session.wait_for(lambda: session.state.system.case == TYPED)

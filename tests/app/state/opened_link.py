@@ -5,17 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from app.state.permalink import fit_to_system, linked_view, read_link, refused_link, without_system
+from app.state.system_review import review_for_page
 from app.state.view_state import ViewState
-from engine.systems.review.potential_review import review_system
-from plots.texts.accepted_potentials import page_refusal
 
 
 def open_link(parameters: Mapping[str, str]) -> tuple[ViewState, list[str]]:
     """Return the view of a link once its system is reviewed, and the messages about the link."""
     values, problems = read_link(parameters)
     try:
-        reviewed = review_system(linked_view(values).system)
-        problem = page_refusal(reviewed)
+        reviewed = review_for_page(linked_view(values).system)
+        problem = reviewed.problem
     except ValueError as error:
         problem = str(error)
     if problem is not None:

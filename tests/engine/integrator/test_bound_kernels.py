@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 from engine.integrator import bound_kernels
-from engine.integrator.source.recurrence import GeneratedCode, Structure, generate
+from engine.integrator.source.recurrence import GeneratedCode, Structure, find_structure, generate
 from engine.integrator.source.series import Setting
 from tests.waiting import SECONDS
 
@@ -22,11 +22,11 @@ def test_potentials_of_one_structure_share_code_with_their_own_coefficients() ->
 
 
 def test_a_potential_of_the_same_powers_may_need_other_functions() -> None:
-    setting = Setting(0, (), False)
     weak, strong = (((2, 0, 0.5), (0, 2, 0.5), (2, 2, c)) for c in (-0.1, 1e6))
-    bound_kernels.load_kernels(weak, Setting())
-    assert bound_kernels.is_generated(weak, setting)
-    assert not bound_kernels.is_generated(strong, setting)
+    kernels = bound_kernels.load_kernels(weak, Setting())
+    _ = kernels.potential_value(0.1, 0.2)
+    assert bound_kernels.is_compiled(find_structure(weak, Setting()), ["potential_value"])
+    assert not bound_kernels.is_compiled(find_structure(strong, Setting()), ["potential_value"])
 
 
 def test_known_functions_are_available_while_others_are_generated(monkeypatch: pytest.MonkeyPatch) -> None:

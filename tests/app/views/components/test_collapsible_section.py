@@ -63,7 +63,7 @@ def test_the_other_parts_of_a_content_follow_in_turns_while_the_content_is_shown
 @pytest.fixture
 def drawers(builds: Builds) -> Drawers:
     labels = {"a": "A", "b": "B", "plain": ""}
-    return Drawers({name: (label, f"Title {name}", builds.maker(name)) for name, label in labels.items()})
+    return Drawers({name: (label, f"Title {name}", [builds.maker(name)]) for name, label in labels.items()})
 
 
 def test_a_drawer_without_a_button_is_replaced_by_a_drawer_with_a_button(drawers: Drawers) -> None:

@@ -7,13 +7,13 @@ import pytest
 from panel.widgets import Widget
 
 from app.job_clients.shown_results import ShownResults
+from app.state.system_review import review_for_page
 from app.state.view_state import ViewState
 from app.views.components.widgets import Switches
 from app.views.panels.controls import LOCK_SCALE, Controls
 from app.views.panels.engine_component import BrowserEngine
 from engine import System
 from engine.jobs.manager import Jobs
-from engine.systems.review.potential_review import review_system
 from engine.systems.system import TYPED
 from plots.pictures.time_scale import TimeScale
 
@@ -82,9 +82,9 @@ def test_on_a_touch_device_all_folds_are_closed(page: Page) -> None:
 
 
 def test_other_potentials_leave_no_case_selected(page: Page) -> None:
-    page.state.show_system(review_system(System("I", parameters={"epsilon": 0.5})))
+    page.state.show_system(review_for_page(System("I", parameters={"epsilon": 0.5})))
     assert page.controls.case.value == "I"
-    page.state.show_system(review_system(System(TYPED, "½(x² + y²) − x²y")))
+    page.state.show_system(review_for_page(System(TYPED, "½(x² + y²) − x²y")))
     assert page.controls.case.value is None
     assert page.controls.other.color == "primary"
     assert page.state.system.case == TYPED

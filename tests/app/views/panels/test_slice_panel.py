@@ -7,10 +7,10 @@ import math
 import pytest
 
 from app.browser.inputs.counted_inputs import NumberBox
+from app.state.system_review import review_for_page
 from app.state.view_state import ViewState
 from app.views.panels.slice_panel import SlicePanel
 from engine import Coordinate, ParameterAxis, Plane, Slice, System
-from engine.systems.review.potential_review import review_system
 from engine.systems.system import TYPED
 from tests.app.browser_messages import send
 
@@ -74,14 +74,14 @@ def test_an_illegal_slice_is_refused_with_its_reason_and_the_last_slice_stays(dr
 
 def test_a_parameter_slice_follows_another_system_that_has_the_parameter(drawer: Drawer) -> None:
     drawer.panel.axes[1].value = "epsilon"
-    drawer.state.show_system(review_system(System("III")))
+    drawer.state.show_system(review_for_page(System("III")))
     assert drawer.state.plane == Slice(C.X, ParameterAxis("epsilon", 0.5, 2.0, System("III")))
 
 
 def test_letters_of_a_formula_are_axes_of_this_system_only(drawer: Drawer) -> None:
-    reviewed = review_system(System(TYPED, "0.5(x^2+y^2) - a x y^2"))
+    reviewed = review_for_page(System(TYPED, "0.5(x^2+y^2) - a x y^2"))
     drawer.state.show_system(reviewed)
     drawer.panel.axes[1].value = "a"
     assert drawer.state.plane.parameter == ParameterAxis("a", 0.5, 2.0, reviewed.system)
-    drawer.state.show_system(review_system(System("III")))
+    drawer.state.show_system(review_for_page(System("III")))
     assert drawer.state.plane is Plane.X_PX
