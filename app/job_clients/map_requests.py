@@ -127,6 +127,7 @@ class MapRequests:
 
     def _show(self, result: tuple[EscapeMap, Columns]) -> None:
         frame, columns = result
+        self._state.found_axis = frame.spec.plane.parameter
         self._listener.map_arrived(frame, columns)
         self._has_frame, self._has_complete_map = True, frame.complete
 

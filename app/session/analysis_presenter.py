@@ -26,7 +26,6 @@ from engine.slices.planes import SECTION
 from engine.slices.slice_text import default_range
 from engine.sweeps.map_jobs import measure_job, sweep_job
 from engine.sweeps.measures import CURVES
-from engine.sweeps.warmup import is_ready_for_maps
 from plots.layers.layer import NO_ANALYSES, Layer
 from plots.layers.table import LAYERS
 
@@ -198,7 +197,7 @@ class AnalysisPresenter:
     # Slow measures, started by buttons.
 
     def _request_measure(self, name: str) -> None:
-        if not is_ready_for_maps(self._state.potential):
+        if not self._state.is_ready:
             self.measures.say(name, WINDOW_UNKNOWN)
             return
         self.measures.wait_for(name)

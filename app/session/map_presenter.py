@@ -74,7 +74,8 @@ class MapPresenter:
                 replace(self._state.map_spec(), window=window).find_window()
         except ValueError:
             self._notice.show(ZOOM_ENDS)
-            self.view.ranges.follow(self._state.find_window())
+            if self._state.is_window_known:
+                self.view.ranges.follow(self._state.find_window())
         else:
             self._state.window = window
 

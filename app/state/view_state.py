@@ -22,7 +22,7 @@ from app.state.view import (
     allowed_t_max,
 )
 from app.state.watched_starts import WatchedStarts
-from engine import Fate, MapSpec, Orbit, Potential, Slice, System, Window, integrate_orbit, start_states
+from engine import Fate, MapSpec, Orbit, ParameterAxis, Potential, Slice, System, Window, integrate_orbit, start_states
 from engine.foundations.validation import LARGEST_NUMBER
 from engine.jobs.job import Job, Queue
 from engine.propagation.fates import describe_fate
@@ -34,7 +34,7 @@ from plots.layers.table import LAYERS, SETTINGS
 from plots.pictures.palette import MOST_ORBITS, PALETTES, Palette
 from plots.pictures.time_scale import TimeScale
 
-WINDOW_UNKNOWN = "The window is not known before the integrator is compiled."
+WINDOW_UNKNOWN = "The window is not known before the first map."
 """Message while the default window is not known."""
 
 # Longest initial t_max of systems whose bounded orbits must all be integrated until t_max, in natural units of time.
@@ -143,6 +143,8 @@ class ViewState(param.Parameterized):
         self.param.t_max.objects = list(allowed_t_max().values())
         self.param.resolution.objects = list(allowed_resolutions().values())
         self._review = review_catalogue_entry(self.system.case)
+        self.found_axis: ParameterAxis | None = None
+        """The parameter along which the potentials have been found, by the last map."""
         self.param.update(**values)
 
     def follow(self, show: Callable[..., object], *names: str) -> None:
@@ -192,9 +194,19 @@ class ViewState(param.Parameterized):
         """Return the specification of the map; ValueError if a choice is invalid."""
         return self.view.map_spec(self.reviewed)
 
+    @property
+    def is_ready(self) -> bool:
+        """Whether the kernels, and the potentials along a parameter, are known without compiling or searching."""
+        return is_ready_for_maps(self.potential) and self.plane.parameter in (None, self.found_axis)
+
+    @property
+    def is_window_known(self) -> bool:
+        """Whether the window in view is given or can be found at once."""
+        return self.window is not None or self.is_ready
+
     def find_window(self) -> Window:
-        """Return the window in view; ValueError for a default window that needs kernels that are not compiled yet."""
-        if self.window is None and not is_ready_for_maps(self.potential):
+        """Return the window in view; ValueError if it is not known."""
+        if not self.is_window_known:
             raise ValueError(WINDOW_UNKNOWN)
         return self.map_spec().find_window()
 
@@ -231,7 +243,7 @@ class ViewState(param.Parameterized):
         if not on:
             self.compared = None
             return
-        window = self.find_window() if is_ready_for_maps(self.potential) else self.window
+        window = self.find_window() if self.is_window_known else None
         self.param.update(compared=self.view, window=window)
 
     def enlarge(self, name: str) -> None:

@@ -220,6 +220,9 @@ def test_nothing_is_derived_from_a_formula_on_the_event_loop(called_on_loop: lis
 
 def test_no_potential_along_a_parameter_is_derived_on_the_event_loop(called_on_loop: list[str]) -> None:
     async def check(explorer: Explorer) -> None:
+        await wait_for(explorer.state, "system", lambda system: system.case == TYPED)
+        with pytest.raises(ValueError, match="not known before the first map"):
+            explorer.maps.add_middle()
         await wait_for(explorer.results, "orbits", lambda orbits: orbits and orbits[0].orbit)
         await wait_for(explorer.results, "frame", bool)
         explorer.maps.add_start(0.0, 1.03)
