@@ -121,6 +121,8 @@ class SimulatedSession:
         self._opened = asyncio.Event()
         # The pane that says that a formula is being reviewed, and the event that the text of the pane has changed.
         self._reviewing: str | None = None
+        # The formula that was typed last; None after a link.
+        self._typed: str | None = None
         self._reviewed = asyncio.Event()
         self._closing = False
         self._steps = 0
@@ -130,6 +132,7 @@ class SimulatedSession:
         """Load the page and wait for its first map, or count the refusal of a full server."""
         begin = time.perf_counter()
         self._models, self._case, self._plane, self._awaited = {}, "I", Plane.X_PX, None
+        self._typed = None
         self._opened.clear()
         if not await self._load(self._address):
             return
@@ -149,16 +152,20 @@ class SimulatedSession:
 
     async def follow_formula(self, link: str) -> None:
         """Show the view of a link with a formula, as the browser's Back does, and wait until the formula is reviewed."""
+        self._typed = None
         self._reviewed.clear()
         self.follow_link(link)
         await self._wait_for_review(time.perf_counter())
 
     async def type_formula(self, text: str, *, done: bool = True) -> None:
-        """Type a formula, with Enter if `done`, and wait until it is reviewed."""
+        """Type a formula, with Enter if `done`, and wait until it is reviewed. The page sends nothing new for the same formula."""
         if "FormulaBox" not in self._models:
             self.press("Other …")
         while "FormulaBox" not in self._models:
             await asyncio.sleep(POLL_SECONDS)
+        if text == self._typed:
+            return
+        self._typed = text
         self._reviewed.clear()
         self._give("FormulaBox", text, done=done)
         await self._wait_for_review(time.perf_counter())
