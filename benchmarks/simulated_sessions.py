@@ -158,7 +158,7 @@ class SimulatedSession:
         await self._wait_for_review(time.perf_counter())
 
     async def type_formula(self, text: str, *, done: bool = True) -> None:
-        """Type a formula, with Enter if `done`, and wait until it is reviewed. The page sends nothing new for the same formula."""
+        """Type a formula, with Enter if `done`, and wait for its review. The same formula is not reviewed again."""
         if "FormulaBox" not in self._models:
             self.press("Other …")
         while "FormulaBox" not in self._models:
