@@ -7,6 +7,7 @@ from dataclasses import replace
 from functools import partial
 from html import escape
 from itertools import batched, zip_longest
+from math import ceil
 from typing import Protocol
 
 import panel as pn
@@ -31,9 +32,11 @@ _SLIDER_ENDS = (0.2, 2.0)
 _OTHER_SLIDER_ENDS = {"rotation": (-1.0, 1.0)}
 # Smallest distance of the ends of a letter's slider from 0. For a large initial value, the distance is twice that value.
 _SMALLEST_REACH = 2.0
-# Number of views that are added to the page in one iteration of the event loop. Each may take 20 ms, and the search of the page
-# for new models as much as two.
-_VIEWS_OF_PART = 3
+# Number of views that are added to the page in one iteration of the event loop. A view takes about 10 ms, and the search of the
+# page for new models as much as four.
+_VIEWS_OF_PART = 5
+# Number of sliders of letters that are added to the page at once.
+_LETTERS_AT_ONCE = 4
 _PLACEHOLDER = "½(x² + y²) − x²y + y³/3"
 _HINT = (
     f"Numbers, x, y, r², √, exp, log, sin, cos, letters with sliders, and + − * / ^ ( ), at most {LONGEST_TEXT} characters, "
@@ -92,8 +95,9 @@ class PotentialPanel:
             *(button(label, partial(self._add, clause=clause), margin=0) for label, clause in _CLAUSES.items()),
         ]
         self.sliders = {name: self._make_well_slider(name) for name in WELL_PARAMETERS}
-        # These sliders stay on the page, because to add one takes a tenth of a second. Those without a letter are hidden.
         self.letter_sliders = [self._make_letter_slider(index) for index in range(MOST_LETTERS)]
+        # Sliders that a formula has needed stay on the page, because adding them takes time. Those without a letter are hidden.
+        self.letters = pn.Column(sizing_mode="stretch_width", margin=0)
         # Half the range of the slider of each letter.
         self._reaches: dict[str, float] = {}
         reset = lambda: self._choose(System(self.shown.case, self.shown.formula))  # noqa: E731
@@ -107,8 +111,8 @@ class PotentialPanel:
         """Return the makers of a column's parts, parts of fixed height first: no part moves while the formula is typed."""
         buttons = flex_row(self.reset, self.use_well, gap="8px")
         views = [
-            *(self.known, self.formula, flex_row(*self.additions), self.typeset, self.message, *self.letter_sliders),
-            *(self.definition, *self.sliders.values(), buttons, self.facts),
+            *(self.known, self.formula, flex_row(*self.additions), self.typeset, self.message),
+            *(self.letters, self.definition, *self.sliders.values(), buttons, self.facts),
         ]
         return [partial(list, part) for part in batched(views, _VIEWS_OF_PART)]
 
@@ -137,6 +141,8 @@ class PotentialPanel:
             if name is not None:
                 slider.param.update(label=name, low=-self._reaches[name], high=self._reaches[name])
                 slider.show(values[name])
+        if len(values) > len(self.letters.objects):
+            self.letters.objects = self.letter_sliders[: _LETTERS_AT_ONCE * ceil(len(values) / _LETTERS_AT_ONCE)]
 
     def follow(self, used: PageReview) -> None:
         """Show the system of the maps."""

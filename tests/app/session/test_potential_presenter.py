@@ -188,7 +188,7 @@ def test_a_slider_keeps_the_ratio_to_the_escape_energy_and_its_last_number(sessi
 
 def shown_letters(session: Session) -> dict[str, tuple[float, float]]:
     """Return value and upper end of each slider of a letter that is on the page."""
-    return {slider.label: (slider.value, slider.high) for slider in session.panel.letter_sliders if slider.visible}
+    return {slider.label: (slider.value, slider.high) for slider in session.panel.letters.objects if slider.visible}
 
 
 def test_letters_of_a_formula_have_sliders_with_ranges_that_remain(session: Session) -> None:
