@@ -29,7 +29,8 @@ def number(value: float, shown: int = COORDINATE_DIGITS) -> str:
     fraction, square = _as_fraction(value, _LARGEST_FRACTION), _as_fraction(value * value, _LARGEST_SQUARE)
     if fraction is not None:
         return _write_fraction(fraction, digits)
-    if square is not None:
+    # The square of a small number can be rounded to 0.
+    if square:
         return _write_fraction(square, _root)
     return digits(f"{value:.{shown}g}")
 

@@ -33,9 +33,9 @@ term_lists = st.lists(st.tuples(exponents, exponents, coefficients), max_size=6)
 
 
 def reviewed(potential: Potential) -> PotentialReview:
-    begun = time.process_time()
+    begun = time.thread_time()
     review = review_potential(potential)
-    assert time.process_time() - begun < LONGEST_REVIEW
+    assert time.thread_time() - begun < LONGEST_REVIEW
     assert review.refusal is None or (review.refusal.endswith(".") and len(review.refusal) <= LONGEST_MESSAGE)
     return review
 

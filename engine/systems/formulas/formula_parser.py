@@ -111,7 +111,11 @@ def parse_formula(text: str, name: str | None = None, parameters: Mapping[str, f
     ends = [clause.evaluate(evaluate_number) for clause in clauses.ends]
     potential = Potential(name or write_form(form), form, ends=ends, mass=clauses.find_mass(evaluate_number))
     if clauses.well is not None:
-        potential = potential.at_minimum(*map(evaluate_number, clauses.well))
+        place = tuple(map(evaluate_number, clauses.well))
+        try:
+            potential = potential.at_minimum(*place)
+        except ValueError as error:
+            raise FormulaError(max(text.find("well"), 0), str(error)) from None
     return replace(potential, exit_names=clauses.exits) if clauses.exits else potential
 
 

@@ -117,12 +117,13 @@ def test_functions_are_fractions_roots_and_powers() -> None:
     ("coefficient", "written"),
     [
         (1e80, "1e+80"),
+        (1e-300, "1e-300"),
         (1.7e8, "170000000"),
         (123456789.0 / 7.0, "17636684.1429"),
         (7654321.0**0.5, "2766.64435734"),
         (9999.0**0.5, "3√1111"),
     ],
 )
-def test_large_numbers_are_decimals(coefficient: float, written: str) -> None:
+def test_large_and_small_numbers_are_decimals(coefficient: float, written: str) -> None:
     formula = potential_formula(Potential("large", ((2, 0, coefficient), (0, 2, 0.5))))
     assert f"<mn>{written}</mn><msup><mi>x</mi>" in formula
