@@ -19,7 +19,7 @@ _MEMORY_OF_PICKLE = 5
 
 @dataclass(frozen=True, repr=False)
 class PageReview(SystemReview):
-    """The review of a system for the page. Nothing that the page then uses needs another derivation from the formula.
+    """The review of a system for the page, with texts and structures, so that the page derives nothing from the formula.
 
     Attributes
     ----------

@@ -286,7 +286,10 @@ WRONG_CALLS = (
     ('sample_starts(III, float("nan"), 10)', "energy=nan: must be a finite number, at most 1e+09 in magnitude"),
     ('III.save(tmp / "result.csv")', "path=…: must end in .nc"),
     ("III.jacobi_constant(0.2)", "potential=III: its frame must rotate for a Jacobi constant"),
-    ('parse_formula("x + y²; well (0, 0)")', "formula, character 9: potential=x + y²: V must have a minimum"),
+    (
+        'parse_formula("x + y²; well (0, 0)")',
+        "formula, character 9: potential=x + y²: V must have a minimum to which its axes can be moved",
+    ),
     ('read_slice("x", "", System("I"))', "axes='x': must be one of x_y, x_px, x_h, y_py, tangential, or two axes such as x,py"),
     ('read_slice("x,z", "", System("I"))', "axes='z': must be one of x, y, px, py, theta, beta, h, omega_1, omega_2,"),
     ('read_slice("x,epsilon=a:2", "", System("I"))', "axes='epsilon=a:2': 'a' must be a number"),
