@@ -36,7 +36,7 @@ from app.server.limited_http_server import LimitedHTTPServer
 from app.server.routes import install_handlers
 from app.state.system_review import review_catalogue_entry
 from engine import CASES
-from engine.integrator.jit.disk_cache import compile_in
+from engine.integrator.jit.compiling_process import compile_in
 
 # No process is forked yet. While Bokeh runs this file, only `sys.orig_argv` contains the whole command line.
 if asks_for_several_processes(sys.orig_argv):

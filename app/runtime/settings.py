@@ -109,7 +109,7 @@ class Settings:
     most_sessions: int = _setting(200, _integer(1, 100_000))
     pages_per_address: int = _setting(50, _integer(1, 100_000))
     most_connections: int = _setting(500, _integer(1, 100_000))
-    compiled_operations: int = _setting(250_000, _integer(50_000, 10**9))
+    compiled_operations: int = _setting(500_000, _integer(50_000, 10**9))
     cache_bytes: int = _setting(64 * MIB, _integer(0, 2**50))
     memory_ceiling: int = _setting(0, _integer(0, 2**50))
     threads: int = field(default_factory=count_cores, metadata={"parser": _integer(1, 1024)})

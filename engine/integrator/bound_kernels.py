@@ -20,22 +20,24 @@ from typing import Any
 import numpy as np
 from numba.core.dispatcher import Dispatcher
 
+from engine.integrator.jit.code_outlines import find_outline
 from engine.integrator.jit.compiled_operations import compiled_operations
 from engine.integrator.jit.decorator import kernel
 from engine.integrator.jit.disk_cache import DEFINE
 from engine.integrator.jit.function_pointers import SIGNATURES
 from engine.integrator.jit.llvm_emitter import straight_line, table_reader
 from engine.integrator.kernels import fixed_step, interior, orbit_lanes, periodic_shooting, propagate
-from engine.integrator.source.recurrence import Definition, GeneratedCode, Structure, find_structure, generate
+from engine.integrator.source.recurrence import CodeOutline, Definition, Structure, find_structure, generate_code
 from engine.integrator.source.series import Setting
+from engine.integrator.source.straight_line import StraightLine
 
 _KERNEL_MODULES = (propagate, periodic_shooting, fixed_step, orbit_lanes, interior)
 # Number of potentials whose bound kernels are cached. Binding another potential of a known structure takes milliseconds.
 _CACHED_POTENTIALS = 256
 # Held while code is generated.
 _generation_lock = threading.Lock()
-# Code, module name and functions of each structure. Entries stay, because machine code is never unloaded.
-_code_by_structure: dict[Structure, tuple[GeneratedCode, str, dict[str, CompiledFunction]]] = {}
+# Outline and functions of the code of each structure. Entries stay, because machine code is never unloaded.
+_code_by_structure: dict[Structure, tuple[CodeOutline, dict[str, CompiledFunction]]] = {}
 
 
 @functools.lru_cache(maxsize=_CACHED_POTENTIALS)
@@ -57,9 +59,9 @@ def load_kernels(definition: Definition, setting: Setting, rotation: float = 0.0
     first use of a kernel for this structure loads the generated functions that it calls from the disk cache, or compiles them,
     which takes seconds.
     """
-    code, module_name, functions = _find_or_generate(find_structure(definition, setting))
-    coefficients = code.tabulate(definition, rotation)
-    bound_module = ModuleType(module_name)
+    outline, functions = _find_or_generate(find_structure(definition, setting))
+    coefficients = outline.tabulate(definition, rotation)
+    bound_module = ModuleType(_module_name(outline))
     for name, function in functions.items():
         setattr(bound_module, name, _BoundKernel(function, (), coefficients))
     _bind_kernels(bound_module, functions, coefficients)
@@ -70,7 +72,7 @@ def is_compiled(structure: Structure, names: Iterable[str]) -> bool:
     """Return whether kernels with these names are compiled for the potentials of a structure."""
     if structure not in _code_by_structure:
         return False
-    _, _, functions = _code_by_structure[structure]
+    _, functions = _code_by_structure[structure]
     kernels: dict[str, Any] = {**_shared_kernels(), **functions}
     return all(kernels[name].signatures for name in names)
 
@@ -156,29 +158,39 @@ def _shared_kernels() -> dict[str, Dispatcher]:
     }
 
 
-def _find_or_generate(structure: Structure) -> tuple[GeneratedCode, str, dict[str, CompiledFunction]]:
+def _find_or_generate(structure: Structure) -> tuple[CodeOutline, dict[str, CompiledFunction]]:
     """Return the entry of `_code_by_structure`, made if it is missing. For a known structure, no thread waits for the lock."""
     if structure not in _code_by_structure:
         with _generation_lock:
             if structure not in _code_by_structure:
-                code = generate(structure)
-                _code_by_structure[structure] = code, *_define_module(code)
+                outline = find_outline(structure)
+                _code_by_structure[structure] = outline, _define_functions(outline)
     return _code_by_structure[structure]
 
 
+def _module_name(outline: CodeOutline) -> str:
+    """Return the name of the module of generated functions."""
+    return f"kernels_{outline.digest[:16]}"
+
+
 @functools.cache
-def _define_module(code: GeneratedCode) -> tuple[str, dict[str, CompiledFunction]]:
-    """Define a module of generated functions, named after the hash of the code. Return its name and the uncompiled functions."""
-    compiled_operations.add(code.digest, code.operations)
-    name = f"kernels_{code.digest[:16]}"
+def _define_functions(outline: CodeOutline) -> dict[str, CompiledFunction]:
+    """Define a module of generated functions, which are not compiled yet, and return the functions."""
+    compiled_operations.add(outline.digest, outline.operations)
+    name = _module_name(outline)
     module = ModuleType(name)
     # Numba finds the module of a kernel here when it loads the kernel from the cache.
     sys.modules[name] = module
-    source = "\n\n".join(function.source for function in code.functions)
+    source = "\n\n".join(source for _, _, source in outline.sources)
     # Numba reads the source of a function through this cache.
     linecache.cache[f"<{name}>"] = (len(source), None, source.splitlines(keepends=True), f"<{name}>")
-    programs = {function.program.name: straight_line(function.program) for function in code.functions}
-    vars(module).update(kernel=kernel, read_table=table_reader(len(code.entries)), **programs)
-    setattr(module, DEFINE, partial(_define_module, code))
+    programs = {program: straight_line(partial(_find_program, outline.structure, program)) for _, program, _ in outline.sources}
+    vars(module).update(kernel=kernel, read_table=table_reader(len(outline.entries)), **programs)
+    setattr(module, DEFINE, partial(_define_functions, outline))
     exec(compile(source, f"<{name}>", "exec"), vars(module))
-    return name, {function.name: CompiledFunction(getattr(module, function.name)) for function in code.functions}
+    return {function: CompiledFunction(getattr(module, function)) for function, _, _ in outline.sources}
+
+
+def _find_program(structure: Structure, name: str) -> StraightLine:
+    """Return a program of the generated functions of a structure. Programs take megabytes, so they are not kept."""
+    return next(function.program for function in generate_code(structure).functions if function.program.name == name)

@@ -10,11 +10,12 @@ import numpy as np
 from engine.exits.exit_rows import exit_gates
 from engine.exits.exit_tables import ExitTable, tabulate_exits
 from engine.exits.interior import find_inner_radius, tabulate_polynomial
+from engine.integrator.jit.code_outlines import find_outline
 from engine.integrator.jit.kernel_module import HEAP_CELL
 from engine.integrator.jit.webassembly import FUNCTIONS, VECTOR_LANES, webassembly_module
 from engine.integrator.kernels import events, exit_geometry, slice_starts
 from engine.integrator.kernels.random_starts import BEFORE_EXIT
-from engine.integrator.source.recurrence import ROWS, TOLERANCE, generate_code
+from engine.integrator.source.recurrence import ROWS, TOLERANCE
 from engine.integrator.source.series import ORDER
 from engine.slices.planes import ENERGY_SURFACE, SPACE
 from engine.systems.forms.polynomial_form import PolynomialForm
@@ -128,10 +129,9 @@ def make_portable_system(potential: Potential, highest_energy: float) -> Portabl
     This takes up to a second for the first potential of a structure, or if exits are not cached.
     """
     scaled_potential = potential.in_well_units
-    definition, setting = scaled_potential.form.definition, scaled_potential.well.setting
-    code = generate_code(definition, setting)
+    definition, outline = scaled_potential.form.definition, find_outline(scaled_potential.well.structure)
     # Backward in time, the frame rotates in the opposite direction.
     rotation = scaled_potential.rotation
-    table, backward_table = code.tabulate(definition, rotation), code.tabulate(definition, -rotation)
+    table, backward_table = outline.tabulate(definition, rotation), outline.tabulate(definition, -rotation)
     exits = tabulate_exits(scaled_potential, highest_energy / potential.units.energy)
-    return PortableSystem(potential, webassembly_module(code), table, backward_table, exits)
+    return PortableSystem(potential, webassembly_module(outline), table, backward_table, exits)

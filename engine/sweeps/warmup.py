@@ -17,8 +17,8 @@ from engine.evidence.invariant_curves import LEAST_POINTS, find_invariant_curve
 from engine.exits.lyapunov_orbits import find_lyapunov_orbits
 from engine.foundations.execution import DEFAULT_EXECUTION
 from engine.integrator.bound_kernels import is_compiled
+from engine.integrator.jit.code_outlines import find_outline
 from engine.integrator.jit.compiled_operations import CompiledOperations, compiled_operations
-from engine.integrator.source.recurrence import code_digest
 from engine.maps.compute import compute_map
 from engine.maps.spec import MapSpec
 from engine.propagation.fixed_steps import find_section_points
@@ -117,7 +117,7 @@ def reserve_catalogue(operations: CompiledOperations = compiled_operations) -> N
         The count of compiled code; by default that of this process.
     """
     potentials = [potential.in_well_units for potential in POTENTIALS.values()]
-    operations.reserve(code_digest(potential.form.definition, potential.well.setting) for potential in potentials)
+    operations.reserve(find_outline(potential.well.structure).digest for potential in potentials)
 
 
 def small_map(potential: Potential, energy: float) -> MapSpec:

@@ -27,7 +27,7 @@ class CompiledCodeLimitError(ValueError):
 
 
 class CompiledOperations:
-    """Counts the operations of all generated functions. An operation takes 0.4 kB, or 1 kB if compiled in this process.
+    """Counts the operations of all generated functions. An operation takes 0.1 kB, or 2 kB if compiled in this process.
 
     Code that is reserved is always compiled, and does not count.
 

@@ -8,7 +8,8 @@ Numba has no public interface for caches, so this module uses internal names of 
 
 - ``Dispatcher._cache``, set in `engine.integrator.jit.decorator`: the cache that a function asks before it compiles;
 - ``numba.core.caching._Cache``: the abstract base class of such caches, which declares the methods;
-- ``CompileResult._reduce`` and ``CompileResult._rebuild``: compiled code to and from objects that can be pickled;
+- ``CompileResult._reduce`` and ``CompileResult._rebuild``: compiled code to and from objects that can be pickled, the first of
+  which contains machine code and LLVM instructions;
 - ``numba.core.serialize.dumps``: Numba's pickling of these objects;
 - ``library.has_dynamic_globals``: whether code contains addresses that are valid in this process only;
 - ``codegen.magic_tuple()``: the target, the processor and its features for which code was compiled;
@@ -28,12 +29,14 @@ from importlib import import_module, metadata
 from pathlib import Path
 from typing import Any
 
+import llvmlite.binding as llvm  # type: ignore[import-untyped]
 from numba.core.caching import _Cache
 from numba.core.compiler import CompileResult
 from numba.core.runtime.nrt import rtsys
 from numba.core.serialize import dumps
 
 from engine.foundations.cache_files import SUFFIX, cache_folder, delete_cached, read_cached, write_cached
+from engine.integrator.jit.compiling_process import call_compiler, compiles_here
 
 PACKAGE = Path(__file__).parents[1]
 """The package that contains all source compiled into kernels."""
@@ -42,21 +45,6 @@ DEFINE = "define"
 """Name of a function in each generated module. Another process that receives and calls the function defines the same module."""
 
 log = logging.getLogger(__name__)
-
-_call_in_process: Callable[[Callable[[], None]], None] | None = None
-
-
-def compile_in(call_in_process: Callable[[Callable[[], None]], None] | None) -> None:
-    """Let another process that shares the cache compile, so that this process does not hold the memory of Numba's compiler.
-
-    Parameters
-    ----------
-    call_in_process
-        Sends a function to the other process with cloudpickle, calls it there, and raises a ValueError if that fails. None to
-        compile in this process.
-    """
-    global _call_in_process
-    _call_in_process = call_in_process
 
 
 class KernelCache(_Cache):
@@ -91,11 +79,11 @@ class KernelCache(_Cache):
 
     def _compile_elsewhere(self, sig: Any, path: Path) -> bytes | None:
         """Compile in the other process and return the content of the file; None if this process has to compile."""
-        if _call_in_process is None:
+        if compiles_here():
             return None
-        module = sys.modules[self._module_name]
+        define = getattr(sys.modules[self._module_name], DEFINE, None)
         try:
-            _call_in_process(partial(_compile, getattr(module, DEFINE, None), self._module_name, self._function_name, sig))
+            call_compiler(partial(_compile, define, self._module_name, self._function_name, sig))
         except ValueError as error:
             log.warning("%s is compiled in this process: %s", self._name, error)
         return read_cached(path)
@@ -104,8 +92,16 @@ class KernelCache(_Cache):
         """Store the code, unless it contains addresses of this process."""
         if data.library.has_dynamic_globals:
             return
-        payload: bytes = dumps(data._reduce())  # type: ignore[no-untyped-call]
+        code, *rest = data._reduce()
+        if self._is_generated:
+            code = _without_instructions(code)
+        payload: bytes = dumps((code, *rest))  # type: ignore[no-untyped-call]
         write_cached(self._path(sig, data.codegen), payload)
+
+    @property
+    def _is_generated(self) -> bool:
+        """Whether other kernels call the function by its address only."""
+        return hasattr(sys.modules[self._module_name], DEFINE)
 
     def enable(self) -> None:
         """Do nothing: the cache is always enabled."""
@@ -121,6 +117,19 @@ class KernelCache(_Cache):
         """Return the path for a signature. The path also depends on processor, source and versions, so the file never changes."""
         key = repr((signature, codegen.magic_tuple(), self._source_hash, _versions()))
         return cache_folder() / f"{self._name}.{hashlib.sha256(key.encode()).hexdigest()[:24]}{SUFFIX}"
+
+
+def _without_instructions(code: Any) -> Any:
+    """Return code without the LLVM instructions from which Numba could compile it into other kernels.
+
+    In a process that loads the code, the instructions would take eight times as much memory as everything else. The names that
+    they define are kept, because Numba looks for the addresses of these names only.
+    """
+    name, kind, (machine_code, instructions) = code
+    module = llvm.parse_bitcode(instructions)
+    names = [each.name for each in (*module.functions, *module.global_variables) if not each.is_declaration]
+    definitions = "\n".join(f'@"{defined}" = global ptr null' for defined in names)
+    return name, kind, (machine_code, llvm.parse_assembly(definitions).as_bitcode())
 
 
 def _compile(define: Callable[[], object] | None, module: str, function: str, signature: Any) -> None:

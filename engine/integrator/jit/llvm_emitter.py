@@ -8,6 +8,7 @@ functions of `engine.integrator.jit.webassembly` consist of the same instruction
 from __future__ import annotations
 
 import functools
+from collections.abc import Callable
 from typing import Any
 
 from llvmlite import ir  # type: ignore[import-untyped]
@@ -30,8 +31,8 @@ _INTRINSICS = {"abs": "llvm.fabs", "sqrt": "llvm.sqrt"}
 _INT64_OPERATIONS = {"+": "add", "-": "sub", "*": "mul", ">>": "ashr"}
 
 
-def straight_line(program: StraightLine) -> Any:
-    """Return the program as a function for use in kernels.
+def straight_line(find_program: Callable[[], StraightLine]) -> Any:
+    """Return a program as a function for use in kernels. The program is found when a kernel is compiled.
 
     The function takes the parameters of the program in order: doubles, 64-bit integers, and the table as returned by
     `table_reader`. It returns a tuple of doubles and integers.
@@ -41,7 +42,8 @@ def straight_line(program: StraightLine) -> Any:
     def result_type(argument_types: tuple[Any, ...]) -> Any:
         """Find the type of the result by writing the program into a temporary module."""
         block = ir.Function(ir.Module(), ir.FunctionType(ir.VoidType(), []), "trial").append_basic_block()
-        results = write_program(program, ir.IRBuilder(block), [ir.Constant(_llvm_type(kind), None) for kind in argument_types])
+        arguments = [ir.Constant(_llvm_type(kind), None) for kind in argument_types]
+        results = write_program(find_program(), ir.IRBuilder(block), arguments)
         return types.Tuple([_NUMBA_TYPES[result.type] for result in results])  # type: ignore[no-untyped-call]
 
     @intrinsic
@@ -52,7 +54,7 @@ def straight_line(program: StraightLine) -> Any:
             # `attributes.add` of llvmlite would reject the text.
             set.add(builder.function.attributes, _WIDE_VECTORS)
             unpacked = [builder.extract_value(values[0], i) for i in range(len(argument_types))]
-            return context.make_tuple(builder, signature.return_type, write_program(program, builder, unpacked))
+            return context.make_tuple(builder, signature.return_type, write_program(find_program(), builder, unpacked))
 
         return Signature(result_type(argument_types), (types.StarArgTuple(argument_types),), None), generate  # type: ignore[no-untyped-call]
 

@@ -8,7 +8,7 @@ The functions of a potential are those that kernels call by their addresses, wit
 
 from __future__ import annotations
 
-import functools
+from functools import partial
 from typing import Any
 
 import llvmlite.binding as llvm  # type: ignore[import-untyped]
@@ -16,11 +16,14 @@ from llvmlite import ir
 from numba import types
 from numba.core.registry import cpu_target
 
+from engine.foundations.cache_files import SUFFIX, cache_folder, read_or_make
+from engine.integrator.jit.compiling_process import call_compiler
+from engine.integrator.jit.disk_cache import program_digest
 from engine.integrator.jit.function_pointers import SIGNATURES
 from engine.integrator.jit.llvm_emitter import write_program
 from engine.integrator.jit.webassembly_object import TARGET, compile_module, target_machine
 from engine.integrator.source.generated_functions import ACCUMULATED, GeneratedFunction, Place
-from engine.integrator.source.recurrence import GeneratedCode
+from engine.integrator.source.recurrence import CodeOutline, Structure, generate_code
 from engine.integrator.source.straight_line import TABLE
 
 FUNCTIONS = ("step", "jets", "potential_value", "potential_slopes")
@@ -32,23 +35,32 @@ VECTOR_LANES = 2
 # Alignment of vectors in memory, in bytes.
 _ALIGNMENT = 8
 _INT64 = ir.IntType(64)
-# Number of cached modules. Each has a few kB.
-_CACHED_MODULES = 32
 
 
-@functools.lru_cache(maxsize=_CACHED_MODULES)
-def webassembly_module(code: GeneratedCode) -> bytes:
+def webassembly_module(outline: CodeOutline) -> bytes:
     """Return the functions of the potentials of one structure (`FUNCTIONS`) as a WebAssembly module, which imports its memory.
 
     The functions have the arguments of Numba's calling convention. The number of lanes is rounded up to an even number, and rows
-    must be long enough for this number.
+    must be long enough for this number. The module is read from the disk, or else compiled, which can take seconds.
+
+    Raises
+    ------
+    ValueError
+        If another process compiles and cannot; the message has the reason.
     """
+    path = cache_folder() / f"{__name__}.{outline.digest[:24]}.{program_digest()}{SUFFIX}"
+    return read_or_make(path, "WebAssembly modules", partial(call_compiler, partial(_compile, outline.structure)))
+
+
+def _compile(structure: Structure) -> bytes:
+    """Compile the functions of the potentials of one structure."""
     machine = target_machine()
     module = ir.Module("engine")
     module.triple, module.data_layout = TARGET, str(machine.target_data)
-    for function in code.functions:
+    functions, entries = generate_code(structure)
+    for function in functions:
         if function.name in FUNCTIONS:
-            _Writer(module, function, len(code.entries)).write()
+            _Writer(module, function, len(entries)).write()
     return compile_module(llvm.parse_assembly(str(module)), machine, level=2)
 
 

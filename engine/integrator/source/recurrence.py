@@ -26,7 +26,7 @@ import functools
 import hashlib
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -79,8 +79,8 @@ SIZE_ROW = 5
 REMAINDER_ROW = 6
 """The first of the two rows with the remainders of x and y."""
 
-# Number of structures whose code is cached, of 3 MB each with eight terms of degree 8.
-_CACHED_STRUCTURES = 32
+# Number of structures whose functions are cached, of 3 MB each with eight terms of degree 8.
+_CACHED_STRUCTURES = 4
 
 Definition = Terms | Expression
 """A potential: ((i, j, c), …) of V = Σ c x^i y^j in any order, or an expression."""
@@ -89,9 +89,8 @@ Structure = PolynomialStructure | ExpressionStructure
 """The facts on which the generated code of a potential depends, hashable, with the recurrence of its orbits."""
 
 
-@dataclass(frozen=True, eq=False)
-class GeneratedCode:
-    """The generated functions of all potentials of one structure; equal if all their programs and kernels are equal.
+class GeneratedCode(NamedTuple):
+    """The generated functions of all potentials of one structure.
 
     Attributes
     ----------
@@ -100,27 +99,40 @@ class GeneratedCode:
         ``kernel`` and ``read_table``.
     entries
         The entries of the table, as defined by the structure.
-    structure
-        The structure of the potentials.
     """
 
     functions: tuple[GeneratedFunction, ...]
     entries: tuple[Any, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class CodeOutline:
+    """Generated functions without their programs, which take megabytes. It suffices to load functions that are compiled.
+
+    Outlines are equal if all their programs and kernels are equal.
+
+    Attributes
+    ----------
+    structure
+        The structure of the potentials.
+    digest
+        A hash of all programs and kernels as text.
+    operations
+        Total number of operations of the programs.
+    entries
+        The entries of the table, see `GeneratedCode`.
+    sources
+        Name, name of the program, and Python source of each kernel.
+    """
+
     structure: Structure
-
-    @functools.cached_property
-    def digest(self) -> str:
-        """A hash of all programs and kernels as text."""
-        text = "\n\n".join(f"{function.program}\n\n{function.source}" for function in self.functions)
-        return hashlib.sha256(text.encode()).hexdigest()
-
-    @property
-    def operations(self) -> int:
-        """Total number of operations of the programs."""
-        return sum(len(function.program.operations) for function in self.functions)
+    digest: str
+    operations: int
+    entries: tuple[Any, ...]
+    sources: tuple[tuple[str, str, str], ...]
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, GeneratedCode) and self.digest == other.digest
+        return isinstance(other, CodeOutline) and self.digest == other.digest
 
     def __hash__(self) -> int:
         return hash(self.digest)
@@ -276,16 +288,6 @@ def _tangent(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
     return lane_loop(program, "duration, x, y, px, py, wx, wy, wpx, wpy", reads, writes)
 
 
-def generate_code(definition: Definition, setting: Setting) -> GeneratedCode:
-    """Return the generated functions for a potential, cached for all potentials of the same structure."""
-    return generate(find_structure(definition, setting))
-
-
-def code_digest(definition: Definition, setting: Setting) -> str:
-    """Return `GeneratedCode.digest` of a potential without keeping the code, which takes megabytes."""
-    return _write_code(find_structure(definition, setting)).digest
-
-
 def find_structure(definition: Definition, setting: Setting) -> Structure:
     """Return the structure of a potential, on which its generated functions depend."""
     if isinstance(definition, Expression):
@@ -294,17 +296,25 @@ def find_structure(definition: Definition, setting: Setting) -> Structure:
 
 
 @functools.lru_cache(maxsize=_CACHED_STRUCTURES)
-def generate(structure: Structure) -> GeneratedCode:
+def generate_code(structure: Structure) -> GeneratedCode:
     """Return the generated functions for all potentials of a structure; large formulas take seconds."""
-    return _write_code(structure)
-
-
-def _write_code(structure: Structure) -> GeneratedCode:
-    """Return the generated functions, written anew."""
     # All programs share the table, which each of them extends.
     table: dict[Any, int] = {}
     functions = [
         *(write(structure, table) for write in (_step, _fixed_step, _jets, _tangent)),
         *(point_function(name, append, table) for name, append in structure.point_functions().items()),
     ]
-    return GeneratedCode(tuple(functions), tuple(table), structure)
+    return GeneratedCode(tuple(functions), tuple(table))
+
+
+def outline_code(structure: Structure) -> CodeOutline:
+    """Generate the functions for all potentials of a structure, and return their outline."""
+    functions, entries = generate_code(structure)
+    text = "\n\n".join(f"{function.program}\n\n{function.source}" for function in functions)
+    return CodeOutline(
+        structure,
+        digest=hashlib.sha256(text.encode()).hexdigest(),
+        operations=sum(len(function.program.operations) for function in functions),
+        entries=entries,
+        sources=tuple((function.name, function.program.name, function.source) for function in functions),
+    )

@@ -40,7 +40,7 @@ def fail_to_compile(state: ProcessState) -> None:
 
 
 def compile_potentials(state: ProcessState) -> None:
-    for number in range(5):
+    for number in range(10):
         compiled_operations.add(f"potential {number}", LARGEST_CODE)
 
 
@@ -56,7 +56,7 @@ def compile_potentials(state: ProcessState) -> None:
         (crowd_with_several_pages, "The server is busy", "The server is busy"),
         (lambda state: state.stopping.set(), "The server is stopping.", "The server is stopping."),
         # Nobody is refused, because the catalogue is served as before.
-        (compile_potentials, "ESCAPE_EXPLORER_COMPILED_OPERATIONS=250000. Restart the server.", ""),
+        (compile_potentials, "ESCAPE_EXPLORER_COMPILED_OPERATIONS=500000. Restart the server.", ""),
     ],
     ids=["ready", "compiling", "failed", "full", "busy", "busy with this page", "busy with this visitor", "stopping", "code"],
 )

@@ -18,6 +18,7 @@ from app.session.explorer import Explorer
 from app.state.system_review import review_catalogue_entry
 from engine import CASES, Plane, System, Window, parse_formula
 from engine.expressions.calculus import derivative, substitute
+from engine.integrator.jit.code_outlines import find_outline
 from engine.integrator.source.recurrence import find_structure
 from engine.systems.forms.polynomial_form import find_critical_points
 from engine.systems.forms.stored_points import stored_points
@@ -33,7 +34,10 @@ CIRCULAR = {"case": TYPED, "V": "r^2/2 - r^4 + r^6 - r^8 + r^10 - 1.0183r^12"}
 LEGAL = {"case": TYPED, "V": "½(x² + y²) − 0.83x²y²"}
 WITH_FUNCTIONS = {"case": TYPED, "V": "½(x² + y²) − a x²y exp(−0.017 y²)"}
 # Functions that compute slow quantities of a potential, or read them from the disk.
-SLOW = [parse_formula, review_system, find_critical_points, stored_points, leads_out_of_well, find_maxima_beside]
+SLOW = [
+    *(parse_formula, review_system, find_critical_points, stored_points),
+    *(leads_out_of_well, find_maxima_beside, find_outline),
+]
 # Functions that derive other formulas, texts and structures of code from a formula.
 DERIVING = [derivative, substitute, equations, potential_formula, find_structure]
 STARTED, TOOL = sys.monitoring.events.PY_START, 4

@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 from engine.integrator import bound_kernels
-from engine.integrator.source.recurrence import GeneratedCode, Structure, find_structure, generate
+from engine.integrator.source.recurrence import CodeOutline, Structure, find_structure, outline_code
 from engine.integrator.source.series import Setting
 from tests.waiting import SECONDS
 
@@ -33,12 +33,12 @@ def test_known_functions_are_available_while_others_are_generated(monkeypatch: p
     bound_kernels.load_kernels(TERMS, Setting())
     begun, end = threading.Event(), threading.Event()
 
-    def wait(structure: Structure) -> GeneratedCode:
+    def wait(structure: Structure) -> CodeOutline:
         begun.set()
         assert end.wait(SECONDS)
-        return generate(structure)
+        return outline_code(structure)
 
-    monkeypatch.setattr(bound_kernels, "generate", wait)
+    monkeypatch.setattr(bound_kernels, "find_outline", wait)
     with ThreadPoolExecutor(2) as threads:
         other = threads.submit(bound_kernels.load_kernels, (*TERMS, (11, 0, 0.1)), Setting())
         assert begun.wait(SECONDS)

@@ -16,7 +16,7 @@ from engine.integrator.jit.compiled_operations import (
     charged_to,
     compiled_operations,
 )
-from engine.integrator.source.recurrence import generate_code
+from engine.integrator.source.recurrence import find_structure, outline_code
 from engine.integrator.source.series import Setting
 from engine.jobs.client import JobClient
 from engine.jobs.job import Job, Queue
@@ -44,7 +44,7 @@ def test_compilation_beyond_the_limit_is_refused_with_a_sentence() -> None:
         load_kernels(terms, Setting())
     compiled_operations.limit = None
     assert load_kernels(terms, Setting()).potential_value(1.0, 1.0) == 2.0
-    assert compiled_operations.used == generate_code(terms, Setting()).operations
+    assert compiled_operations.used == outline_code(find_structure(terms, Setting())).operations
 
 
 def test_reserved_code_is_compiled_at_the_limit_and_does_not_count(limited: CompiledOperations) -> None:
@@ -81,7 +81,7 @@ def test_an_account_has_a_share_of_the_limit(limited: CompiledOperations) -> Non
 @pytest.mark.parametrize(("account", "is_refused"), [("one", True), (None, False)])
 def test_a_job_takes_the_share_of_its_client(account: Hashable, is_refused: bool) -> None:
     terms = ((2, 0, 0.5), (0, 2, 0.5), (3, 6, 1.0 if account else 2.0), (6, 3, 1.0))
-    compiled_operations.limit = SHARES * generate_code(terms, Setting()).operations - 1
+    compiled_operations.limit = SHARES * outline_code(find_structure(terms, Setting())).operations - 1
     client, inbox = JobClient(Jobs(), account=account), Inbox()
     client.request(Job(load_kernels, (terms, Setting()), queue=Queue.COMPILATION), inbox.result, inbox.error)
     assert inbox.done.wait(SECONDS)
@@ -91,7 +91,7 @@ def test_a_job_takes_the_share_of_its_client(account: Hashable, is_refused: bool
 def test_the_catalogue_can_be_compiled_even_at_the_limit(limited: CompiledOperations) -> None:
     potential = POTENTIALS["Copenhagen"].in_well_units
     limited.add("of others", MOST)
-    code = generate_code(potential.form.definition, potential.well.setting)
+    code = outline_code(potential.well.structure)
     with pytest.raises(CompiledCodeLimitError):
         limited.add(code.digest, code.operations)
     reserve_catalogue(limited)

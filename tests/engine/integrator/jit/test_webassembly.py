@@ -14,7 +14,7 @@ from engine.exits.exit_rows import exit_curves, exit_gates
 from engine.integrator.jit.webassembly import webassembly_module
 from engine.integrator.kernels.propagate import VECTOR, Exits
 from engine.integrator.portable_kernels import kernel_module
-from engine.integrator.source.recurrence import TOLERANCE, generate_code
+from engine.integrator.source.recurrence import TOLERANCE, outline_code
 from engine.integrator.source.series import ORDER
 from engine.propagation.batch import OrbitBatch
 from engine.slices.portable_system import make_portable_system
@@ -35,7 +35,7 @@ LARGEST_BYTES, LARGEST_KERNELS = 5120, 16384
 
 def test_a_module_has_at_most_5_kb() -> None:
     potential = CASES["III"]
-    module = webassembly_module(generate_code(potential.terms, potential.well.setting))
+    module = webassembly_module(outline_code(potential.well.structure))
     assert len(gzip.compress(module)) <= LARGEST_BYTES
 
 

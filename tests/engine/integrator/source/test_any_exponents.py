@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from engine.integrator.source.polynomial_recurrence import Terms
-from engine.integrator.source.recurrence import generate_code
+from engine.integrator.source.recurrence import find_structure, generate_code, outline_code
 from engine.integrator.source.series import ORDER, Setting
 from engine.integrator.source.straight_line import StraightLine
 from tests.channel_family import channel_family
@@ -79,8 +79,9 @@ def relative_error(computed: np.ndarray, expected: np.ndarray) -> float:
 
 def check(terms: Terms, rng: np.random.Generator) -> None:
     """Check gradient, Hessian and one step of an orbit and a deviation vector against plain evaluation."""
-    code = generate_code(terms, Setting())
-    table, programs = code.tabulate(terms), {function.name: function.program for function in code.functions}
+    structure = find_structure(terms, Setting())
+    table = outline_code(structure).tabulate(terms)
+    programs = {function.name: function.program for function in generate_code(structure).functions}
     start, deviation = rng.uniform(-0.6, 0.6, 4), rng.uniform(-1.0, 1.0, 4)
     inputs = dict(zip(("x0", "y0", "x1", "y1", "u0", "v0", "u1", "v1"), (*start, *deviation), strict=True), h=DURATION)
     orbit, tangent = plain_series(terms, start, deviation)

@@ -21,7 +21,7 @@ def compiled(function: Callable[[Value], Value]) -> Callable[[np.ndarray], np.nd
     """Return the function for arrays."""
     program = StraightLine("_f", {})
     program.results = [function(program.input("u")).index]
-    call, read = straight_line(program), table_reader(0)
+    call, read = straight_line(lambda: program), table_reader(0)
 
     @njit(error_model="numpy", fastmath={"contract"})
     def run(table, u):
