@@ -225,7 +225,12 @@ async def _find_places(proxy: Proxy, servers: Sequence[Server]) -> list[Place]:
 
 def waits(record: Record) -> list[float]:
     """Return all waits, including waits in vain."""
-    return [*(wait for times in record.waits.values() for wait in times), *record.replaced, *record.opening, *record.reviews]
+    return [wait for times in waits_by_action(record).values() for wait in times]
+
+
+def waits_by_action(record: Record) -> dict[str, list[float]]:
+    """Return the waits by action, including waits in vain."""
+    return record.waits | {"replaced": record.replaced, "open": record.opening, "type": record.reviews}
 
 
 def count_delayed_messages(servers: Sequence[Server]) -> int:
@@ -234,8 +239,9 @@ def count_delayed_messages(servers: Sequence[Server]) -> int:
 
 
 COLUMNS = (
-    "attack", "waits", "minimum", "median", "95 %", "99 %", "maximum", "over 2 s, 3 s", "refused", "delayed messages", "liveness",
-    "memory before", "peak", "after", "limited process", "actions", "log lines for each", "longest turn", "longest review",
+    "attack", "waits", "minimum", "median", "95 %", "99 %", "maximum", "longest by action", "over 2 s, 3 s", "refused",
+    "delayed messages", "liveness", "memory before", "peak", "after", "limited process", "actions", "log lines for each",
+    "longest turn", "longest review",
 )  # fmt: skip
 
 
@@ -244,12 +250,12 @@ def row(name: str, effect: Effect, delayed_messages: int) -> str:
     megabytes = " | ".join(f"{size:.0f}" for size in (*effect.megabytes, effect.limited_megabytes))
     seconds = waits(effect.record)
     late = ", ".join(str(sum(wait > limit for wait in seconds)) for limit in (LONG_WAIT_SECONDS, LONGEST_WAIT_SECONDS))
-    visitor = (
-        f"{summary(seconds)} | {late} | {effect.record.refused} | {delayed_messages} | {max(effect.liveness):.2f} | {megabytes}"
-    )
+    longest = ", ".join(f"{action} {max(times):.2f}" for action, times in waits_by_action(effect.record).items() if times)
+    visitor = f"{summary(seconds)} | {longest} | {late} | {effect.record.refused} | {delayed_messages}"
+    processes = f"{max(effect.liveness):.2f} | {megabytes}"
     lines, (turn, cause) = effect.lines / max(effect.actions, 1), effect.turn
     review = f"{max(effect.attackers.reviews):.2f}" if effect.attackers.reviews else "–"
-    return f"| {name} | {visitor} | {effect.actions} | {lines:.1f} | {turn:.0f} ms: {cause} | {review} |"
+    return f"| {name} | {visitor} | {processes} | {effect.actions} | {lines:.1f} | {turn:.0f} ms: {cause} | {review} |"
 
 
 def find_problems(effect: Effect) -> Iterator[str]:

@@ -95,7 +95,9 @@ class ProcessState:
         asyncio runs all ready callbacks in one iteration, so the pending work of many pages would delay everything else.
         """
         async with self._turns.setdefault(asyncio.get_running_loop(), asyncio.Lock()):
-            await asyncio.sleep(0)
+            # In the next iteration, this task runs before messages and timers that have become ready in the present one.
+            for _ in range(2):
+                await asyncio.sleep(0)
 
     def fair_share(self, document: Document) -> FairShare:
         """Return the share of a page, given its document. All connections of the page use the same share."""

@@ -66,3 +66,14 @@ def test_pages_that_wait_at_once_have_their_turns_in_different_iterations_of_the
         assert len({*await asyncio.gather(*(take_turn() for _ in range(pages)))}) == pages
 
     run_on_new_loop(scenario)
+
+
+def test_what_became_ready_during_the_last_turn_of_a_page_runs_before_its_next_turn() -> None:
+    async def scenario() -> None:
+        state, ready = ProcessState(Settings()), asyncio.Event()
+        await state.next_turn()
+        asyncio.get_running_loop().call_later(0.0, ready.set)
+        await state.next_turn()
+        assert ready.is_set()
+
+    run_on_new_loop(scenario)
