@@ -9,6 +9,7 @@ from enum import StrEnum
 from typing import Any
 
 from engine.foundations.execution import count_cores
+from engine.jobs.manager import DEFAULT_MOST_ORBITS
 
 PREFIX = "ESCAPE_EXPLORER_"
 """Prefix of the environment variables."""
@@ -105,7 +106,7 @@ class Settings:
 
     largest_resolution: int = _setting(1024, _integer(16, 4096))
     longest_t_max: float = _setting(1e6, _number(1.0, 1e8))
-    most_orbits: int = _setting(4 * MIB, _integer(1000, 10**9))
+    most_orbits: int = _setting(DEFAULT_MOST_ORBITS, _integer(1000, 10**9))
     most_sessions: int = _setting(200, _integer(1, 100_000))
     pages_per_address: int = _setting(50, _integer(1, 100_000))
     most_connections: int = _setting(500, _integer(1, 100_000))

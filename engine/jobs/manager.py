@@ -28,8 +28,8 @@ from engine.jobs.subscription import Subscription
 DEFAULT_CACHE_BYTES = 512 * 2**20
 """Default memory limit of cached results, in bytes."""
 
-DEFAULT_MOST_ORBITS = 4 * 2**20
-"""Default limit on the number of orbits of all large running jobs. This many orbits take about 500 MiB."""
+DEFAULT_MOST_ORBITS = 2 * 2**20
+"""Default limit on the number of orbits of all large running jobs. This many orbits take about 250 MiB."""
 
 # Number of coordinating threads, one for each running job. They mostly wait for the executor. Further jobs are queued.
 _COORDINATING_THREADS = 1024

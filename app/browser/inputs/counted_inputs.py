@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from math import isfinite
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import param
 from panel.custom import JSComponent
@@ -129,24 +129,79 @@ class EnergySlider(CountedInput):
         return None if number is None or self.disabled else min(max(number, self.low), self.high)
 
 
-class ParameterSlider(CountedInput):
-    """A slider with a box for its number.
+class SliderParameter(NamedTuple):
+    """A parameter that a slider sets.
 
-    The number is final when the slider is released, when the slider or the box loses focus, or when Enter is pressed in the box.
-    For a number beyond an end of the slider, the thumb is at that end.
+    Attributes
+    ----------
+    name
+        The name.
+    label
+        Text beside the slider.
+    low, high
+        Numbers at the ends of the slider.
+    lowest, highest
+        Smallest and largest legal number of the box.
     """
 
-    low = param.Number(doc="number at the left end of the slider")
-    high = param.Number(doc="number at the right end of the slider")
-    lowest = param.Number(doc="smallest legal number of the box")
-    highest = param.Number(doc="largest legal number of the box")
-    step = param.Number(default=0.01, doc="step of the slider and of the box")
+    name: str
+    label: str
+    low: float
+    high: float
+    lowest: float
+    highest: float
 
-    _esm = _code("parameter_slider")
 
-    def _legal_value(self, value: Any) -> float | None:
-        number = _finite_number(value)
-        return number if number is not None and self.lowest <= number <= self.highest else None
+class ParameterSliders(JSComponent):
+    """Sliders of parameters, each with a box for its number.
+
+    A number is final when the slider is released, when the slider or the box loses focus, or when Enter is pressed in the box.
+    For a number beyond an end of the slider, the thumb is at that end. One component shows all sliders: the page would take ten
+    times as long to add a component for each.
+
+    Parameters
+    ----------
+    on_number
+        Called with the name of a parameter, each legal number that the visitor enters, and whether the number is final. The call
+        does not hold the session's lock.
+    **options
+        Parameters of the component.
+    """
+
+    rows = param.List(doc="fields of `SliderParameter` with the shown number and the count of numbers received before, by name")
+    step = param.Number(default=0.01, doc="step of the sliders and of the boxes")
+
+    _esm = _code("parameter_sliders")
+
+    def __init__(self, on_number: Callable[[str, float, bool], None], **options: Any) -> None:
+        super().__init__(**options)
+        self._on_number = on_number
+        # Numbers received from the browser so far. A slider that is shown again goes on counting.
+        self._counts: dict[str, int] = {}
+
+    def show(self, parameters: Mapping[SliderParameter, float]) -> None:
+        """Show sliders of these parameters, in order, with these numbers, unless the browser has newer numbers."""
+        self.rows = [
+            parameter._asdict() | {"value": number, "count": self._counts.get(parameter.name, 0)}
+            for parameter, number in parameters.items()
+        ]
+
+    def _handle_msg(self, message: Any) -> None:
+        # A browser can send anything: unexpected messages, and those of sliders that are no longer shown, are ignored.
+        match message:
+            case {"name": str(name), "value": sent_value, "count": int(count), "done": bool(is_final)}:
+                row = next((row for row in self.rows if row["name"] == name), None)
+                if row is not None:
+                    self._take(row, _finite_number(sent_value), count, is_final=is_final)
+
+    def _take(self, row: dict[str, Any], number: float | None, count: int, *, is_final: bool) -> None:
+        """Take a number of a slider. The browser shows the last legal number in place of an illegal number."""
+        is_legal = number is not None and row["lowest"] <= number <= row["highest"]
+        self._counts[row["name"]] = count
+        changed_row = row | {"value": number if is_legal else row["value"], "count": count}
+        self.rows = [changed_row if each is row else each for each in self.rows]
+        if number is not None and is_legal:
+            self._on_number(row["name"], number, is_final)
 
 
 class FormulaBox(CountedInput):

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from html import escape
-from itertools import batched, zip_longest
-from math import ceil
+from itertools import batched
 from typing import Protocol
 
 import panel as pn
 
-from app.browser.inputs.counted_inputs import FormulaBox, ParameterSlider
+from app.browser.inputs.counted_inputs import FormulaBox, ParameterSliders, SliderParameter
 from app.state.system_review import PageReview
 from app.views.components.collapsible_section import Build
 from app.views.components.texts import StatusPane, TextPane, describe_outcomes, plain_symbol
@@ -20,7 +18,7 @@ from app.views.components.widgets import button, flex_row
 from engine import System
 from engine.foundations.wording import format_number
 from engine.systems.catalogue.table import CATALOGUE
-from engine.systems.formulas.formula_parser import LARGEST_VALUE, LONGEST_TEXT, MOST_LETTERS
+from engine.systems.formulas.formula_parser import LARGEST_VALUE, LONGEST_TEXT
 from engine.systems.parameters import WELL_PARAMETERS
 from engine.systems.system import TYPED
 from plots.pictures.palette import MOST_CHANNELS
@@ -35,8 +33,6 @@ _SMALLEST_REACH = 2.0
 # Number of views that are added to the page in one iteration of the event loop. A view takes about 10 ms, and the search of the
 # page for new models as much as four.
 _VIEWS_OF_PART = 5
-# Number of sliders of letters that are added to the page at once.
-_LETTERS_AT_ONCE = 4
 _PLACEHOLDER = "½(x² + y²) − x²y + y³/3"
 _HINT = (
     f"Numbers, x, y, r², √, exp, log, sin, cos, letters with sliders, and + − * / ^ ( ), at most {LONGEST_TEXT} characters, "
@@ -94,10 +90,7 @@ class PotentialPanel:
             *(button(label, partial(self._add, term=term), margin=0) for label, term in _TERMS.items()),
             *(button(label, partial(self._add, clause=clause), margin=0) for label, clause in _CLAUSES.items()),
         ]
-        self.sliders = {name: self._make_well_slider(name) for name in WELL_PARAMETERS}
-        self.letter_sliders = [self._make_letter_slider(index) for index in range(MOST_LETTERS)]
-        # Sliders that a formula has needed stay on the page, because adding them takes time. Those without a letter are hidden.
-        self.letters = pn.Column(sizing_mode="stretch_width", margin=0)
+        self.sliders = ParameterSliders(self._slide, sizing_mode="stretch_width", margin=0)
         # Half the range of the slider of each letter.
         self._reaches: dict[str, float] = {}
         reset = lambda: self._choose(System(self.shown.case, self.shown.formula))  # noqa: E731
@@ -112,37 +105,21 @@ class PotentialPanel:
         buttons = flex_row(self.reset, self.use_well, gap="8px")
         views = [
             *(self.known, self.formula, flex_row(*self.additions), self.typeset, self.message),
-            *(self.letters, self.definition, *self.sliders.values(), buttons, self.facts),
+            *(self.definition, self.sliders, buttons, self.facts),
         ]
         return [partial(list, part) for part in batched(views, _VIEWS_OF_PART)]
 
-    def _make_well_slider(self, name: str) -> ParameterSlider:
-        symbol, _, legal_range = WELL_PARAMETERS[name]
-        ends = _OTHER_SLIDER_ENDS.get(name, _SLIDER_ENDS)
-        return _make_slider(partial(self._slide, name), plain_symbol(symbol), ends, legal_range)
-
-    def _make_letter_slider(self, index: int) -> ParameterSlider:
-        """Return the slider of the letter with an index among the letters of the formula."""
-
-        def slide(number: float, done: bool) -> None:
-            # The formula may have fewer letters since the browser has sent the number.
-            for name in _letters_of(self.shown)[index : index + 1]:
-                self._slide(name, number, done)
-
-        return _make_slider(slide, "", (-_SMALLEST_REACH, _SMALLEST_REACH), (-LARGEST_VALUE, LARGEST_VALUE))
-
-    def _show_letters(self) -> None:
-        """Show a slider for each letter of the formula. A letter that remains in the formula keeps the range of its slider."""
-        values = {name: self.shown.value_of(name) for name in _letters_of(self.shown)}
-        first_reaches = {name: max(_SMALLEST_REACH, 2.0 * abs(value)) for name, value in values.items()}
+    def _show_sliders(self) -> None:
+        """Show a slider for each parameter, letters first. A letter that remains in the formula keeps the range of its slider."""
+        values = {name: self.shown.value_of(name) for name in self.shown.parameter_names}
+        first_reaches = {name: max(_SMALLEST_REACH, 2.0 * abs(values[name])) for name in _letters_of(self.shown)}
         self._reaches = {name: self._reaches.get(name, reach) for name, reach in first_reaches.items()}
-        for slider, name in zip_longest(self.letter_sliders, values):
-            slider.visible = name is not None
-            if name is not None:
-                slider.param.update(label=name, low=-self._reaches[name], high=self._reaches[name])
-                slider.show(values[name])
-        if len(values) > len(self.letters.objects):
-            self.letters.objects = self.letter_sliders[: _LETTERS_AT_ONCE * ceil(len(values) / _LETTERS_AT_ONCE)]
+        self.sliders.show(
+            {
+                **{_letter_parameter(name, reach): values[name] for name, reach in self._reaches.items()},
+                **{_well_parameter(name): values[name] for name in WELL_PARAMETERS if name in values},
+            }
+        )
 
     def follow(self, used: PageReview) -> None:
         """Show the system of the maps."""
@@ -192,13 +169,9 @@ class PotentialPanel:
         """Show a system in all widgets except the formula, which is being typed."""
         self.shown = system
         self.known.value = system.case
-        names = system.parameter_names
-        for name, slider in self.sliders.items():
-            slider.visible = name in names
-            slider.show(system.value_of(name))
-        self.definition.visible = "epsilon" in names
+        self.definition.visible = "epsilon" in system.parameter_names
         self.reset.disabled = not system.parameters
-        self._show_letters()
+        self._show_sliders()
 
     def _take_known(self, case: str) -> None:
         if case == self.shown.case:
@@ -233,15 +206,13 @@ class PotentialPanel:
         self._propose(self.shown, done=done)
 
 
-def _make_slider(
-    on_value: Callable[[float, bool], None], label: str, ends: tuple[float, float], legal_range: tuple[float, float]
-) -> ParameterSlider:
-    """Return the slider of a parameter between `ends`. Its box takes all numbers of the legal range."""
-    (low, high), (lowest, highest) = ends, legal_range
-    return ParameterSlider(
-        on_value, 1.0, label=label, low=low, high=high, lowest=lowest, highest=highest,
-        sizing_mode="stretch_width", margin=(2, 0),
-    )  # fmt: skip
+def _letter_parameter(name: str, reach: float) -> SliderParameter:
+    return SliderParameter(name, name, -reach, reach, -LARGEST_VALUE, LARGEST_VALUE)
+
+
+def _well_parameter(name: str) -> SliderParameter:
+    symbol, _, legal_range = WELL_PARAMETERS[name]
+    return SliderParameter(name, plain_symbol(symbol), *_OTHER_SLIDER_ENDS.get(name, _SLIDER_ENDS), *legal_range)
 
 
 def _formula_of(system: System) -> str:

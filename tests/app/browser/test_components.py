@@ -11,7 +11,14 @@ from panel.custom import JSComponent
 
 from app.browser.components.file_components import ImageCopier
 from app.browser.components.orbit_components import OrbitList, OrbitPlayer
-from app.browser.inputs.counted_inputs import LONGEST_TYPED, EnergySlider, FormulaBox, NumberBox, ParameterSlider
+from app.browser.inputs.counted_inputs import (
+    LONGEST_TYPED,
+    EnergySlider,
+    FormulaBox,
+    NumberBox,
+    ParameterSliders,
+    SliderParameter,
+)
 from app.job_clients.shown_results import ShownResults
 from app.state.presets import PRESETS
 from app.state.view_state import ViewState
@@ -63,8 +70,16 @@ def given(value: Any, count: Any = 1, *, done: bool = True) -> dict[str, Any]:
     return {"value": value, "count": count, "done": done}
 
 
-def make_slider(report: Report) -> ParameterSlider:
-    return ParameterSlider(report, 1.0, low=0.2, high=2.0, lowest=0.1, highest=10.0)
+def make_sliders(report: Report) -> ParameterSliders:
+    sliders = ParameterSliders(report)
+    parameters = SliderParameter("epsilon", "ε", 0.2, 2.0, 0.1, 10.0), SliderParameter("a", "a", -2.0, 2.0, -9.0, 9.0)
+    sliders.show(dict(zip(parameters, (1.0, 0.5), strict=True)))
+    return sliders
+
+
+def shown_numbers(sliders: ParameterSliders) -> dict[str, tuple[float, int]]:
+    """Return the shown number of each slider, and the count of numbers received before."""
+    return {row["name"]: (row["value"], row["count"]) for row in sliders.rows}
 
 
 EXAMPLES = {
@@ -78,10 +93,18 @@ EXAMPLES = {
         [(given("x", done=False), ("x", False)), (given("x" * LONGEST_TYPED, 2), ("x" * LONGEST_TYPED, True))],
         [given(1), given("x" * (LONGEST_TYPED + 1))],
     ),
-    "slider of a parameter": Example(
-        make_slider,
-        [(given(1.13, done=False), (1.13, False)), (given(10, 2), (10.0, True))],
-        [given(number) for number in ("1", NAN, 0.05, 11.0)],
+    "sliders of parameters": Example(
+        make_sliders,
+        [
+            ({"name": "epsilon", **given(1.13, done=False)}, ("epsilon", 1.13, False)),
+            ({"name": "a", **given(-9)}, ("a", -9.0, True)),
+            ({"name": "epsilon", **given(10, 2)}, ("epsilon", 10.0, True)),
+        ],
+        [
+            *({"name": "epsilon", **given(number)} for number in ("1", NAN, 0.05, 11.0)),
+            *({"name": name, **given(1.0)} for name in ("b", 7, None)),
+            given(1.0),
+        ],
     ),
     "slider of the energy": Example(
         lambda report: EnergySlider(report, 0.2, low=0.0, high=0.5),
@@ -144,16 +167,32 @@ def test_legal_messages_are_reported_and_all_others_ignored(name: str) -> None:
 
 
 def test_values_of_the_server_carry_the_count_of_values_given_before() -> None:
-    slider = make_slider(lambda *_: None)
-    send(slider, given(1.13, 3))
-    slider.show(0.25)
-    assert slider.shown == {"value": 0.25, "count": 3}
+    box = NumberBox(lambda *_: None, 0.19)
+    send(box, given(1.13, 3))
+    box.show(0.25)
+    assert box.shown == {"value": 0.25, "count": 3}
 
 
 def test_a_refused_value_is_counted_so_that_the_browser_shows_the_previous_value_again() -> None:
-    slider = make_slider(lambda *_: None)
-    send(slider, given(1.13), given(11.0, 2))
-    assert slider.shown == {"value": 1.13, "count": 2}
+    box = NumberBox(lambda *_: None, 0.19)
+    send(box, given(1.13), given(NAN, 2))
+    assert box.shown == {"value": 1.13, "count": 2}
+
+
+def test_each_slider_counts_its_own_numbers_and_goes_on_when_it_is_shown_again() -> None:
+    sliders = make_sliders(lambda *_: None)
+    send(sliders, {"name": "a", **given(1.5, 3)})
+    assert shown_numbers(sliders) == {"epsilon": (1.0, 0), "a": (1.5, 3)}
+    parameter = SliderParameter("a", "a", -4.0, 4.0, -9.0, 9.0)
+    sliders.show({})
+    sliders.show({parameter: 2.5})
+    assert shown_numbers(sliders) == {"a": (2.5, 3)}
+
+
+def test_a_refused_number_is_counted_so_that_the_slider_shows_the_previous_number_again() -> None:
+    sliders = make_sliders(lambda *_: None)
+    send(sliders, {"name": "epsilon", **given(11.0, 2)})
+    assert shown_numbers(sliders) == {"epsilon": (1.0, 2), "a": (0.5, 0)}
 
 
 def test_repeated_commands_differ() -> None:

@@ -15,6 +15,7 @@ from app.state.view_state import ViewState
 from engine import CASES, System
 from engine.jobs.manager import Jobs
 from engine.sweeps.warmup import prepare_for_maps
+from engine.systems.parameters import WELL_PARAMETERS
 from engine.systems.system import TYPED
 from tests.app.browser_messages import send
 from tests.app.session.session_lock import context_of
@@ -46,7 +47,11 @@ class Session:
         send(self.panel.formula, {"value": text, "count": 1, "done": enter})
 
     def slide(self, name: str, number: float, *, done: bool = True) -> None:
-        send(self.panel.sliders[name], {"value": number, "count": 1, "done": done})
+        send(self.panel.sliders, {"name": name, "value": number, "count": 1, "done": done})
+
+    def sliders(self) -> dict[str, dict[str, float]]:
+        """Return the fields of each slider on the page, by the name of the parameter."""
+        return {row["name"]: row for row in self.panel.sliders.rows}
 
     def wait_for(self, condition: Callable[[], bool]) -> None:
         with self.changed:
@@ -177,38 +182,38 @@ def test_a_known_potential_can_be_selected(session: Session) -> None:
 
 
 def test_a_slider_keeps_the_ratio_to_the_escape_energy_and_its_last_number(session: Session) -> None:
-    later = {"value": 0.7, "count": 2, "done": True}
-    session.state.param.watch(lambda event: send(session.panel.sliders["epsilon"], later), "system")
+    later = {"name": "epsilon", "value": 0.7, "count": 2, "done": True}
+    session.state.param.watch(lambda event: send(session.panel.sliders, later), "system")
     session.slide("epsilon", 0.5, done=False)
     session.wait_for(lambda: session.state.system.parameters.get("epsilon") == 0.7)
-    assert session.panel.sliders["epsilon"].shown == {"value": 0.7, "count": 2}
+    assert session.sliders()["epsilon"].items() >= {"value": 0.7, "count": 2}.items()
     ratio = session.state.energy / session.state.potential.escape_energy
     assert ratio == pytest.approx(0.25 / CASES["I"].escape_energy, rel=1e-2)
 
 
 def shown_letters(session: Session) -> dict[str, tuple[float, float]]:
-    """Return value and upper end of each slider of a letter that is on the page."""
-    return {slider.label: (slider.value, slider.high) for slider in session.panel.letters.objects if slider.visible}
+    """Return number and upper end of each slider of a letter."""
+    return {name: (row["value"], row["high"]) for name, row in session.sliders().items() if name not in WELL_PARAMETERS}
 
 
 def test_letters_of_a_formula_have_sliders_with_ranges_that_remain(session: Session) -> None:
     session.type("½(x² + y²) − a x²y + b y³/3")
     assert shown_letters(session) == {"a": (1.0, 2.0), "b": (1.0, 2.0)}
     session.wait_for(lambda: session.state.system.case == TYPED)
-    send(session.panel.letter_sliders[1], {"value": -7.0, "count": 1, "done": True})
+    session.slide("b", -7.0)
     session.wait_for(lambda: session.state.system.parameters == {"b": -7.0})
     session.type("½(x² + y²) + b y³/3 − c xy²")
     assert shown_letters(session) == {"b": (-7.0, 2.0), "c": (1.0, 2.0)}
     # This number comes from the slider of a letter that the formula no longer has.
     session.type("½(x² + y²) − xy²")
-    send(session.panel.letter_sliders[1], {"value": 0.3, "count": 2, "done": True})
+    session.slide("c", 0.3)
     session.wait_for(lambda: session.state.system.formula == "½(x² + y²) − xy²")
     assert session.state.system.parameters == {}
 
 
 def test_a_typed_formula_keeps_the_parameters_which_can_be_reset(session: Session) -> None:
     session.state.show_system(review_for_page(System("III", parameters={"omega_1": 1.13, "epsilon": 0.5})))
-    assert session.panel.sliders["epsilon"].value == 0.5
+    assert session.sliders()["epsilon"]["value"] == 0.5
     session.panel.reset.clicks += 1
     session.wait_for(lambda: not session.state.system.parameters)
     assert session.state.system.case == "III"
