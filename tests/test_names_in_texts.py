@@ -26,7 +26,7 @@ FOREIGN = re.compile(
     # Names of Bokeh, Panel, nginx and the files of this project.
     r"|Application\._set_session_prefix|ComponentResourceHandler\.parse_url_path|OAuthProvider\.get_user_async"
     r"|_BytesDecoder\.bytes_object_hook|_dispatch_msgs|auth_basic|get_token_payload|secret_key_bytes|settings\.sign_sessions"
-    r"|kernels\.wasm|formulas_stopped"
+    r"|kernels\.wasm"
     # Attributes of the result of a function, which the docstring of the function explains, and the example of CONTRIBUTING.
     r"|bytes|conclusion|orbits|seconds|LateMap"
 )

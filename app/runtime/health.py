@@ -100,18 +100,29 @@ class StateCollector(Collector):
             state.capacity.occupied_share(state.pages()),
         )
         yield _gauge("resident_memory_bytes", "Resident memory", resident_bytes())
-        yield CounterMetricFamily(
-            f"{NAMESPACE}_formulas_stopped",
-            "Typed formulas whose review exceeded its time or its memory",
-            value=state.limited.stopped_calls,
-        )
+        yield from _limited_metrics(state)
         yield from _job_metrics(state)
+
+
+def _limited_metrics(state: ProcessState) -> Iterator[Metric]:
+    """Return the metrics of the processes with limits."""
+    totals = {"review": state.limited.totals, "compilation": state.compiler.totals}
+    calls = CounterMetricFamily(f"{NAMESPACE}_limited_calls", "Calls of the processes with limits", labels=["task", "how"])
+    seconds = CounterMetricFamily(f"{NAMESPACE}_limited_seconds", "Processor time of these calls", labels=["task"])
+    memory = GaugeMetricFamily(f"{NAMESPACE}_limited_memory_bytes", "Resident memory of these processes", labels=["task"])
+    for task, total in totals.items():
+        calls.add_metric([task, "answered"], total.answered)
+        calls.add_metric([task, "stopped"], total.stopped)
+        seconds.add_metric([task], total.seconds)
+        memory.add_metric([task], total.resident_bytes)
+    yield from (calls, seconds, memory)
 
 
 def _job_metrics(state: ProcessState) -> Iterator[Metric]:
     stats = state.jobs.stats()
     yield _gauge("jobs_in_flight", "Running and queued jobs", stats.in_flight)
     yield _gauge("calls_waiting", "Calls of these jobs that no thread has started", stats.calls_waiting)
+    yield _gauge("reviews_waiting", "Reviews of typed formulas among these calls", stats.limited_calls_waiting)
     ended = CounterMetricFamily(f"{NAMESPACE}_jobs_ended", "Ended jobs by outcome", labels=["how"])
     for outcome in ("done", "failed", "cancelled"):
         ended.add_metric([outcome], getattr(stats, outcome))

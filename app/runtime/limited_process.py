@@ -13,8 +13,12 @@ from contextlib import suppress
 from functools import partial
 from math import ceil
 from queue import PriorityQueue
+from typing import NamedTuple
 
+import psutil
 from loky import ProcessPoolExecutor
+
+from engine.foundations.execution import lower_priority
 
 REVIEW_SECONDS = 5
 """Limit of the processor time of a review of a formula, in seconds."""
@@ -46,6 +50,27 @@ class LimitError(ValueError):
     """A call needs more time or memory than is allowed."""
 
 
+class CallTotals(NamedTuple):
+    """The calls that one or more limited processes have made so far, and the present memory.
+
+    Attributes
+    ----------
+    answered
+        Number of calls that have returned a result.
+    stopped
+        Number of calls that have exceeded a limit.
+    seconds
+        Processor time of these calls, in seconds.
+    resident_bytes
+        Resident memory of the processes.
+    """
+
+    answered: int = 0
+    stopped: int = 0
+    seconds: float = 0.0
+    resident_bytes: int = 0
+
+
 class LimitedProcess:
     """Makes calls in a process, one at a time. The process starts with the first call, and again after it has ended.
 
@@ -65,10 +90,6 @@ class LimitedProcess:
 
     Attributes
     ----------
-    stopped_calls
-        Number of calls that exceeded a limit.
-    computed_seconds
-        Processor time of the ended calls, in seconds.
     has_started
         Whether the process has answered a call.
     """
@@ -84,8 +105,8 @@ class LimitedProcess:
         self._lock = threading.Lock()
         self._executor: ProcessPoolExecutor | None = None
         self._is_closed = False
-        self.stopped_calls = 0
-        self.computed_seconds = 0.0
+        self._process_id: int | None = None
+        self._totals = CallTotals()
         self.has_started = False
 
     def __call__[Result](self, function: Callable[[], Result], cancel: threading.Event | None = None) -> Result:
@@ -109,11 +130,24 @@ class LimitedProcess:
             try:
                 cancel = cancel or threading.Event()
                 self._wait_for_start(cancel)
-                return self._call(function, cancel)
+                result, seconds = self._call(function, cancel)
             except LimitError:
-                self.stopped_calls += 1
-                self.computed_seconds += self._seconds
+                self._count(stopped=1, seconds=self._seconds)
                 raise
+            self._count(answered=1, seconds=seconds)
+            return result
+
+    def _count(self, *, answered: int = 0, stopped: int = 0, seconds: float) -> None:
+        totals = self._totals
+        self._totals = CallTotals(totals.answered + answered, totals.stopped + stopped, totals.seconds + seconds)
+
+    @property
+    def totals(self) -> CallTotals:
+        """The calls so far, and the present memory."""
+        resident_bytes = 0
+        with suppress(psutil.Error):
+            resident_bytes = psutil.Process(self._process_id).memory_info().rss if self._process_id is not None else 0
+        return self._totals._replace(resident_bytes=resident_bytes)
 
     def start(self) -> None:
         """Start the process, unless it runs, and do not wait for it."""
@@ -130,7 +164,7 @@ class LimitedProcess:
         self._end()
 
     def _end(self) -> None:
-        executor, self._executor, self.has_started = self._executor, None, False
+        executor, self._executor, self._process_id, self.has_started = self._executor, None, None, False
         if executor is not None:
             executor.shutdown(wait=False, kill_workers=True)
 
@@ -149,17 +183,17 @@ class LimitedProcess:
         """Wait until the process has started. Start the process if it does not run."""
         try:
             # This call takes no time, so its result shows that the process has started.
-            self._wait(self._submit(os.getpid), cancel, self._longest_wait)
+            self._process_id = self._wait(self._submit(os.getpid), cancel, self._longest_wait)
             self.has_started = True
         except (BrokenExecutor, FutureTimeoutError, MemoryError):
             self._end()
             raise LimitError(f"{self._task} could not begin: the machine is busy or short of memory; try again later") from None
 
-    def _call[Result](self, function: Callable[[], Result], cancel: threading.Event) -> Result:
-        """Return the result of a function. Replace a process that exceeds a limit or whose call is cancelled."""
+    def _call[Result](self, function: Callable[[], Result], cancel: threading.Event) -> tuple[Result, float]:
+        """Return the result of a function and its processor time. Replace a process at a limit, or if its call is cancelled."""
         try:
             call = self._submit(partial(_call_limited, self._seconds, function))
-            result, seconds = self._wait(call, cancel, self._seconds + self._longest_wait)
+            return self._wait(call, cancel, self._seconds + self._longest_wait)
         except FutureTimeoutError:
             self._replace()
             raise LimitError(f"{self._task} takes too long while the machine is busy; try again later") from None
@@ -171,9 +205,6 @@ class LimitedProcess:
         except RecursionError:
             # The process survives.
             pass
-        else:
-            self.computed_seconds += seconds
-            return result
         raise LimitError(f"{self._task} needs more than {self._seconds} s or {self._memory // 2**20} MB; choose a simpler one")
 
     def _wait[Result](self, future: Future[Result], cancel: threading.Event, most_seconds: float) -> Result:
@@ -226,14 +257,9 @@ class LimitedProcesses:
         threading.Thread(target=process.start, name="start of a limited process", daemon=True).start()
 
     @property
-    def stopped_calls(self) -> int:
-        """Number of calls that exceeded a limit."""
-        return sum(process.stopped_calls for process in self._processes)
-
-    @property
-    def computed_seconds(self) -> float:
-        """Processor time of the ended calls, in seconds."""
-        return sum(process.computed_seconds for process in self._processes)
+    def totals(self) -> CallTotals:
+        """The calls of all processes so far, and their present memory."""
+        return CallTotals(*map(sum, zip(*(process.totals for process in self._processes), strict=True)))
 
     def close(self) -> None:
         """End the processes."""
@@ -256,6 +282,8 @@ def _call_limited[Result](seconds: int, function: Callable[[], Result]) -> tuple
 
 def _prepare_process(memory: int, server_id: int) -> None:
     """Limit the memory of the process, load what calls need, and watch the server."""
+    # Otherwise the process would have the priority of the thread that has started it. The server's event loop comes first.
+    lower_priority()
     threading.Thread(target=_end_with_server, args=(server_id,), daemon=True).start()
     # The first review needs this module. Import it before a visitor waits for it.
     importlib.import_module("engine.systems.review.potential_review")
@@ -273,8 +301,6 @@ def _limit_memory(additional_bytes: int) -> None:
     """Limit the address space of this process, except on Windows."""
     with suppress(ImportError):
         import resource
-
-        import psutil
 
         # Write no core file when the operating system ends the process.
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))

@@ -104,7 +104,7 @@ class ProcessState:
         return self._shares.setdefault(document, FairShare())
 
     def _processor_times(self) -> ProcessorTimes:
-        return processor_times(self.jobs.stats().processor_time, self.limited.computed_seconds + self.compiler.computed_seconds)
+        return processor_times(self.jobs.stats().processor_time)
 
     def pages(self) -> Mapping[str, float]:
         """Return the sum of the weights of each visitor's pages, see `app.runtime.capacity.page_weight`."""

@@ -51,13 +51,18 @@ if hasattr(os, "register_at_fork"):
 
 def create_thread_pool(threads: int) -> ThreadPoolExecutor:
     """Return a thread pool for kernels. Its threads have a lower priority than the other threads of this process."""
-    return ThreadPoolExecutor(threads, thread_name_prefix="orbits", initializer=_lower_priority)
+    return ThreadPoolExecutor(threads, thread_name_prefix="orbits", initializer=lower_priority)
 
 
-def _lower_priority() -> None:
-    """Raise the nice value of the calling thread, on Linux only; on other systems, a nice value applies to the whole process."""
+def lower_priority() -> None:
+    """Raise the nice value of the calling thread, on Linux only; on other systems, a nice value applies to the whole process.
+
+    Threads and processes that this thread starts later inherit the value.
+    """
     if sys.platform == "linux":
-        os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), _NICE_VALUE)
+        thread = threading.get_native_id()
+        # A program without privileges can only raise the value.
+        os.setpriority(os.PRIO_PROCESS, thread, max(os.getpriority(os.PRIO_PROCESS, thread), _NICE_VALUE))
 
 
 def count_workers(executor: Executor) -> int:

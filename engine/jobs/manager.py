@@ -185,6 +185,7 @@ class Jobs:
         return JobStats(
             in_flight=self.in_flight,
             calls_waiting=sum(each.pending_calls for each in (self._scheduler, self._compilations, self._limited_calls)),
+            limited_calls_waiting=self._limited_calls.pending_calls,
             done=self._ended["done"],
             failed=self._ended["failed"],
             cancelled=self._ended["cancelled"],

@@ -15,6 +15,8 @@ class JobStats:
         Running and queued jobs.
     calls_waiting
         Calls of these jobs that no thread has started; 0 if `Jobs` uses an executor of the caller.
+    limited_calls_waiting
+        Number of these calls that evaluate a visitor's text, see `Queue.LIMITED`.
     done, failed, cancelled
         Number of jobs that have ended, by outcome.
     cache_bytes, cache_limit
@@ -29,6 +31,7 @@ class JobStats:
 
     in_flight: int
     calls_waiting: int
+    limited_calls_waiting: int
     done: int
     failed: int
     cancelled: int

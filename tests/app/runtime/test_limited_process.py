@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 import threading
+import time
 from collections.abc import Iterator
 from concurrent.futures import CancelledError, ThreadPoolExecutor
 from functools import partial
@@ -15,7 +17,7 @@ import numpy as np
 import psutil
 import pytest
 
-from app.runtime.limited_process import LimitedProcess, LimitedProcesses, LimitError
+from app.runtime.limited_process import CallTotals, LimitedProcess, LimitedProcesses, LimitError
 from engine import System, parse_formula
 from engine.systems.formulas.formula_tokens import FormulaError
 from engine.systems.review.potential_review import review_system
@@ -52,10 +54,10 @@ def recurse() -> None:
 
 @pytest.mark.parametrize("function", [compute_forever, fill_memory, recurse])
 def test_a_call_beyond_a_limit_is_refused_and_the_next_one_is_answered(limited: LimitedProcess, function: object) -> None:
-    before = limited.stopped_calls
+    before = limited.totals.stopped
     with pytest.raises(LimitError, match=r"^reviewing this formula needs more than 1 s or 512 MB; "):
         limited(function)  # type: ignore[arg-type]
-    assert limited.stopped_calls == before + 1
+    assert limited.totals.stopped == before + 1
     assert limited(partial(divmod, 7, 2)) == (3, 1)
 
 
@@ -81,7 +83,7 @@ def test_a_call_that_nobody_waits_for_ends_before_its_limit() -> None:
     abandoned.set()
     with pytest.raises(CancelledError):
         process(compute_forever, abandoned)
-    assert process.stopped_calls == 0
+    assert process.totals.stopped == 0
     assert process(partial(divmod, 7, 2)) == (3, 1)
     process.close()
 
@@ -100,6 +102,30 @@ def test_a_call_that_ends_its_process_is_followed_by_another_process_before_the_
         limited(partial(os._exit, 1))
     [begun] = {child.pid for child in psutil.Process().children()} - before
     assert limited(os.getpid) == begun
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="on other systems priorities are not changed")
+def test_a_process_has_a_lower_priority_than_the_server(limited: LimitedProcess) -> None:
+    assert limited(partial(os.getpriority, os.PRIO_PROCESS, 0)) > os.getpriority(os.PRIO_PROCESS, 0)
+
+
+def compute_for(seconds: float) -> None:
+    end = time.process_time() + seconds
+    while time.process_time() < end:
+        pass
+
+
+def test_calls_their_time_and_the_memory_of_all_processes_are_counted() -> None:
+    processes, smallest_process = LimitedProcesses(2), 2**24
+    assert processes.totals == CallTotals()
+    processes(partial(compute_for, 0.1))
+    processes(partial(compute_for, 0.2))
+    totals = processes.totals
+    assert (totals.answered, totals.stopped) == (2, 0)
+    assert totals.seconds == pytest.approx(0.3, abs=0.1)
+    assert totals.resident_bytes > smallest_process
+    processes.close()
+    assert processes.totals.resident_bytes == 0
 
 
 def test_a_process_that_cannot_begin_is_reported_as_such() -> None:
@@ -122,10 +148,10 @@ def test_a_call_does_not_wait_for_a_call_in_another_process(tmp_path: Path) -> N
 
 
 def test_errors_of_the_function_are_raised(limited: LimitedProcess) -> None:
-    before = limited.stopped_calls
+    before = limited.totals.stopped
     with pytest.raises(FormulaError, match="character 4: ") as caught:
         limited(partial(parse_formula, "x +"))
-    assert (caught.value.position, limited.stopped_calls) == (3, before)
+    assert (caught.value.position, limited.totals.stopped) == (3, before)
 
 
 def test_the_review_of_a_formula_is_the_same_in_this_process(limited: LimitedProcess) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from functools import partial
 
 from app.runtime.health import StateCollector
 from app.runtime.metrics import LogRecordCounter
@@ -45,3 +46,16 @@ def test_gauges_show_the_current_state() -> None:
     assert read("escape_explorer_crowded") == 0
     state.kernels_ready.set()
     assert read("escape_explorer_kernels_ready") == read("escape_explorer_ready") == 1
+
+
+def test_reviews_and_compilations_have_metrics() -> None:
+    state = ProcessState(Settings())
+    state.metrics.registry.register(StateCollector(state))
+    assert state.limited(partial(divmod, 7, 2)) == (3, 1)
+    read = partial(state.metrics.registry.get_sample_value, labels={"task": "review"})
+    assert read("escape_explorer_limited_calls_total", labels={"task": "review", "how": "answered"}) == 1
+    assert read("escape_explorer_limited_calls_total", labels={"task": "compilation", "how": "answered"}) == 0
+    assert read("escape_explorer_limited_seconds_total") is not None
+    assert (read("escape_explorer_limited_memory_bytes") or 0) > 0
+    assert state.metrics.registry.get_sample_value("escape_explorer_reviews_waiting") == 0
+    state.limited.close()

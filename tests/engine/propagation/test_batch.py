@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 
 import numpy as np
 import pytest
@@ -50,3 +51,13 @@ def test_compute_threads_have_lower_priority() -> None:
     with create_thread_pool(1) as pool:
         assert pool.submit(os.sched_getscheduler, 0).result() == os.SCHED_OTHER
         assert pool.submit(os.getpriority, os.PRIO_PROCESS, 0).result() > os.getpriority(os.PRIO_PROCESS, 0)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="on other systems priorities are per process")
+def test_compute_threads_keep_the_priority_of_a_program_that_gives_way_to_all_others() -> None:
+    lowest = 19
+    with ThreadPoolExecutor(1, initializer=partial(os.setpriority, os.PRIO_PROCESS, 0, lowest)) as parent:
+        pool = parent.submit(create_thread_pool, 1).result()
+        # A pool starts its thread in the thread of the first call.
+        assert parent.submit(lambda: pool.submit(os.getpriority, os.PRIO_PROCESS, 0).result()).result() == lowest
+        pool.shutdown()
