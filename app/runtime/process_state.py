@@ -23,6 +23,13 @@ from app.runtime.visitors import visitor_of
 from engine.integrator.jit.compiled_operations import compiled_operations
 from engine.jobs.manager import Jobs
 
+ITERATIONS_BEFORE_TURN = 4
+"""Number of iterations of the event loop before the turn of a page.
+
+What becomes ready during a turn, such as a message of another page or a periodic callback of Tornado, is noticed after the next
+iteration, and takes two more iterations until it runs or waits for its own turn.
+"""
+
 _COMPILATION = "compiling the integrator of this potential"
 
 
@@ -95,8 +102,7 @@ class ProcessState:
         asyncio runs all ready callbacks in one iteration, so the pending work of many pages would delay everything else.
         """
         async with self._turns.setdefault(asyncio.get_running_loop(), asyncio.Lock()):
-            # In the next iteration, this task runs before messages and timers that have become ready in the present one.
-            for _ in range(2):
+            for _ in range(ITERATIONS_BEFORE_TURN):
                 await asyncio.sleep(0)
 
     def fair_share(self, document: Document) -> FairShare:

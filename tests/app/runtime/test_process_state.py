@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import socket
 from collections.abc import Callable
 
 from app.runtime.capacity import Capacity, ProcessorTimes
@@ -68,12 +69,17 @@ def test_pages_that_wait_at_once_have_their_turns_in_different_iterations_of_the
     run_on_new_loop(scenario)
 
 
-def test_what_became_ready_during_the_last_turn_of_a_page_runs_before_its_next_turn() -> None:
+def test_a_message_that_came_during_the_last_turn_of_a_page_is_read_before_its_next_turn() -> None:
     async def scenario() -> None:
-        state, ready = ProcessState(Settings()), asyncio.Event()
-        await state.next_turn()
-        asyncio.get_running_loop().call_later(0.0, ready.set)
-        await state.next_turn()
-        assert ready.is_set()
+        state, (own_end, other_end) = ProcessState(Settings()), socket.socketpair()
+        with other_end:
+            reader, writer = await asyncio.open_connection(sock=own_end)
+            message = asyncio.create_task(reader.read(1))
+            await state.next_turn()
+            other_end.send(b"m")
+            await state.next_turn()
+            assert message.done()
+            writer.close()
+            await writer.wait_closed()
 
     run_on_new_loop(scenario)
