@@ -19,6 +19,7 @@ from app.runtime.limited_process import COMPILATION_SECONDS, PROCESSES, LimitedP
 from app.runtime.loop_watch import LoadMonitor
 from app.runtime.metrics import ServerMetrics
 from app.runtime.settings import Settings, read_settings
+from app.runtime.visitor_turns import VisitorTurns
 from app.runtime.visitors import visitor_of
 from engine.integrator.jit.compiled_operations import compiled_operations
 from engine.jobs.manager import Jobs
@@ -46,7 +47,7 @@ class ProcessState:
     sockets
         Number of open WebSockets by network, see `app.runtime.visitors.network_of`.
     making_page
-        Lock that is held while a page is built.
+        The turns in which pages are built.
     jobs
         Background jobs of all sessions.
     limited
@@ -70,7 +71,7 @@ class ProcessState:
     settings: Settings = field(default_factory=Settings)
     sessions: Callable[[], Iterable[Any]] = tuple
     sockets: Counter[str] = field(default_factory=Counter, init=False)
-    making_page: asyncio.Lock = field(default_factory=asyncio.Lock, init=False)
+    making_page: VisitorTurns = field(default_factory=VisitorTurns, init=False)
     jobs: Jobs = field(init=False)
     limited: LimitedProcesses = field(default_factory=LimitedProcesses, init=False)
     compiler: LimitedProcess = field(default_factory=lambda: LimitedProcess(COMPILATION_SECONDS, task=_COMPILATION), init=False)
@@ -82,8 +83,8 @@ class ProcessState:
     stopping: threading.Event = field(default_factory=threading.Event, init=False)
     _is_crowded: bool = field(default=False, init=False)
     _shares: WeakKeyDictionary[Document, FairShare] = field(default_factory=WeakKeyDictionary, init=False)
-    # One lock for each event loop, held by the page that has the turn. A test process has several loops, one after another.
-    _turns: WeakKeyDictionary[asyncio.AbstractEventLoop, asyncio.Lock] = field(default_factory=WeakKeyDictionary, init=False)
+    # The turns of each event loop. A test process has several loops, one after another.
+    _turns: WeakKeyDictionary[asyncio.AbstractEventLoop, VisitorTurns] = field(default_factory=WeakKeyDictionary, init=False)
 
     def __post_init__(self) -> None:
         compiled_operations.limit = self.settings.compiled_operations
@@ -96,12 +97,17 @@ class ProcessState:
         )
         self.capacity = Capacity(self.settings.cores_per_page, self.settings.processes, self._processor_times)
 
-    async def next_turn(self) -> None:
+    async def next_turn(self, visitor: str) -> None:
         """Wait for an iteration of the event loop in which no other page has the turn.
 
         asyncio runs all ready callbacks in one iteration, so the pending work of many pages would delay everything else.
+
+        Parameters
+        ----------
+        visitor
+            The network of the visitor, see `app.runtime.visitors.network_of`. Visitors take turns.
         """
-        async with self._turns.setdefault(asyncio.get_running_loop(), asyncio.Lock()):
+        async with self._turns.setdefault(asyncio.get_running_loop(), VisitorTurns()).turn(visitor):
             for _ in range(ITERATIONS_BEFORE_TURN):
                 await asyncio.sleep(0)
 

@@ -23,6 +23,7 @@ from panel.io.state import set_curdoc
 
 from app.runtime.fair_share import FairShare
 from app.runtime.process_state import process_state
+from app.runtime.visitors import visitor_of
 
 log = logging.getLogger(__name__)
 
@@ -44,7 +45,8 @@ class SessionCallbacks:
 
     def __init__(self, document: Document, loop: asyncio.AbstractEventLoop | None = None) -> None:
         self._document = weakref.ref(document)
-        self._next_turn, self._share = process_state().next_turn, process_state().fair_share(document)
+        self._next_turn = partial(process_state().next_turn, visitor_of(document))
+        self._share = process_state().fair_share(document)
         self._loop = (loop or asyncio.get_running_loop()) if document.session_context is not None else None
 
     def every(self, function: Callable[..., Any]) -> Callable[..., Any]:

@@ -20,6 +20,7 @@ from panel.io.state import set_curdoc
 from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
 from app.runtime.process_state import process_state
+from app.runtime.visitors import network_of
 from app.server.admission import check_session, count_socket, forget_socket
 from app.server.browser_rules import RefusedMessageError
 from app.server.message_guard import LARGEST_FRAGMENT, MessageGuard, UnacceptableConnectionError
@@ -130,7 +131,7 @@ class PageWebSocket(SecurityHeaders, WSHandler):
         """Pass a message on after its last part, log a refused message, or close the connection."""
         # The check of a message depends on the document, which may change while the page waits for its turn.
         if self._guard.is_next_part_last:
-            await process_state().next_turn()
+            await process_state().next_turn(network_of(str(self.request.remote_ip)))
         session = self._open_session()
         if self._closed or session is None:
             return

@@ -24,6 +24,7 @@ from tornado.web import Finish, HTTPError, RedirectHandler, StaticFileHandler
 
 from app.browser.module_files import ROUTES as MODULE_ROUTES
 from app.runtime.process_state import process_state
+from app.runtime.visitors import network_of
 from app.server.admission import RETRIED_STATUSES, RETRY_SECONDS, refusal_page
 from app.server.compressed_files import CompressedFiles
 from app.server.endpoints import ROUTES as ENDPOINT_ROUTES
@@ -110,14 +111,15 @@ class PageHandler(SecurityHeaders, DocHandler):
 
     async def get_session(self) -> Any:
         """Create a session with a new token, unless the server is full when this page's turn comes."""
-        async with process_state().making_page:
+        visitor = network_of(str(self.request.remote_ip))
+        async with process_state().making_page.turn(visitor):
             if self._visitor_has_left:
                 raise Finish
             # The hook of `app_hooks` raises an HTTPError if the server is full.
             payload = self.application_context.application.process_request(self.request)
             use_token(self.request, issue_token(self.application, self.request, payload))
             session = await super().get_session()
-            await process_state().next_turn()
+            await process_state().next_turn(visitor)
             return session
 
     def on_connection_close(self) -> None:

@@ -148,8 +148,8 @@ class Jobs:
             Identifies the client for fair scheduling: clients are served in turn, and the first frame of every map comes before
             the second frame of any map.
         account
-            The account that is charged for the code that the job compiles. Limited calls and compilations take turns by account.
-            Without an account, nothing is charged, and these calls take turns by client.
+            The account that is charged for the code that the job compiles. Accounts are served in turn, and the clients of an
+            account in turn within it. Without an account, nothing is charged, and the client has its own turn.
 
         Returns
         -------
@@ -274,15 +274,16 @@ class Jobs:
 
     def _create_executors(self, run: _Run) -> Mapping[Queue, QueueExecutor]:
         """Return an executor for each `Queue`."""
-        # One limited call or compilation may occupy a thread for seconds, so all clients of an account share a turn.
-        turn = run.client if run.account is None else run.account
-        short_calls = self._scheduler.executor(run.client, run.priority)
+        account = run.client if run.account is None else run.account
+        client = (account, run.client)
+        short_calls = self._scheduler.executor(client, run.priority)
         return {
             Queue.FIRST_FRAME: short_calls,
             Queue.BACKGROUND: short_calls,
-            Queue.LONG_CALL: self._scheduler.executor(run.client, lambda: Priority.LONG_CALL),
-            Queue.LIMITED: self._limited_calls.executor(turn, lambda: Priority.BACKGROUND),
-            Queue.COMPILATION: self._compilations.executor(turn, lambda: Priority.LONG_CALL),
+            Queue.LONG_CALL: self._scheduler.executor(client, lambda: Priority.LONG_CALL),
+            # One of these calls may occupy a thread for seconds, so all clients of an account share a turn.
+            Queue.LIMITED: self._limited_calls.executor((account,), lambda: Priority.BACKGROUND),
+            Queue.COMPILATION: self._compilations.executor((account,), lambda: Priority.LONG_CALL),
         }
 
     def _finish(self, run: _Run, result: Any, error: Exception | None) -> list[Subscription]:

@@ -1,4 +1,8 @@
-"""Fair scheduling of the calls of many clients on one thread pool: by priority, and then by the time since the last turn."""
+"""Fair scheduling of the calls of many clients on one thread pool: by priority, and then by the time since the last turn.
+
+Clients form groups that take turns, and the clients of a group take turns within it: all pages of one visitor get as much as one
+page of another visitor.
+"""
 
 from __future__ import annotations
 
@@ -20,8 +24,11 @@ from engine.foundations.execution import count_workers, default_executor
 # Pause after a long call while background calls are paused, in units of its duration: a duty cycle of 10 %.
 _PAUSE_PER_LONG_CALL = 9.0
 
-# Number of clients whose last turns are remembered.
+# Number of groups and clients whose last turns are remembered.
 _KNOWN_CLIENTS = 1000
+
+Client = tuple[Hashable, ...]
+"""The groups of a client, the largest first, and the client itself."""
 
 
 class Clock(Protocol):
@@ -75,9 +82,9 @@ class _Call(NamedTuple):
 
 
 class FairScheduler:
-    """Chooses the next call when a thread is free: by priority, then by the time since the last turn of its client.
+    """Chooses the next call when a thread is free: by priority, then by the times since the last turns of its group and client.
 
-    Clients with many calls are thus served in turn, and a client without recent calls is served before them.
+    Groups and clients with many calls are thus served in turn, and those without recent calls are served before them.
 
     Parameters
     ----------
@@ -105,28 +112,28 @@ class FairScheduler:
         self.threads = count_workers(self._pool)
         self._lock = threading.Lock()
         # Queues of calls by client, then by executor, oldest first. Clients without pending calls are removed.
-        self._pending: dict[Hashable, dict[QueueExecutor, deque[_Call]]] = {}
+        self._pending: dict[Client, dict[QueueExecutor, deque[_Call]]] = {}
         self._turns = 0
-        # Numbers of the last turns of the clients, from 1.
-        self._last_turns: LRUCache[Hashable, int] = LRUCache(_KNOWN_CLIENTS)
+        # Numbers of the last turns of groups and clients, from 1.
+        self._last_turns: LRUCache[Client, int] = LRUCache(_KNOWN_CLIENTS)
         self._cancelled: WeakSet[QueueExecutor] = WeakSet()
         # Number of threads that run calls.
         self._active_threads = 0
         self._running_by_priority: Counter[Priority] = Counter()
-        self._running_by_client: Counter[Hashable] = Counter()
+        self._running_by_client: Counter[Client] = Counter()
         self._background_paused = False
         self.first_frames_preferred = False
         self.processor_time = 0.0
         # Earliest start of the next long call while background calls are paused, on the monotonic clock.
         self._next_long_call = 0.0
 
-    def executor(self, client: Hashable, priority: Callable[[], Priority]) -> QueueExecutor:
+    def executor(self, client: Client, priority: Callable[[], Priority]) -> QueueExecutor:
         """Return a new executor for one job.
 
         Parameters
         ----------
         client
-            The client of the job. All jobs of one client share its turn.
+            The client of the job, with its groups. All jobs of one client share its turn.
         priority
             Returns the present priority of the calls. It is called whenever a thread is free.
         """
@@ -200,7 +207,7 @@ class FairScheduler:
             duration, processor_time = self._clock.monotonic() - start, self._clock.thread_time() - start_processor_time
             self._end_call(call.executor.client, priority, duration, processor_time)
 
-    def _end_call(self, client: Hashable, priority: Priority, duration: float, processor_time: float) -> None:
+    def _end_call(self, client: Client, priority: Priority, duration: float, processor_time: float) -> None:
         """Record that a call has ended, with its times in seconds."""
         with self._lock:
             self._running_by_priority[priority] -= 1
@@ -228,20 +235,20 @@ class FairScheduler:
             if not queues[executor]:
                 del queues[executor]
             self._turns += 1
-            self._last_turns[executor.client] = self._turns
+            self._last_turns.update(dict.fromkeys(_groups(executor.client), self._turns))
             self._forget_if_empty(executor.client)
             return call, priority
 
     def _find_next(self) -> tuple[QueueExecutor, Priority] | None:
         """Return the executor of the next call that may start, and its priority; None if there is no such call."""
         allowed = [client for client in self._pending if not (self._one_call_per_client and self._running_by_client[client])]
-        allowed.sort(key=lambda client: self._last_turns.get(client, 0))
+        allowed.sort(key=lambda client: [self._last_turns.get(group, 0) for group in _groups(client)])
         candidates = [(executor, executor.priority()) for client in allowed for executor in self._pending[client]]
         startable = [candidate for candidate in candidates if self._may_start(candidate[1])]
         # The first of equal minima, which belongs to the client whose last turn is longest ago.
         return min(startable, key=lambda candidate: candidate[1], default=None)
 
-    def _forget_if_empty(self, client: Hashable) -> None:
+    def _forget_if_empty(self, client: Client) -> None:
         """Remove a client without pending calls."""
         if client in self._pending and not self._pending[client]:
             del self._pending[client]
@@ -263,10 +270,15 @@ class FairScheduler:
         return running_long_calls < most_threads
 
 
+def _groups(client: Client) -> list[Client]:
+    """Return the groups of a client, the largest first, and the client with all its groups."""
+    return [client[:length] for length in range(1, len(client) + 1)]
+
+
 class QueueExecutor(Executor):
     """Executor whose calls are queued in a `FairScheduler`."""
 
-    def __init__(self, scheduler: FairScheduler, client: Hashable, priority: Callable[[], Priority]) -> None:
+    def __init__(self, scheduler: FairScheduler, client: Client, priority: Callable[[], Priority]) -> None:
         self._scheduler = scheduler
         self.client = client
         self.priority = priority

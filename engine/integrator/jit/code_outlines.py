@@ -5,11 +5,15 @@ from __future__ import annotations
 import hashlib
 import pickle
 from functools import partial
+from pathlib import Path
 
 from engine.foundations.cache_files import SUFFIX, cache_folder, read_or_make
 from engine.integrator.jit.compiling_process import call_compiler
-from engine.integrator.jit.disk_cache import program_digest
+from engine.integrator.jit.disk_cache import hash_package, program_digest
 from engine.integrator.source.recurrence import CodeOutline, Structure, outline_code
+
+# The package with the classes of which structures consist.
+_EXPRESSIONS = Path(__file__).parents[2] / "expressions"
 
 
 def find_outline(structure: Structure) -> CodeOutline:
@@ -20,7 +24,8 @@ def find_outline(structure: Structure) -> CodeOutline:
     ValueError
         If another process generates the functions and cannot; the message has the reason.
     """
-    key = hashlib.sha256(repr((structure, program_digest())).encode()).hexdigest()[:24]
+    definition = repr((structure, program_digest(), hash_package(_EXPRESSIONS)))
+    key = hashlib.sha256(definition.encode()).hexdigest()[:24]
     make = partial(call_compiler, partial(_pickle_outline, structure))
     outline: CodeOutline = pickle.loads(read_or_make(cache_folder() / f"{__name__}.{key}{SUFFIX}", "outlines of kernels", make))
     return outline

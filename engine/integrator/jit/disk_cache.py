@@ -56,7 +56,7 @@ class KernelCache(_Cache):
     def __init__(self, function: Callable[..., Any]) -> None:
         self._module_name, self._function_name = function.__module__, function.__qualname__
         self._name = f"{self._module_name}.{self._function_name}"
-        self._source_hash = _hash_package(PACKAGE) + _hash_source(function.__code__.co_filename) + function.__code__.co_code.hex()
+        self._source_hash = hash_package(PACKAGE) + _hash_source(function.__code__.co_filename) + function.__code__.co_code.hex()
 
     @property
     def cache_path(self) -> str:
@@ -147,7 +147,7 @@ def _hash_source(file: str) -> str:
 
 
 @functools.cache
-def _hash_package(folder: Path) -> str:
+def hash_package(folder: Path) -> str:
     """Return the hashes of all source files in a package, because a kernel contains code and constants of other modules."""
     return "".join(_hash_source(str(path)) for path in sorted(folder.rglob("*.py")))
 
@@ -155,7 +155,7 @@ def _hash_package(folder: Path) -> str:
 @functools.cache
 def program_digest() -> str:
     """Return a hash of the sources of the kernels and of the versions of the compilers."""
-    return hashlib.sha256(repr((_hash_package(PACKAGE), _versions())).encode()).hexdigest()[:24]
+    return hashlib.sha256(repr((hash_package(PACKAGE), _versions())).encode()).hexdigest()[:24]
 
 
 @functools.cache

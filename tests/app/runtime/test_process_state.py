@@ -61,7 +61,7 @@ def test_pages_that_wait_at_once_have_their_turns_in_different_iterations_of_the
         state, iterations, pages = ProcessState(Settings()), Iterations(), 5
 
         async def take_turn() -> int:
-            await state.next_turn()
+            await state.next_turn("a visitor")
             return iterations.count
 
         assert len({*await asyncio.gather(*(take_turn() for _ in range(pages)))}) == pages
@@ -75,9 +75,9 @@ def test_a_message_that_came_during_the_last_turn_of_a_page_is_read_before_its_n
         with other_end:
             reader, writer = await asyncio.open_connection(sock=own_end)
             message = asyncio.create_task(reader.read(1))
-            await state.next_turn()
+            await state.next_turn("a visitor")
             other_end.send(b"m")
-            await state.next_turn()
+            await state.next_turn("a visitor")
             assert message.done()
             writer.close()
             await writer.wait_closed()

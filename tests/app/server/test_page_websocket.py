@@ -129,9 +129,9 @@ def test_a_value_that_becomes_illegal_while_its_message_waits_for_the_turn_is_re
     next_turn = state.next_turn
 
     async def scenario(channel: Channel, document: Document) -> None:
-        async def narrow_the_slider() -> None:
+        async def narrow_the_slider(visitor: str) -> None:
             await document.session_context.session.with_document_locked(setattr, slider_of(document), "end", 3)
-            await next_turn()
+            await next_turn(visitor)
 
         state.next_turn = narrow_the_slider
         await move_slider(channel, document)

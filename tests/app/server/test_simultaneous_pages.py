@@ -100,7 +100,7 @@ def test_no_page_is_made_for_a_visitor_who_has_left(start: Callable[..., Process
 
     async def scenario() -> None:
         async with serving(state, pages) as port:
-            async with state.making_page:
+            async with state.making_page.turn("a visitor"):
                 _, writer = await asyncio.open_connection("127.0.0.1", port)
                 writer.write(f"GET /app HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n\r\n".encode())
                 await asked.wait()

@@ -92,5 +92,5 @@ async def wait_for(watched: param.Parameterized, name: str, condition: Callable[
 async def run_callbacks(session: ServerSession) -> None:
     """Run the callbacks that wait for the session's lock, and the callbacks that those begin."""
     for _ in range(2):
-        await process_state().next_turn()
+        await process_state().next_turn("")
         await session.with_document_locked(lambda: None)

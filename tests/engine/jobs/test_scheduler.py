@@ -28,7 +28,7 @@ class Recorder:
         for _ in range(threads):
             blocker.submit(self.released.wait, SECONDS)
 
-    def executor(self, client: str, priority: Callable[[], Priority] = background) -> QueueExecutor:
+    def executor(self, *client: str, priority: Callable[[], Priority] = background) -> QueueExecutor:
         return self.scheduler.executor(client, priority)
 
     def submit(self, executor: QueueExecutor, *names: str) -> list[Future[None]]:
@@ -55,18 +55,26 @@ def test_clients_are_served_round_robin() -> None:
     assert recorder.run(*first, *second) == ["a1", "b1", "a2", "b2", "a3"]
 
 
+def test_the_clients_of_a_group_share_its_turns() -> None:
+    recorder = Recorder()
+    crowd = [recorder.executor("crowd", client) for client in "ab"]
+    calls = [*recorder.submit(crowd[0], "a1", "a2"), *recorder.submit(crowd[1], "b1", "b2")]
+    calls += recorder.submit(recorder.executor("alone", "c"), "c1", "c2")
+    assert recorder.run(*calls) == ["a1", "c1", "b1", "c2", "a2", "b2"]
+
+
 def test_priority_of_queued_calls_may_change() -> None:
     recorder, shown = Recorder(), threading.Event()
-    executor = recorder.executor("b", lambda: Priority.BACKGROUND if shown.is_set() else Priority.FIRST_FRAME)
+    executor = recorder.executor("b", priority=lambda: Priority.BACKGROUND if shown.is_set() else Priority.FIRST_FRAME)
     calls = [executor.submit(lambda: (recorder.order.append("b1"), shown.set())), *recorder.submit(executor, "b2")]
-    calls += recorder.submit(recorder.executor("a", first_frame), "a1", "a2")
+    calls += recorder.submit(recorder.executor("a", priority=first_frame), "a1", "a2")
     recorder.run(*calls)
     assert recorder.order == ["b1", "a1", "a2", "b2"]
 
 
 def test_long_calls_leave_one_thread_free() -> None:
     recorder, release = Recorder(threads=2), threading.Event()
-    long_calls = [recorder.executor(name, long_call).submit(release.wait, SECONDS) for name in "abc"]
+    long_calls = [recorder.executor(name, priority=long_call).submit(release.wait, SECONDS) for name in "abc"]
     short = recorder.submit(recorder.executor("d"), "d1")
     assert recorder.run(*short) == ["d1"]
     assert not any(call.done() for call in long_calls)
@@ -76,8 +84,8 @@ def test_long_calls_leave_one_thread_free() -> None:
 
 def test_a_client_with_one_call_at_a_time_leaves_the_other_threads_to_others() -> None:
     scheduler, release = FairScheduler(ThreadPoolExecutor(2), one_call_per_client=True), threading.Event()
-    hostile = [scheduler.executor("a", background).submit(release.wait, SECONDS) for _ in range(2)]
-    assert scheduler.executor("b", background).submit(divmod, 7, 2).result(SECONDS) == (3, 1)
+    hostile = [scheduler.executor(("a",), background).submit(release.wait, SECONDS) for _ in range(2)]
+    assert scheduler.executor(("b",), background).submit(divmod, 7, 2).result(SECONDS) == (3, 1)
     assert scheduler.pending_calls == 1
     release.set()
     assert not wait(hostile, SECONDS).not_done
@@ -121,10 +129,10 @@ def unsettled() -> Priority:
 
 def test_calls_run_in_the_order_of_their_priorities() -> None:
     recorder = Recorder()
-    others = recorder.submit(recorder.executor("b", unsettled), "b1")
+    others = recorder.submit(recorder.executor("b", priority=unsettled), "b1")
     background = recorder.submit(recorder.executor("c"), "c1")
-    orbits = recorder.submit(recorder.executor("d", long_call), "d1")
-    frames = recorder.submit(recorder.executor("e", first_frame), "e1", "e2")
+    orbits = recorder.submit(recorder.executor("d", priority=long_call), "d1")
+    frames = recorder.submit(recorder.executor("e", priority=first_frame), "e1", "e2")
     calls = (*others, *background, *orbits, *frames)
     assert recorder.run(*calls) == ["e1", "e2", "d1", "c1", "b1"]
 
@@ -134,8 +142,8 @@ def test_paused_background_calls_wait_and_others_run() -> None:
     recorder.scheduler.pause_background(True)
     background = recorder.submit(recorder.executor("a"), "a1", "a2")
     others = [
-        *recorder.submit(recorder.executor("b", first_frame), "b1"),
-        *recorder.submit(recorder.executor("c", long_call), "c1"),
+        *recorder.submit(recorder.executor("b", priority=first_frame), "b1"),
+        *recorder.submit(recorder.executor("c", priority=long_call), "c1"),
     ]
     recorder.released.set()
     assert not wait(others, SECONDS).not_done
@@ -148,9 +156,9 @@ def test_paused_background_calls_wait_and_others_run() -> None:
 def test_one_thread_is_kept_for_first_frames() -> None:
     recorder, ended = Recorder(threads=2), threading.Event()
     recorder.scheduler.prefer_first_frames(True)
-    first = recorder.executor("b", long_call).submit(ended.wait, SECONDS)
+    first = recorder.executor("b", priority=long_call).submit(ended.wait, SECONDS)
     others = recorder.submit(recorder.executor("a"), "a1")
-    assert recorder.run(*recorder.submit(recorder.executor("c", first_frame), "c1")) == ["c1"]
+    assert recorder.run(*recorder.submit(recorder.executor("c", priority=first_frame), "c1")) == ["c1"]
     recorder.scheduler.prefer_first_frames(False)
     assert not wait(others, SECONDS).not_done
     assert not first.done()
@@ -160,7 +168,7 @@ def test_one_thread_is_kept_for_first_frames() -> None:
 def test_unsettled_calls_wait_while_first_frames_are_preferred() -> None:
     recorder, settled = Recorder(), threading.Event()
     recorder.scheduler.prefer_first_frames(True)
-    executor = recorder.executor("a", lambda: Priority.BACKGROUND if settled.is_set() else Priority.UNSETTLED)
+    executor = recorder.executor("a", priority=lambda: Priority.BACKGROUND if settled.is_set() else Priority.UNSETTLED)
     unsettled = recorder.submit(executor, "a1")
     assert recorder.run(*recorder.submit(recorder.executor("b"), "b1")) == ["b1"]
     assert recorder.scheduler.pending_calls == len(unsettled)
@@ -172,7 +180,7 @@ def test_unsettled_calls_wait_while_first_frames_are_preferred() -> None:
 def test_a_single_thread_runs_all_calls_in_turn() -> None:
     recorder = Recorder()
     recorder.scheduler.prefer_first_frames(True)
-    calls = [*recorder.submit(recorder.executor("a"), "a1"), *recorder.submit(recorder.executor("b", first_frame), "b1")]
+    calls = [*recorder.submit(recorder.executor("a"), "a1"), *recorder.submit(recorder.executor("b", priority=first_frame), "b1")]
     assert recorder.run(*calls) == ["b1", "a1"]
 
 
@@ -186,7 +194,7 @@ def test_the_pool_has_no_more_tasks_than_threads() -> None:
 
     pool = CountingPool(2)
     scheduler, released = FairScheduler(pool), threading.Event()
-    executor = scheduler.executor("a", lambda: Priority.BACKGROUND)
+    executor = scheduler.executor(("a",), lambda: Priority.BACKGROUND)
     calls = [executor.submit(released.wait, SECONDS) for _ in range(100)]
     assert pool.submitted == 2
     released.set()

@@ -1,0 +1,67 @@
+"""Turns on the event loop: one page at a time does what takes long, and visitors take turns, however many pages they have."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import defaultdict, deque
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+
+from cachetools import LRUCache
+
+# Number of visitors whose last turns are remembered.
+_KNOWN_VISITORS = 1000
+
+
+class VisitorTurns:
+    """A lock of one event loop. Of the waiting visitors, the visitor whose last turn is longest ago gets the next turn."""
+
+    def __init__(self) -> None:
+        self._is_taken = False
+        self._waiting: defaultdict[str, deque[asyncio.Future[None]]] = defaultdict(deque)
+        # Numbers of the last turns of the visitors, from 1.
+        self._last_turns: LRUCache[str, int] = LRUCache(_KNOWN_VISITORS)
+        self._turns = 0
+
+    @asynccontextmanager
+    async def turn(self, visitor: str) -> AsyncIterator[None]:
+        """Wait for a turn of a visitor, which lasts as long as this context.
+
+        Parameters
+        ----------
+        visitor
+            The network of the visitor, see `app.runtime.visitors.network_of`.
+        """
+        await self._begin(visitor)
+        try:
+            yield
+        finally:
+            self._end()
+
+    async def _begin(self, visitor: str) -> None:
+        if self._is_taken:
+            turn = asyncio.get_running_loop().create_future()
+            self._waiting[visitor].append(turn)
+            try:
+                await turn
+            except asyncio.CancelledError:
+                # The turn may have been given to this task just before the task was cancelled.
+                if not turn.cancelled():
+                    self._end()
+                raise
+        self._is_taken = True
+        self._turns += 1
+        self._last_turns[visitor] = self._turns
+
+    def _end(self) -> None:
+        """Give the turn to the next visitor; if nobody waits, free it."""
+        self._is_taken = False
+        while self._waiting and not self._is_taken:
+            visitor = min(self._waiting, key=lambda each: self._last_turns.get(each, 0))
+            turn = self._waiting[visitor].popleft()
+            if not self._waiting[visitor]:
+                del self._waiting[visitor]
+            # A task that is cancelled while it waits cancels its future.
+            if not turn.done():
+                self._is_taken = True
+                turn.set_result(None)
