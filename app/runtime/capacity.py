@@ -59,7 +59,7 @@ class ProcessorTimes(NamedTuple):
     all_programs: float
     """Time of all programs on the processors that this process may use."""
     own: float
-    """Time of this process."""
+    """Time of this process, and of the helper processes that compute for it."""
     loop: float
     """Time of the event loop of this process."""
 
@@ -162,13 +162,15 @@ def page_weight(share: FairShare, *, connected: bool) -> float:
     return 1.0 if idle_seconds < ACTING_SECONDS else IDLE_WEIGHT
 
 
-def processor_times(low_priority_seconds: float) -> ProcessorTimes:
+def processor_times(low_priority_seconds: float, helper_seconds: float) -> ProcessorTimes:
     """Return the present processor times.
 
     Parameters
     ----------
     low_priority_seconds
         Processor time that this process has used with low priority, in seconds.
+    helper_seconds
+        Processor time that helper processes have used for this process, in seconds.
     """
     usable_indices = os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else None
     processors = [
@@ -177,7 +179,7 @@ def processor_times(low_priority_seconds: float) -> ProcessorTimes:
     return ProcessorTimes(
         now=time.monotonic(),
         all_programs=sum(_normal_priority_time(times) for times in processors),
-        own=time.process_time() - low_priority_seconds,
+        own=time.process_time() - low_priority_seconds + helper_seconds,
         loop=time.thread_time(),
     )
 

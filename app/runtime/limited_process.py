@@ -18,8 +18,6 @@ from typing import NamedTuple
 import psutil
 from loky import ProcessPoolExecutor
 
-from engine.foundations.execution import lower_priority
-
 REVIEW_SECONDS = 5
 """Limit of the processor time of a review of a formula, in seconds."""
 
@@ -282,8 +280,6 @@ def _call_limited[Result](seconds: int, function: Callable[[], Result]) -> tuple
 
 def _prepare_process(memory: int, server_id: int) -> None:
     """Limit the memory of the process, load what calls need, and watch the server."""
-    # Otherwise the process would have the priority of the thread that has started it. The server's event loop comes first.
-    lower_priority()
     threading.Thread(target=_end_with_server, args=(server_id,), daemon=True).start()
     # The first review needs this module. Import it before a visitor waits for it.
     importlib.import_module("engine.systems.review.potential_review")

@@ -116,7 +116,8 @@ class ProcessState:
         return self._shares.setdefault(document, FairShare())
 
     def _processor_times(self) -> ProcessorTimes:
-        return processor_times(self.jobs.stats().processor_time)
+        helper_seconds = self.limited.totals.seconds + self.compiler.totals.seconds
+        return processor_times(self.jobs.stats().processor_time, helper_seconds)
 
     def pages(self) -> Mapping[str, float]:
         """Return the sum of the weights of each visitor's pages, see `app.runtime.capacity.page_weight`."""

@@ -51,14 +51,11 @@ if hasattr(os, "register_at_fork"):
 
 def create_thread_pool(threads: int) -> ThreadPoolExecutor:
     """Return a thread pool for kernels. Its threads have a lower priority than the other threads of this process."""
-    return ThreadPoolExecutor(threads, thread_name_prefix="orbits", initializer=lower_priority)
+    return ThreadPoolExecutor(threads, thread_name_prefix="orbits", initializer=_lower_priority)
 
 
-def lower_priority() -> None:
-    """Raise the nice value of the calling thread, on Linux only; on other systems, a nice value applies to the whole process.
-
-    Threads and processes that this thread starts later inherit the value.
-    """
+def _lower_priority() -> None:
+    """Raise the nice value of the calling thread, on Linux only; on other systems, a nice value applies to the whole process."""
     if sys.platform == "linux":
         thread = threading.get_native_id()
         # A program without privileges can only raise the value.

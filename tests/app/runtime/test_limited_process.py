@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import signal
-import sys
 import threading
 import time
 from collections.abc import Iterator
@@ -102,11 +101,6 @@ def test_a_call_that_ends_its_process_is_followed_by_another_process_before_the_
         limited(partial(os._exit, 1))
     [begun] = {child.pid for child in psutil.Process().children()} - before
     assert limited(os.getpid) == begun
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="on other systems priorities are not changed")
-def test_a_process_has_a_lower_priority_than_the_server(limited: LimitedProcess) -> None:
-    assert limited(partial(os.getpriority, os.PRIO_PROCESS, 0)) > os.getpriority(os.PRIO_PROCESS, 0)
 
 
 def compute_for(seconds: float) -> None:
