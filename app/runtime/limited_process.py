@@ -58,7 +58,7 @@ class CallTotals(NamedTuple):
     stopped
         Number of calls that have exceeded a limit.
     seconds
-        Processor time of these calls, in seconds.
+        Processor time of these calls, in seconds. A stopped call counts with its limit.
     resident_bytes
         Resident memory of the processes.
     """
@@ -257,7 +257,13 @@ class LimitedProcesses:
     @property
     def totals(self) -> CallTotals:
         """The calls of all processes so far, and their present memory."""
-        return CallTotals(*map(sum, zip(*(process.totals for process in self._processes), strict=True)))
+        totals = [process.totals for process in self._processes]
+        return CallTotals(
+            answered=sum(each.answered for each in totals),
+            stopped=sum(each.stopped for each in totals),
+            seconds=sum(each.seconds for each in totals),
+            resident_bytes=sum(each.resident_bytes for each in totals),
+        )
 
     def close(self) -> None:
         """End the processes."""

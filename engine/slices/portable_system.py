@@ -126,7 +126,8 @@ def _polynomial_data(form: Any) -> dict[str, object] | None:
 def make_portable_system(potential: Potential, highest_energy: float) -> PortableSystem:
     """Return a potential as data, with exits for energies up to `highest_energy`, in units of the potential.
 
-    This takes up to a second for the first potential of a structure, or if exits are not cached.
+    This takes up to a second for the first potential of a structure, or if exits are not cached. Raises a ValueError if another
+    process compiles and cannot.
     """
     scaled_potential = potential.in_well_units
     definition, outline = scaled_potential.form.definition, find_outline(scaled_potential.well.structure)

@@ -156,8 +156,8 @@ class ParameterSliders(JSComponent):
     """Sliders of parameters, each with a box for its number.
 
     A number is final when the slider is released, when the slider or the box loses focus, or when Enter is pressed in the box.
-    For a number beyond an end of the slider, the thumb is at that end. One component shows all sliders: the page would take ten
-    times as long to add a component for each.
+    For a number beyond an end of the slider, the thumb is at that end. One component shows all sliders, because each component
+    that is added to the page takes about 10 ms of the event loop.
 
     Parameters
     ----------

@@ -23,8 +23,9 @@ export function render({model, el}) {
     const rows = model.rows
     const names = new Set(rows.map(row => row.name))
     for (const [name, row] of shown) {
-      if (!names.has(name)) row.element.remove()
-      if (!names.has(name)) shown.delete(name)
+      if (names.has(name)) continue
+      row.element.remove()
+      shown.delete(name)
     }
     rows.forEach((row, place) => {
       const made = shown.get(row.name) ?? new SliderRow(model, row)

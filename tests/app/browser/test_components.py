@@ -191,8 +191,8 @@ def test_each_slider_counts_its_own_numbers_and_goes_on_when_it_is_shown_again()
 
 def test_a_refused_number_is_counted_so_that_the_slider_shows_the_previous_number_again() -> None:
     sliders = make_sliders(lambda *_: None)
-    send(sliders, {"name": "epsilon", **given(11.0, 2)})
-    assert shown_numbers(sliders) == {"epsilon": (1.0, 2), "a": (0.5, 0)}
+    send(sliders, *({"name": "epsilon", **given(*numbers)} for numbers in ((1.13, 1), (11.0, 2))))
+    assert shown_numbers(sliders) == {"epsilon": (1.13, 2), "a": (0.5, 0)}
 
 
 def test_repeated_commands_differ() -> None:

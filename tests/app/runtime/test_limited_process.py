@@ -116,7 +116,7 @@ def test_calls_their_time_and_the_memory_of_all_processes_are_counted() -> None:
     processes(partial(compute_for, 0.2))
     totals = processes.totals
     assert (totals.answered, totals.stopped) == (2, 0)
-    assert totals.seconds == pytest.approx(0.3, abs=0.1)
+    assert 0.3 <= totals.seconds < 3.0
     assert totals.resident_bytes > smallest_process
     processes.close()
     assert processes.totals.resident_bytes == 0

@@ -12,7 +12,7 @@ from tests.waiting import SECONDS
 
 
 class Visits:
-    """Turns that are recorded. They last until `release`, and each lasts for at least one iteration of the loop."""
+    """Turns that are recorded. They last until `end` is called, and each lasts for at least one iteration of the loop."""
 
     def __init__(self) -> None:
         self.turns, self.order = VisitorTurns(), list[str]()
