@@ -52,6 +52,22 @@ def test_another_orbit_can_be_chosen_and_removed(explorer: ExplorerPage) -> None
     expect(explorer.text("Click a map")).to_be_visible()
 
 
+def test_the_inspector_is_hidden_while_there_are_no_orbits(explorer: ExplorerPage) -> None:
+    parts = [explorer.page.locator(f".{part}").first for part in PARTS]
+    explorer.click("basins", 0.1, 0.05)
+    for part in parts:
+        expect(part).to_be_visible()
+    explorer.press("Clear all")
+    for part in parts:
+        expect(part).to_be_hidden()
+    explorer.click("basins", 0.2, 0.1)
+    expect(explorer.text("Escaped through")).to_be_visible()
+    for part in parts:
+        expect(part).to_be_visible()
+    drawn = "name => Bokeh.documents[0].get_model_by_name(name).renderers.some(one => one.data_source.data.xs.length === 1)"
+    assert all(explorer.page.evaluate(drawn, name) for name in ("sali", "exponent", "r2"))
+
+
 def test_a_time_moves_along_path_sali_and_r2_together(explorer: ExplorerPage) -> None:
     explorer.click("basins", 0.1, 0.05)
     expect(explorer.text("Escaped through")).to_be_visible()

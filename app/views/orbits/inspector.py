@@ -31,15 +31,14 @@ class Inspector:
         self._controls, self._player = controls, player
         self._start_count = 0
         self._orbit_count = 0
-        self._head: list[pn.viewable.Viewable] = []
-        self._details: list[pn.viewable.Viewable] = []
+        self._texts: list[pn.viewable.Viewable] = []
         self._figure_panes: list[pn.viewable.Viewable] = []
+        self._boxes = controls.start_boxes()
         self._build_later = later(self._build_texts)
         self._figures_in_turns = InTurns([*plots.parts(), separation.build], self._add_figures, later)
-        self._boxes = controls.start_boxes()
-        self._grid = pn.Column(
-            controls.note, *self._boxes, sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=["inspector"]
-        )
+        self._grid = pn.Column(sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT)
+        self._arrange()
+        self._show_parts()
 
     def layout(self) -> pn.viewable.Viewable:
         """Return the inspector."""
@@ -48,25 +47,27 @@ class Inspector:
     def follow(self, start_count: int, orbit_count: int) -> None:
         """Show the panes that are needed for a number of starts, and for the orbits among them."""
         self._start_count, self._orbit_count = start_count, orbit_count
-        if start_count >= 1 and not self._head:
+        if start_count >= 1 and not self._texts:
             self._build_later()
         if orbit_count >= 1:
             self._figures_in_turns.begin()
-        self._arrange()
+        self._show_parts()
 
     def _build_texts(self) -> None:
-        if not self._head:
-            self._head, self._details = [self._controls.head(self._player)], self._controls.details()
+        if not self._texts:
+            self._texts = [self._controls.head(self._player), self._controls.details()]
             self._arrange()
+            self._show_parts()
 
     def _add_figures(self, figures: Sequence[pn.viewable.Viewable]) -> None:
         self._figure_panes += figures
         self._arrange()
 
     def _arrange(self) -> None:
-        has_starts = self._start_count >= 1
-        figures = self._figure_panes if self._orbit_count >= 1 else []
-        results = [*figures, *self._details] if has_starts else []
-        parts = [*(self._head if has_starts else []), self._controls.note, *results, *self._boxes]
-        if parts != self._grid.objects:
-            self._grid.objects = parts
+        self._grid.objects = [*self._texts[:1], self._controls.note, *self._figure_panes, *self._texts[1:], *self._boxes]
+
+    def _show_parts(self) -> None:
+        """Show or hide what is made. Figures stay in the document, because adding a figure takes up to a tenth of a second."""
+        for part in self._texts:
+            part.visible = self._start_count >= 1
+        self._grid.css_classes = ["inspector", *([] if self._orbit_count >= 1 else ["without-orbits"])]

@@ -89,9 +89,13 @@ class OrbitControls:
             sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT,
         )  # fmt: skip
 
-    def details(self) -> list[pn.viewable.Viewable]:
+    def details(self) -> pn.viewable.Viewable:
         """Return the interval of time in view, the verdicts of the chaos indicators, and values that open on demand."""
-        return [self._interval_row, self.indicators, *Fold("Values", lambda: [self.reason, self.values, self.copy]).parts()]
+        values = Fold("Values", lambda: [self.reason, self.values, self.copy])
+        styles = {**FULL_HEIGHT, "gap": "var(--ui-gap)"}
+        return pn.Column(
+            self._interval_row, self.indicators, *values.parts(), sizing_mode="stretch_width", margin=0, styles=styles
+        )
 
     def _follow_plane(self, plane: Slice) -> None:
         """Label the boxes with the axes of the plane."""
