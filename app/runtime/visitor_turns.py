@@ -7,10 +7,7 @@ from collections import defaultdict, deque
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
-from cachetools import LRUCache
-
-# Number of visitors whose last turns are remembered.
-_KNOWN_VISITORS = 1000
+from engine.jobs.last_turns import LastTurns
 
 
 class VisitorTurns:
@@ -19,9 +16,7 @@ class VisitorTurns:
     def __init__(self) -> None:
         self._is_taken = False
         self._waiting: defaultdict[str, deque[asyncio.Future[None]]] = defaultdict(deque)
-        # Numbers of the last turns of the visitors, from 1.
-        self._last_turns: LRUCache[str, int] = LRUCache(_KNOWN_VISITORS)
-        self._turns = 0
+        self._turns = LastTurns[str]()
 
     @asynccontextmanager
     async def turn(self, visitor: str) -> AsyncIterator[None]:
@@ -50,14 +45,13 @@ class VisitorTurns:
                     self._end()
                 raise
         self._is_taken = True
-        self._turns += 1
-        self._last_turns[visitor] = self._turns
+        self._turns.record([visitor])
 
     def _end(self) -> None:
         """Give the turn to the next visitor; if nobody waits, free it."""
         self._is_taken = False
         while self._waiting and not self._is_taken:
-            visitor = min(self._waiting, key=lambda each: self._last_turns.get(each, 0))
+            visitor = min(self._waiting, key=self._turns.last)
             turn = self._waiting[visitor].popleft()
             if not self._waiting[visitor]:
                 del self._waiting[visitor]

@@ -17,15 +17,11 @@ from functools import partial
 from typing import Any, NamedTuple, Protocol
 from weakref import WeakSet
 
-from cachetools import LRUCache
-
 from engine.foundations.execution import count_workers, default_executor
+from engine.jobs.last_turns import LastTurns
 
 # Pause after a long call while background calls are paused, in units of its duration: a duty cycle of 10 %.
 _PAUSE_PER_LONG_CALL = 9.0
-
-# Number of groups and clients whose last turns are remembered.
-_KNOWN_CLIENTS = 1000
 
 Client = tuple[Hashable, ...]
 """The groups of a client, the largest first, and the client itself."""
@@ -113,9 +109,7 @@ class FairScheduler:
         self._lock = threading.Lock()
         # Queues of calls by client, then by executor, oldest first. Clients without pending calls are removed.
         self._pending: dict[Client, dict[QueueExecutor, deque[_Call]]] = {}
-        self._turns = 0
-        # Numbers of the last turns of groups and clients, from 1.
-        self._last_turns: LRUCache[Client, int] = LRUCache(_KNOWN_CLIENTS)
+        self._turns = LastTurns[Client]()
         self._cancelled: WeakSet[QueueExecutor] = WeakSet()
         # Number of threads that run calls.
         self._active_threads = 0
@@ -234,15 +228,14 @@ class FairScheduler:
             call = queues[executor].popleft()
             if not queues[executor]:
                 del queues[executor]
-            self._turns += 1
-            self._last_turns.update(dict.fromkeys(_groups(executor.client), self._turns))
+            self._turns.record(_groups(executor.client))
             self._forget_if_empty(executor.client)
             return call, priority
 
     def _find_next(self) -> tuple[QueueExecutor, Priority] | None:
         """Return the executor of the next call that may start, and its priority; None if there is no such call."""
         allowed = [client for client in self._pending if not (self._one_call_per_client and self._running_by_client[client])]
-        allowed.sort(key=lambda client: [self._last_turns.get(group, 0) for group in _groups(client)])
+        allowed.sort(key=lambda client: [self._turns.last(group) for group in _groups(client)])
         candidates = [(executor, executor.priority()) for client in allowed for executor in self._pending[client]]
         startable = [candidate for candidate in candidates if self._may_start(candidate[1])]
         # The first of equal minima, which belongs to the client whose last turn is longest ago.
