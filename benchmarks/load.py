@@ -129,12 +129,17 @@ class Server:
 
     def error_lines(self) -> list[str]:
         """Return the lines of the log with errors, and the last line of each traceback."""
-        found, in_traceback = list[str](), False
+        found, indent = list[str](), None
         for line in self.log_lines():
-            # Frames of a traceback are indented, and the error follows them.
-            if _ERROR_LINE.search(line) or (in_traceback and not line.startswith(" ")):
-                found.append(line)
-            in_traceback = "Traceback" in line or (in_traceback and line.startswith(" "))
+            depth = len(line) - len(line.lstrip())
+            # Frames are indented further than the beginning of their traceback, and the error follows them.
+            is_error = indent is not None and depth <= indent
+            if is_error or _ERROR_LINE.search(line):
+                found.append(line.strip())
+            if is_error:
+                indent = None
+            if "Traceback" in line:
+                indent = depth
         return found
 
     async def watch(self) -> None:

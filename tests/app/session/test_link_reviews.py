@@ -34,12 +34,9 @@ CIRCULAR = {"case": TYPED, "V": "r^2/2 - r^4 + r^6 - r^8 + r^10 - 1.0183r^12"}
 LEGAL = {"case": TYPED, "V": "½(x² + y²) − 0.83x²y²"}
 WITH_FUNCTIONS = {"case": TYPED, "V": "½(x² + y²) − a x²y exp(−0.017 y²)"}
 # Functions that compute slow quantities of a potential, or read them from the disk.
-SLOW = [
-    *(parse_formula, review_system, find_critical_points, stored_points),
-    *(leads_out_of_well, find_maxima_beside, find_outline),
-]
-# Functions that derive other formulas, texts and structures of code from a formula.
-DERIVING = [derivative, substitute, equations, potential_formula, find_structure]
+SLOW = [parse_formula, review_system, find_critical_points, stored_points, leads_out_of_well, find_maxima_beside]
+# Functions that derive other formulas, texts, and structures and outlines of code from a formula. Jobs call `find_outline`.
+DERIVING = [derivative, substitute, equations, potential_formula, find_structure, find_outline]
 STARTED, TOOL = sys.monitoring.events.PY_START, 4
 
 
