@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property
 from types import MappingProxyType
 from typing import Any
 
@@ -44,14 +45,35 @@ class ChartView:
         self, frame: Frame, text: str, described: Shape = Shape.POINTS, x_range: Range1d | None = None, **options: Any
     ) -> None:
         self.frame, self._text, self._described, self._options = frame, text, described, options
-        self.x_range = x_range or _first_range("x" in frame.logarithmic)
-        self.y_range = _first_range("y" in frame.logarithmic)
-        self.lines = ColumnDataSource({name: [] for name in _LINE_COLUMNS}, name=f"{frame.name}_lines")
-        self.points = ColumnDataSource({name: [] for name in _POINT_COLUMNS}, name=f"{frame.name}_points")
-        self._legend = TextPane(margin=(0, 10))
+        self._shared_x_range = x_range
         self._labels = frame.labels
         self.plot: figure | None = None
         self.view = pn.Column(margin=0, sizing_mode="stretch_width", visible=False)
+
+    # The models are made when they are first used, because a page is opened without charts.
+    @cached_property
+    def x_range(self) -> Range1d:
+        """The range of x."""
+        return self._shared_x_range or _first_range("x" in self.frame.logarithmic)
+
+    @cached_property
+    def y_range(self) -> Range1d:
+        """The range of y."""
+        return _first_range("y" in self.frame.logarithmic)
+
+    @cached_property
+    def lines(self) -> ColumnDataSource:
+        """The lines of the chart."""
+        return ColumnDataSource({name: [] for name in _LINE_COLUMNS}, name=f"{self.frame.name}_lines")
+
+    @cached_property
+    def points(self) -> ColumnDataSource:
+        """The points of the chart, with error bars."""
+        return ColumnDataSource({name: [] for name in _POINT_COLUMNS}, name=f"{self.frame.name}_points")
+
+    @cached_property
+    def _legend(self) -> TextPane:
+        return TextPane(margin=(0, 10))
 
     def show(self, chart: Chart | None) -> None:
         """Show a chart; None hides the view."""
