@@ -10,6 +10,7 @@ import gc
 import logging
 import sys
 import threading
+import time
 from functools import partial
 from importlib import import_module
 from typing import Any
@@ -38,6 +39,10 @@ from app.state.system_review import review_catalogue_entry
 from engine import CASES
 from engine.integrator.jit.compiling_process import compile_in
 
+# Longest time that a thread keeps the interpreter lock while others wait for it, in seconds; 5 ms by default. A map takes the lock
+# for moments between its kernels, and each time would wait so long for a thread that makes a page.
+_SWITCH_SECONDS = 0.001
+
 # No process is forked yet. While Bokeh runs this file, only `sys.orig_argv` contains the whole command line.
 if asks_for_several_processes(sys.orig_argv):
     refuse_to_start(SEVERAL_PROCESSES)
@@ -48,6 +53,7 @@ HTTPServer.configure(LimitedHTTPServer)
 def on_server_loaded(server_context: Any) -> None:
     """Start the process state and everything that runs in the background."""
     reduce_fragmentation()
+    sys.setswitchinterval(_SWITCH_SECONDS)
     state, context = _start_state(), server_context.application_context
     state.sessions = lambda: context.sessions
     state.metrics.registry.register(StateCollector(state))
@@ -75,13 +81,15 @@ def on_server_unloaded(server_context: Any) -> None:
 
 
 def on_session_created(session_context: Any) -> None:
-    """Count a new session, and build its page.
+    """Count a new session, build its page, and charge the time to the visitor.
 
     Bokeh calls this hook on another thread, so the event loop serves other pages meanwhile. `main.py` would run on the loop.
     """
     process_state().metrics.sessions_created.inc()
-    loop = session_context.server_context.application_context.io_loop.asyncio_loop
-    import_module("app.session.page").build_page(session_context.document, loop)
+    loop, document = session_context.server_context.application_context.io_loop.asyncio_loop, session_context.document
+    page_time, begin = process_state().page_time(document), time.thread_time()
+    import_module("app.session.page").build_page(document, loop)
+    loop.call_soon_threadsafe(page_time.charge, time.thread_time() - begin)
 
 
 def on_session_destroyed(session_context: Any) -> None:

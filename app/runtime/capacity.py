@@ -15,7 +15,6 @@ from typing import Any, NamedTuple
 
 import psutil
 
-from app.runtime.fair_share import FairShare
 from engine.foundations.execution import count_cores
 
 FULL = 0.85
@@ -154,9 +153,16 @@ class Capacity:
         return min(max((self._usable_cores - other_cores) / self._processes, LEAST_CORES), MOST_CORES)
 
 
-def page_weight(share: FairShare, *, connected: bool) -> float:
-    """Return the weight of a page: 1 in use, `IDLE_WEIGHT` when idle, and 0 if the visitor has left."""
-    idle_seconds = share.idle_seconds()
+def page_weight(idle_seconds: float, *, connected: bool) -> float:
+    """Return the weight of a page: 1 in use, `IDLE_WEIGHT` when idle, and 0 if the visitor has left.
+
+    Parameters
+    ----------
+    idle_seconds
+        Time since the page last used the event loop, in seconds.
+    connected
+        Whether the page is connected.
+    """
     if not connected:
         return float(idle_seconds < CONNECTION_SECONDS)
     return 1.0 if idle_seconds < ACTING_SECONDS else IDLE_WEIGHT

@@ -9,12 +9,12 @@ from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
-from weakref import WeakKeyDictionary
+from weakref import WeakKeyDictionary, WeakValueDictionary
 
 from bokeh.document import Document
 
 from app.runtime.capacity import Capacity, ProcessorTimes, page_weight, processor_times
-from app.runtime.fair_share import FairShare
+from app.runtime.fair_share import FairShare, PageTime
 from app.runtime.limited_process import COMPILATION_SECONDS, PROCESSES, LimitedProcess, LimitedProcesses
 from app.runtime.loop_watch import LoadMonitor
 from app.runtime.metrics import ServerMetrics
@@ -82,7 +82,9 @@ class ProcessState:
     kernels_failed: threading.Event = field(default_factory=threading.Event, init=False)
     stopping: threading.Event = field(default_factory=threading.Event, init=False)
     _is_crowded: bool = field(default=False, init=False)
-    _shares: WeakKeyDictionary[Document, FairShare] = field(default_factory=WeakKeyDictionary, init=False)
+    # A visitor's share is kept while the visitor has a page.
+    _shares: WeakValueDictionary[str, FairShare] = field(default_factory=WeakValueDictionary, init=False)
+    _page_times: WeakKeyDictionary[Document, PageTime] = field(default_factory=WeakKeyDictionary, init=False)
     # The turns of each event loop. A test process has several loops, one after another.
     _turns: WeakKeyDictionary[asyncio.AbstractEventLoop, VisitorTurns] = field(default_factory=WeakKeyDictionary, init=False)
 
@@ -111,9 +113,19 @@ class ProcessState:
             for _ in range(ITERATIONS_BEFORE_TURN):
                 await asyncio.sleep(0)
 
-    def fair_share(self, document: Document) -> FairShare:
-        """Return the share of a page, given its document. All connections of the page use the same share."""
-        return self._shares.setdefault(document, FairShare())
+    def page_time(self, document: Document) -> PageTime:
+        """Return what charges the time of a page, given its document. All pages of a visitor have one share."""
+        share = self._shares.setdefault(visitor_of(document), FairShare())
+        return self._page_times.setdefault(document, PageTime(share))
+
+    def delay(self, visitor: str) -> float:
+        """Return how long the next message or page of a visitor must wait, in seconds; 0 if no other visitor has a page."""
+        share = self._shares.get(visitor)
+        seconds = share.wait_seconds() if share is not None else 0.0
+        return seconds if seconds and self._has_other_visitors(visitor) else 0.0
+
+    def _has_other_visitors(self, visitor: str) -> bool:
+        return any(session.connection_count and visitor_of(session.document) != visitor for session in self.sessions())
 
     def _processor_times(self) -> ProcessorTimes:
         helper_seconds = self.limited.totals.seconds + self.compiler.totals.seconds
@@ -123,8 +135,8 @@ class ProcessState:
         """Return the sum of the weights of each visitor's pages, see `app.runtime.capacity.page_weight`."""
         pages: dict[str, float] = defaultdict(float)
         for session in self.sessions():
-            share = self.fair_share(session.document)
-            pages[visitor_of(session.document)] += page_weight(share, connected=session.connection_count > 0)
+            idle_seconds = self.page_time(session.document).idle_seconds()
+            pages[visitor_of(session.document)] += page_weight(idle_seconds, connected=session.connection_count > 0)
         return pages
 
     def adapt_to_load(self) -> None:

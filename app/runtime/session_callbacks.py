@@ -21,7 +21,7 @@ from bokeh.application.application import SessionContext
 from bokeh.document import Document
 from panel.io.state import set_curdoc
 
-from app.runtime.fair_share import FairShare
+from app.runtime.fair_share import PageTime
 from app.runtime.process_state import process_state
 from app.runtime.visitors import visitor_of
 
@@ -46,7 +46,7 @@ class SessionCallbacks:
     def __init__(self, document: Document, loop: asyncio.AbstractEventLoop | None = None) -> None:
         self._document = weakref.ref(document)
         self._next_turn = partial(process_state().next_turn, visitor_of(document))
-        self._share = process_state().fair_share(document)
+        self._page_time = process_state().page_time(document)
         self._loop = (loop or asyncio.get_running_loop()) if document.session_context is not None else None
 
     def every(self, function: Callable[..., Any]) -> Callable[..., Any]:
@@ -60,7 +60,7 @@ class SessionCallbacks:
     def _wrap(self, function: Callable[..., Any], most_waiting: int | None) -> Callable[..., Any]:
         if self._loop is None:
             return function
-        return _LockedCallback(self._loop, self._document, self._next_turn, self._share, function, most_waiting)
+        return _LockedCallback(self._loop, self._document, self._next_turn, self._page_time, function, most_waiting)
 
 
 class _LockedCallback:
@@ -71,12 +71,12 @@ class _LockedCallback:
         loop: asyncio.AbstractEventLoop,
         document: weakref.ref[Document],
         next_turn: Callable[[], Awaitable[None]],
-        share: FairShare,
+        page_time: PageTime,
         function: Callable[..., Any],
         most_waiting: int | None,
     ) -> None:
         self._loop, self._document, self._function = loop, document, function
-        self._next_turn, self._share = next_turn, share
+        self._next_turn, self._page_time = next_turn, page_time
         self._calls: deque[Callable[[], Any]] = deque(maxlen=most_waiting)
         self._task: asyncio.Task[None] | None = None
 
@@ -97,7 +97,7 @@ class _LockedCallback:
             if context is None:
                 return
             try:
-                await self._share.charge_for(context.with_locked_document(self._run_one))
+                await self._page_time.charge_for(context.with_locked_document(self._run_one))
             except Exception:
                 # Later changes could not be sent either.
                 log.exception("the changes of a callback could not be sent")

@@ -20,7 +20,7 @@ from panel.io.state import set_curdoc
 from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
 from app.runtime.process_state import process_state
-from app.runtime.visitors import network_of
+from app.runtime.visitors import network_of, visitor_of
 from app.server.admission import check_session, count_socket, forget_socket
 from app.server.browser_rules import RefusedMessageError
 from app.server.message_guard import LARGEST_FRAGMENT, MessageGuard, UnacceptableConnectionError
@@ -28,7 +28,7 @@ from app.server.security_headers import SecurityHeaders
 from app.server.session_tokens import has_signed_token
 from app.views.components.notice import PASSING_SECONDS, show_passing_notice
 
-DELAYED_NOTICE = "This page keeps the server busy: what you do next is delayed, so that others are served too."
+DELAYED_NOTICE = "Your pages keep the server busy: what you do next is delayed, so that others are served too."
 
 # Close code of a WebSocket (RFC 6455, 7.4.1).
 _POLICY_VIOLATION = 1008
@@ -44,7 +44,7 @@ class PageWebSocket(SecurityHeaders, WSHandler):
     4.2.3.2 and 4.2.3.4).
 
     Messages that no page sends are ignored, with a line in the log. Too many or too large messages close the connection.
-    Bokeh gets neither kind. While the page uses more than its share of the event loop's time, its messages wait, a notice on
+    Bokeh gets neither kind. While the visitor uses more than a fair share of the event loop's time, messages wait, a notice on
     the page says so, and nothing is read from the socket.
     """
 
@@ -106,26 +106,23 @@ class PageWebSocket(SecurityHeaders, WSHandler):
         self._writes.append(WebSocketHandler.write_message(self, message, binary))
 
     async def on_message(self, message: str | bytes) -> None:
-        """Wait for the page's share of time, then pass a part of a message to Bokeh if a page can have sent it."""
+        """Wait for the visitor's share of time, then pass a part of a message to Bokeh if a page can have sent it."""
         session = self._open_session()
         if session is not None:
             await self._wait_for_share(session)
-            await process_state().fair_share(session.document).charge_for(self._take_part(message))
+            await process_state().page_time(session.document).charge_for(self._take_part(message))
         elif self.connection is None and not self._closed:
             self._refuse_connection(UnacceptableConnectionError("a message before the session is open"))
 
     async def _wait_for_share(self, session: Any) -> None:
-        """Wait until the page may use more time, unless no other page is open."""
-        share = process_state().fair_share(session.document)
-        while (seconds := share.wait_seconds()) and self._has_other_pages() and not self._closed:
+        """Wait until the visitor may use more time."""
+        visitor = visitor_of(session.document)
+        while (seconds := process_state().delay(visitor)) and not self._closed:
             process_state().metrics.messages_delayed.inc()
             if time.monotonic() >= self._last_notice + PASSING_SECONDS:
                 self._last_notice = time.monotonic()
                 await session.with_document_locked(show_passing_notice, session.document, DELAYED_NOTICE)
             await asyncio.sleep(seconds)
-
-    def _has_other_pages(self) -> bool:
-        return sum(session.connection_count for session in self.application_context.sessions) > 1
 
     async def _take_part(self, part: str | bytes) -> None:
         """Pass a message on after its last part, log a refused message, or close the connection."""

@@ -12,6 +12,7 @@ application, which already exists when the hooks run. Bokeh and Panel add other 
 
 from __future__ import annotations
 
+import asyncio
 import http.client
 import re
 import secrets
@@ -104,23 +105,31 @@ class PageHandler(SecurityHeaders, DocHandler):
     """Serves the page with a nonce on its scripts and a signed token of its session.
 
     Pages are made one at a time. Bokeh would make all waiting pages in one iteration of the event loop. Meanwhile, it would serve
-    nobody else, and it might discard the first page as unused before sending it.
+    nobody else, and it might discard the first page as unused before sending it. A visitor who has used more than a fair share
+    of the server's time waits.
     """
 
     _visitor_has_left = False
 
     async def get_session(self) -> Any:
         """Create a session with a new token, unless the server is full when this page's turn comes."""
-        visitor = network_of(str(self.request.remote_ip))
-        async with process_state().making_page.turn(visitor):
-            if self._visitor_has_left:
-                raise Finish
-            # The hook of `app_hooks` raises an HTTPError if the server is full.
-            payload = self.application_context.application.process_request(self.request)
-            use_token(self.request, issue_token(self.application, self.request, payload))
-            session = await super().get_session()
-            await process_state().next_turn(visitor)
-            return session
+        visitor, state = network_of(str(self.request.remote_ip)), process_state()
+        while True:
+            await asyncio.sleep(state.delay(visitor))
+            async with state.making_page.turn(visitor):
+                if self._visitor_has_left:
+                    raise Finish
+                # Other pages of the visitor may have had their turns in the meantime.
+                if not state.delay(visitor):
+                    return await self._make_session(visitor)
+
+    async def _make_session(self, visitor: str) -> Any:
+        # The hook of `app_hooks` raises an HTTPError if the server is full.
+        payload = self.application_context.application.process_request(self.request)
+        use_token(self.request, issue_token(self.application, self.request, payload))
+        session = await super().get_session()
+        await process_state().next_turn(visitor)
+        return session
 
     def on_connection_close(self) -> None:
         """Make no page for a visitor who has left."""

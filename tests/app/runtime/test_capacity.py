@@ -16,7 +16,6 @@ from app.runtime.capacity import (
     ProcessorTimes,
     page_weight,
 )
-from app.runtime.fair_share import FairShare
 from tests.app.clock import Clock
 
 CORES_PER_PAGE = 0.02
@@ -128,13 +127,7 @@ def test_one_visitor_cannot_fill_the_server_for_others_but_may_use_all_of_it_alo
 
 
 def test_an_idle_page_counts_less_and_an_abandoned_page_nothing() -> None:
-    clock = Clock()
-    share = FairShare(clock.monotonic)
-    assert page_weight(share, connected=False) == page_weight(share, connected=True) == 1.0
-    clock.now += CONNECTION_SECONDS
-    assert page_weight(share, connected=False) == 0.0
-    assert page_weight(share, connected=True) == 1.0
-    clock.now += ACTING_SECONDS
-    assert page_weight(share, connected=True) == IDLE_WEIGHT
-    share.charge(0.01)
-    assert page_weight(share, connected=True) == 1.0
+    assert page_weight(0.0, connected=False) == page_weight(0.0, connected=True) == 1.0
+    assert page_weight(CONNECTION_SECONDS, connected=False) == 0.0
+    assert page_weight(CONNECTION_SECONDS, connected=True) == 1.0
+    assert page_weight(CONNECTION_SECONDS + ACTING_SECONDS, connected=True) == IDLE_WEIGHT

@@ -1,4 +1,4 @@
-"""A page gets its share of the event loop's time."""
+"""A visitor gets a share of the event loop's time, which all pages of the visitor use."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import asyncio
 
 import pytest
 
-from app.runtime.fair_share import BURST_SECONDS, SHARE, FairShare
+from app.runtime.fair_share import BURST_SECONDS, SHARE, FairShare, PageTime
 from tests.app.clock import Clock
 from tests.app.other_loop import run_on_new_loop
 
@@ -20,7 +20,7 @@ def test_a_drag_with_thirty_messages_per_second_never_waits() -> None:
         assert share.wait_seconds() == 0.0
 
 
-def test_a_greedy_page_gets_its_share_after_the_burst() -> None:
+def test_a_greedy_visitor_gets_a_share_after_the_burst() -> None:
     clock, taken = Clock(), 0.0
     share, begin = FairShare(clock.monotonic), clock.now
     while clock.now < begin + 100.0:
@@ -38,7 +38,8 @@ def test_the_longest_wait_is_limited() -> None:
 
 def test_only_the_steps_of_a_coroutine_count() -> None:
     clock = Clock()
-    share = FairShare(clock.monotonic, clock.monotonic)
+    share = FairShare(clock.monotonic)
+    page_time = PageTime(share, clock.monotonic, clock.monotonic)
 
     async def work(begun: asyncio.Event, other: asyncio.Event) -> str:
         clock.now += BURST_SECONDS
@@ -49,7 +50,7 @@ def test_only_the_steps_of_a_coroutine_count() -> None:
 
     async def scenario() -> None:
         begun, other = asyncio.Event(), asyncio.Event()
-        task = asyncio.ensure_future(share.charge_for(work(begun, other)))
+        task = asyncio.ensure_future(page_time.charge_for(work(begun, other)))
         await begun.wait()
         clock.now += 1.0
         other.set()
@@ -62,6 +63,16 @@ def test_only_the_steps_of_a_coroutine_count() -> None:
         assert share.wait_seconds() == pytest.approx(0.1 / SHARE)
 
     run_on_new_loop(scenario)
+
+
+def test_pages_of_a_visitor_use_one_share_and_are_idle_one_by_one() -> None:
+    clock = Clock()
+    share = FairShare(clock.monotonic)
+    busy, idle = (PageTime(share, clock.monotonic) for _ in range(2))
+    clock.now += 10.0
+    busy.charge(BURST_SECONDS + 1.0)
+    assert share.wait_seconds() == 1.0 / SHARE
+    assert (busy.idle_seconds(), idle.idle_seconds()) == (0.0, 10.0)
 
 
 def test_a_counted_coroutine_can_fail_and_be_cancelled() -> None:
@@ -80,9 +91,9 @@ def test_a_counted_coroutine_can_fail_and_be_cancelled() -> None:
 
     async def scenario() -> None:
         with pytest.raises(OSError, match="no"):
-            await FairShare().charge_for(fail())
+            await PageTime(FairShare()).charge_for(fail())
         begun = asyncio.Event()
-        task = asyncio.ensure_future(FairShare().charge_for(wait(begun)))
+        task = asyncio.ensure_future(PageTime(FairShare()).charge_for(wait(begun)))
         await begun.wait()
         task.cancel()
         with pytest.raises(asyncio.CancelledError):

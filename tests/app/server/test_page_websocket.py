@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncIterator, Awaitable, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
 from contextlib import asynccontextmanager
 from dataclasses import replace
 from typing import Any
@@ -24,14 +24,16 @@ from tornado.ioloop import IOLoop
 from app.browser.bokeh_patches.batched_patches import batch_patches
 from app.browser.bokeh_patches.inline_callbacks import call_inline
 from app.runtime.fair_share import BURST_SECONDS, SHARE
-from app.runtime.process_state import ProcessState
+from app.runtime.process_state import ProcessState, process_state
 from app.server.page_websocket import DELAYED_NOTICE, PageWebSocket
 from app.server.routes import install_handlers
 from app.views.components.notice import Notice
 from tests.app.other_loop import run_on_new_loop
-from tests.page_channel import Channel
+from tests.page_channel import Channel, Options
 from tests.waiting import SECONDS
 
+# Addresses of two visitors.
+VISITOR, OTHER = "192.0.2.1", "192.0.2.2"
 # A text that is longer than the buffers of a connection.
 LONG = "x" * 8 * 2**20
 
@@ -48,15 +50,22 @@ def build(document: Document) -> None:
     document.add_root(Slider(name="slider", start=0, end=9, value=0))
 
 
+def of_visitor(address: str) -> Options:
+    """Return options of requests of a visitor with this address."""
+    return {"headers": {"X-Forwarded-For": address}}
+
+
 @asynccontextmanager
-async def pages(count: int, make: Callable[[Document], None] = build) -> AsyncIterator[tuple[Channel, Document]]:
-    """Open pages, and yield the channel and the document of the last page."""
-    server = Server({"/app": Application(FunctionHandler(make))}, port=0, io_loop=IOLoop.current(), address="127.0.0.1")
+async def pages(visitors: Sequence[str], make: Callable[[Document], None] = build) -> AsyncIterator[tuple[Channel, Document]]:
+    """Open a page for each visitor, given by address, and yield the channel and the document of the last page."""
+    application = Application(FunctionHandler(make))
+    server = Server({"/app": application}, port=0, io_loop=IOLoop.current(), address="127.0.0.1", use_xheaders=True)
+    process_state().sessions = lambda: server.get_sessions("/app")
     server.start()
     address, channels = f"http://127.0.0.1:{server.port}/app", []
     try:
-        for _ in range(count):
-            channels.append(await Channel.open(address))
+        for visitor in visitors:
+            channels.append(await Channel.open(address, of_visitor(visitor)))
             assert await receive(channels[-1], "ACK")
         yield channels[-1], server.get_sessions("/app")[-1].document
     finally:
@@ -76,9 +85,11 @@ async def receive(channel: Channel, kind: str) -> str:
     raise EOFError
 
 
-def run(count: int, scenario: Callable[[Channel, Document], Awaitable[None]], make: Callable[[Document], None] = build) -> None:
+def run(
+    visitors: Sequence[str], scenario: Callable[[Channel, Document], Awaitable[None]], make: Callable[[Document], None] = build
+) -> None:
     async def with_pages() -> None:
-        async with asyncio.timeout(SECONDS), pages(count, make) as (channel, document):
+        async with asyncio.timeout(SECONDS), pages(visitors, make) as (channel, document):
             await scenario(channel, document)
 
     run_on_new_loop(with_pages)
@@ -100,28 +111,30 @@ async def move_slider(channel: Channel, document: Document) -> None:
     await receive(channel, "SERVER-INFO-REPLY")
 
 
-def test_messages_of_a_page_beyond_its_share_wait(state: ProcessState) -> None:
+def test_messages_of_a_visitor_beyond_a_fair_share_wait(state: ProcessState) -> None:
     async def scenario(channel: Channel, document: Document) -> None:
-        # The page has used more than its share, so its next message waits for half a second.
-        state.fair_share(document).charge(BURST_SECONDS + 0.5 * SHARE)
+        # The visitor has used more than a share, so the next message waits for half a second.
+        state.page_time(document).charge(BURST_SECONDS + 0.5 * SHARE)
         channel.set(slider_of(document).id, value=5)
         assert DELAYED_NOTICE in await receive(channel, "PATCH-DOC")
         assert slider_of(document).value == 0
         await move_slider(channel, document)
         assert slider_of(document).value == 5
 
-    run(2, scenario)
+    run([OTHER, VISITOR], scenario)
     assert delayed_messages(state) >= 1
 
 
-@pytest.mark.parametrize(("count", "debt"), [(2, 0.0), (1, 10.0)], ids=["within its share", "the only page"])
-def test_other_messages_do_not_wait(count: int, debt: float, state: ProcessState) -> None:
+@pytest.mark.parametrize(
+    ("visitors", "debt"), [([OTHER, VISITOR], 0.0), ([VISITOR, VISITOR], 10.0)], ids=["within the share", "the only visitor"]
+)
+def test_other_messages_do_not_wait(visitors: Sequence[str], debt: float, state: ProcessState) -> None:
     async def scenario(channel: Channel, document: Document) -> None:
-        state.fair_share(document).charge(debt)
+        state.page_time(document).charge(debt)
         await move_slider(channel, document)
         assert slider_of(document).value == 5
 
-    run(count, scenario)
+    run(visitors, scenario)
     assert delayed_messages(state) == 0
 
 
@@ -137,7 +150,7 @@ def test_a_value_that_becomes_illegal_while_its_message_waits_for_the_turn_is_re
         await move_slider(channel, document)
         assert slider_of(document).value == 0
 
-    run(1, scenario)
+    run([VISITOR], scenario)
 
 
 @pytest.mark.parametrize("limit", ["pages_per_address", "most_sessions"])
@@ -145,13 +158,13 @@ def test_websockets_beyond_the_limits_are_closed(limit: str, state: ProcessState
     state.settings = replace(state.settings, **{limit: 2})
 
     async def scenario(channel: Channel, document: Document) -> None:
-        third = await Channel.open(channel.address)
+        third = await Channel.open(channel.address, of_visitor(VISITOR))
         assert [kind async for kind, _ in third.messages()] == []
         third.close()
-        assert state.sockets == {"127.0.0.1": 2}
+        assert state.sockets == {VISITOR: 2}
         await move_slider(channel, document)
 
-    run(2, scenario)
+    run([VISITOR, VISITOR], scenario)
     assert state.sockets == {}
 
 
@@ -193,7 +206,7 @@ def test_changes_made_while_others_are_being_sent_reach_the_page(state: ProcessS
             pass
         await asyncio.gather(*tasks)
 
-    run(1, scenario, build_with_pane)
+    run([VISITOR], scenario, build_with_pane)
 
 
 def test_a_socket_that_is_closed_while_it_is_opened_leaves_no_connection(
@@ -219,4 +232,4 @@ def test_a_socket_that_is_closed_while_it_is_opened_leaves_no_connection(
         sessions = document.session_context.server_context.sessions
         assert sum(session.connection_count for session in sessions) == 1
 
-    run(1, scenario)
+    run([VISITOR], scenario)

@@ -17,12 +17,17 @@ from panel.io.application import Application
 from tornado.httpclient import AsyncHTTPClient
 from tornado.ioloop import IOLoop
 
+from app.runtime.fair_share import BURST_SECONDS, SHARE
 from app.runtime.process_state import ProcessState
+from app.runtime.visitors import visitor_of
 from app.server.admission import admit
 from app.server.routes import PageHandler, install_handlers
 from tests.app.other_loop import run_on_new_loop
+from tests.page_channel import Channel
 
 COUNT = 6
+# Addresses of two visitors.
+GREEDY, OTHER = "192.0.2.1", "192.0.2.2"
 
 
 class AdmittedPages(CodeHandler):
@@ -31,6 +36,7 @@ class AdmittedPages(CodeHandler):
     def __init__(self) -> None:
         super().__init__(source="", filename="pages.py")
         self.events: list[str] = []
+        self.visitors: list[str] = []
 
     def process_request(self, request: Any) -> dict[str, Any]:
         admit(request)
@@ -39,6 +45,7 @@ class AdmittedPages(CodeHandler):
     def modify_document(self, doc: Document) -> None:
         doc.add_root(Slider(start=0, end=9, value=0))
         self.events.append("page")
+        self.visitors.append(visitor_of(doc))
         asyncio.get_running_loop().call_soon(self.events.append, "another")
 
 
@@ -51,7 +58,8 @@ def start(start_state: Callable[..., ProcessState]) -> Callable[..., ProcessStat
 @asynccontextmanager
 async def serving(state: ProcessState, pages: AdmittedPages) -> AsyncIterator[int]:
     """Run a server; yield its port."""
-    server = Server({"/app": Application(pages)}, port=0, io_loop=IOLoop.current(), address="127.0.0.1")
+    options = {"port": 0, "io_loop": IOLoop.current(), "address": "127.0.0.1", "use_xheaders": True}
+    server = Server({"/app": Application(pages)}, **options)
     state.sessions = lambda: server.get_sessions("/app")
     server.start()
     try:
@@ -111,3 +119,24 @@ def test_no_page_is_made_for_a_visitor_who_has_left(start: Callable[..., Process
 
     run_on_new_loop(scenario)
     assert pages.events.count("page") == 1
+
+
+def test_the_next_pages_of_a_visitor_beyond_a_fair_share_wait(start: Callable[..., ProcessState]) -> None:
+    state, pages = start(), AdmittedPages()
+
+    async def scenario() -> None:
+        async with serving(state, pages) as port:
+            address = f"http://127.0.0.1:{port}/app"
+            of_greedy, of_other = ({"headers": {"X-Forwarded-For": visitor}} for visitor in (GREEDY, OTHER))
+            channel = await Channel.open(address, of_other)
+            await AsyncHTTPClient().fetch(address, **of_greedy)
+            [document] = [session.document for session in state.sessions() if visitor_of(session.document) == GREEDY]
+            # The next page of this visitor waits for a second.
+            state.page_time(document).charge(BURST_SECONDS + SHARE)
+            delayed = [asyncio.ensure_future(AsyncHTTPClient().fetch(address, **of_greedy)) for _ in range(2)]
+            await AsyncHTTPClient().fetch(address, **of_other)
+            assert [answer.code for answer in await asyncio.gather(*delayed)] == [200, 200]
+            channel.close()
+
+    run_on_new_loop(scenario)
+    assert pages.visitors == [OTHER, GREEDY, OTHER, GREEDY, GREEDY]
