@@ -39,8 +39,8 @@ from app.state.system_review import review_catalogue_entry
 from engine import CASES
 from engine.integrator.jit.compiling_process import compile_in
 
-# Longest time for which a thread keeps the interpreter lock while others wait for it, in seconds; the default is 5 ms. A map needs
-# the lock for a moment after each kernel, and each time would wait so long for a thread that makes a page.
+# Longest time for which a thread keeps the interpreter lock while others wait, in seconds; the default is 5 ms. A map needs the
+# lock for a moment after each kernel, and each time would wait so long for a thread that makes a page.
 _SWITCH_SECONDS = 0.001
 
 # No process is forked yet. While Bokeh runs this file, only `sys.orig_argv` contains the whole command line.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 from app.job_clients.error_messages import error_sentence
@@ -45,7 +46,7 @@ class StartOrbit:
         """The orbit; None until it is computed, and for a start without an orbit."""
         return self.curves.orbit if self.curves is not None else None
 
-    @property
+    @cached_property
     def verdict(self) -> OrbitVerdict | None:
         """The verdict on the orbit, preliminary until the digits are known; None without an orbit."""
         return judge_orbit(self.orbit, self.digits) if self.orbit is not None else None
@@ -105,7 +106,9 @@ class OrbitRequests:
         """Request missing digits, and show what is known about the orbits."""
         bounded_jobs = [job for job, result in self._orbits.found.items() if _is_bounded(result)]
         self._digits.follow([_digits_job(job) for job in bounded_jobs])
-        orbits = tuple(map(self._orbit_of, self._state.starts))
+        # An orbit of which nothing new is known keeps its verdict.
+        new_orbits = map(self._orbit_of, self._state.starts)
+        orbits = tuple(next((shown for shown in self._shown_orbits if shown == orbit), orbit) for orbit in new_orbits)
         # Showing unchanged orbits again would delay a map that is requested at the same time.
         if orbits != self._shown_orbits:
             self._shown_orbits = orbits
@@ -140,4 +143,7 @@ def _curves_or_sentence(job: Job[Orbit], result: Orbit | Exception) -> OrbitCurv
     if isinstance(result, Exception):
         return error_sentence(result)
     assert result.potential is not None
+    if result.fate == Fate.BOUNDED:
+        # The verdict needs these digits, which take a tenth of a second for a long orbit. The orbit keeps them.
+        _ = result.digits_of_halves
     return compute_orbit_curves(result.potential, result)

@@ -23,7 +23,6 @@ from app.views.orbits.orbit_plots import OrbitPlots
 from app.views.orbits.path_picture import path_picture
 from app.views.orbits.separation_plot import SeparationPlot
 from engine.slices.planes import SECTION
-from engine.trajectories.chaos_indicators import evaluate_indicators
 from plots.pictures.orbit_curves import OrbitCurves, restrict_curves
 
 ORBITS_REMOVED = "The orbits are removed, because they start on another slice. The Back button of the browser shows them again."
@@ -176,8 +175,8 @@ class OrbitPresenter:
         """Show the results of the orbits as text."""
         orbit = self._orbits[self._state.chosen] if self._orbits else None
         self.controls.show(self._orbits, self._state.chosen)
-        verdicts = () if orbit is None or orbit.orbit is None else evaluate_indicators(orbit.orbit, orbit.digits)
-        self.controls.show_indicators(verdicts)
+        verdict = orbit.verdict if orbit is not None else None
+        self.controls.show_indicators(verdict.findings if verdict is not None else ())
         self._results.orbits = self._orbits
 
     def _set_interval(self, interval: Interval | None) -> None:

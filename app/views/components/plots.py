@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from contextlib import nullcontext
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -171,6 +171,12 @@ class FigurePane(pn.pane.Bokeh):
         return super()._get_model(*arguments, **options)
 
 
+def changing_models(plots: Sequence[figure]) -> AbstractContextManager[object]:
+    """Return a context in which models of figures are replaced. Bokeh searches their page for models only at its end."""
+    document = plots[0].document if plots else None
+    return document.models.freeze() if document is not None else nullcontext()
+
+
 class LaterGlyphs:
     """Glyphs that are added to figures when they are first shown.
 
@@ -195,9 +201,7 @@ class LaterGlyphs:
     def draw(self) -> None:
         """Add the glyphs to the figures that lack them, and to later figures."""
         plots, self._waiting_plots, self._is_drawn = self._waiting_plots, [], True
-        document = plots[0].document if plots else None
-        # With the models frozen, Bokeh searches the page once for all new models.
-        with document.models.freeze() if document is not None else nullcontext():
+        with changing_models(plots):
             for plot in plots:
                 self._add(plot)
 

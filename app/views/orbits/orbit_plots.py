@@ -36,7 +36,7 @@ from app.views.components.orbit_lines import (
     opacities,
     orbit_colours,
 )
-from app.views.components.plots import FigurePane, history_figure, moving_line, set_range
+from app.views.components.plots import FigurePane, changing_models, history_figure, moving_line, set_range
 from engine import CASES, integrate_orbit, start_states
 from engine.slices.planes import SECTION
 from plots.pictures.histories import has_log_time
@@ -131,10 +131,11 @@ class OrbitPlots:
         begin, end = interval or (earliest, max(float(curves.orbit.t[-1]) for curves in drawn))
         if end > earliest:
             set_range(self._x_range, max(begin, earliest), end)
-        for quantity in ORBIT_QUANTITIES:
-            histories = [curves.histories[quantity.name] for curves in drawn]
-            set_range(self._y_ranges[quantity.name], *quantity.limits(histories))
-            self._set_time_scale(quantity)
+        with changing_models([*self._plots.values()]):
+            for quantity in ORBIT_QUANTITIES:
+                histories = [curves.histories[quantity.name] for curves in drawn]
+                set_range(self._y_ranges[quantity.name], *quantity.limits(histories))
+                self._set_time_scale(quantity)
 
     def _set_time_scale(self, quantity: OrbitQuantity) -> None:
         """Give the figure of a quantity, if it is made, a linear or a logarithmic axis of time."""

@@ -180,6 +180,24 @@ def test_all_bounded_orbits_get_their_digits_as_evidence(session: Session) -> No
     assert jobs.in_flight == 0
 
 
+def test_an_orbit_keeps_its_verdict_when_another_start_is_added(session: Session) -> None:
+    state, _, recorder, _ = session
+    state.add_start((0.1, 0.05))
+    recorder.wait_for(lambda: recorder.all_computed(1))
+    verdict = recorder.orbits[0].verdict
+    state.add_start((0.1, 0.06))
+    recorder.wait_for(lambda: recorder.all_computed(2))
+    assert recorder.orbits[0].verdict is verdict
+
+
+def test_a_bounded_orbit_arrives_with_the_digits_of_its_halves(session: Session) -> None:
+    state, _, recorder, _ = session
+    state.param.update(energy=0.14, t_max=1e3)
+    state.add_start((-0.3, 0.0))
+    recorder.wait_for(lambda: recorder.all_computed(1))
+    assert "digits_of_halves" in vars(recorder.orbits[0].orbit)
+
+
 def test_an_escaping_orbit_gets_no_digits(session: Session) -> None:
     state, _, recorder, jobs = session
     state.add_start((0.1, 0.05))

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from typing import Any
+from unittest.mock import patch
 
 import numpy as np
 import pytest
+from bokeh.document import Document
+from bokeh.document.models import DocumentModelManager
 from bokeh.models import ColumnDataSource
 from bokeh.plotting import figure
 
@@ -59,6 +62,17 @@ def test_short_orbits_have_r2_against_linear_time(plots: OrbitPlots, drawings: l
     assert scales() == ["LogScale", "LogScale", "LinearScale"]
     plots.show([short, long], chosen=0)
     assert scales() == ["LogScale"] * 3
+
+
+def test_the_page_is_searched_once_when_the_axes_of_time_change(plots: OrbitPlots, drawings: list[OrbitCurves]) -> None:
+    document, (long, short) = Document(), drawings
+    for plot in figures(plots).values():
+        document.add_root(plot)
+    plots.show([short], chosen=0)
+    with patch.object(DocumentModelManager, "recompute", autospec=True) as recompute:
+        plots.show([short, long], chosen=0)
+    # The axis of R² has another scale, ticker and formatter.
+    assert recompute.call_count == 1
 
 
 def test_a_long_orbit_that_is_not_chosen_keeps_its_curve(plots: OrbitPlots, drawings: list[OrbitCurves]) -> None:
