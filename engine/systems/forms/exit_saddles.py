@@ -159,10 +159,11 @@ class _Descent:
         # The first step chosen by LSODA can be too long for its corrector to converge.
         first_step = _FIRST_STEP * distance / np.hypot(*flow(0.0, start))
         solver = solver_class(flow, 0.0, start, np.inf, first_step=first_step, **tolerances)
+        value = self._value(start)
         fewest_steps_left = max(self.steps_left - _MOST_STEPS_ALONG_LINE, 0)
         while self.steps_left > fewest_steps_left and solver.status == "running":
             self.steps_left -= 1
-            previous_place = solver.y
+            previous_place, previous_value = solver.y, value
             solver.step()
             if solver.status == "failed":
                 break
@@ -170,16 +171,20 @@ class _Descent:
             if distances.min() < _END_DISTANCE * self.length:
                 return int(other_indices[np.argmin(distances)])
             step_length = float(np.hypot(*(solver.y - previous_place)))
+            value = self._value(solver.y)
             # A line at rest elsewhere is at a critical point outside the searched region. The list does not contain this point.
             is_at_rest = step_length < _REST_STEP * self.length
-            if np.hypot(*solver.y) > self.infinite_distance or is_at_rest or self._rises(previous_place, solver.y):
+            if np.hypot(*solver.y) > self.infinite_distance or is_at_rest or self._rises(previous_value, value):
                 return -1
         return None
 
-    def _rises(self, before: np.ndarray, after: np.ndarray) -> bool:
+    def _value(self, place: np.ndarray) -> float:
+        """Return sign · V at a place."""
+        return self.sign * float(self.form.value(*place))
+
+    def _rises(self, before: float, after: float) -> bool:
         """Return whether a step of a descent leads to a higher value, on the other side of a curve where V is infinite."""
-        low, high = (self.sign * float(self.form.value(*place)) for place in (before, after))
-        return high - low > self.largest_rise + _LARGEST_RISE * abs(low)
+        return after - before > self.largest_rise + _LARGEST_RISE * abs(before)
 
     def _distances(self, place: np.ndarray) -> np.ndarray:
         """Return the distances of all critical points from a place, of shape (n,)."""
