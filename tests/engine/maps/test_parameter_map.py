@@ -84,19 +84,39 @@ def test_channels_keep_their_numbers_along_the_parameter() -> None:
     assert set(np.unique(found.fate[~left & (found.ordinate > -0.33)])) - {Fate.BOUNDED, Fate.FORBIDDEN, Fate.OUTSIDE} == {1, 2}
 
 
+class CountingExecutor(ThreadPoolExecutor):
+    """An executor of one thread, whose third call waits until the last call that was submitted is cancelled."""
+
+    def __init__(self) -> None:
+        super().__init__(1)
+        self.begun = 0
+        self._last: Future[Any] | None = None
+        self._is_dropped = threading.Event()
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        call = self._last = super().submit(self._run, fn, *args, **kwargs)
+        call.add_done_callback(self._note_drop)
+        return call
+
+    def _run(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Any:
+        self.begun += 1
+        if self.begun == 3:
+            self._is_dropped.wait(timeout=10.0)
+        return fn(*args, **kwargs)
+
+    def _note_drop(self, call: Future[Any]) -> None:
+        if call is self._last and call.cancelled():
+            self._is_dropped.set()
+
+
 def test_lines_that_wait_in_an_executor_are_dropped_when_a_map_is_cancelled() -> None:
-    cancel, begun = threading.Event(), list[int]()
-
-    class CountingExecutor(ThreadPoolExecutor):
-        def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-            return super().submit(lambda: (begun.append(1), fn(*args, **kwargs))[1])
-
-    # The first stage computes every eighth line.
+    cancel = threading.Event()
+    # The first stage computes every eighth line. The map is cancelled after the first one, and notices it after the second one.
     spec = replace(SPEC, resolution=(24, 400))
-    with CountingExecutor(1) as executor:
+    with CountingExecutor() as executor:
         stopped = compute_map(spec, cancel=cancel, executor=executor, on_progress=lambda share: cancel.set())
     assert not stopped.complete
-    assert len(begun) < 10
+    assert executor.begun == 3
 
 
 def test_trust_and_character_are_those_of_the_lines(along_epsilon: EscapeMap) -> None:
