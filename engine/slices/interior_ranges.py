@@ -172,16 +172,22 @@ def _interior_interval(potential: Potential, energy: float, axis: Coordinate, fi
     radius = _search_radius(potential, energy)
     line = np.linspace(-radius, radius, 4 * _SCAN_POINTS)
     x, y = (line if axis is coordinate else np.full_like(line, fixed[coordinate]) for coordinate in POSITIONS)
-    inside = _is_inside(potential, energy, x, y)
+    inside = _without_outside(potential, energy, x, y, _is_allowed(potential, energy, x, y))
     return line[inside if potential.escape_radius is not None else _run_around_middle(inside)]
 
 
-def _is_inside(potential: Potential, energy: float, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Return whether points are allowed and not beyond an exit; gaps in an interior count as inside."""
-    outside = find_outside_in_well_units(potential, energy, x, y)
+def _is_allowed(potential: Potential, energy: float, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Return whether V ≤ h at points, or V is undefined, as at the centre of a gap."""
+    return ~(potential.value(x, y) > energy)
+
+
+def _without_outside(potential: Potential, energy: float, x: np.ndarray, y: np.ndarray, allowed: np.ndarray) -> np.ndarray:
+    """Return which of the allowed points are not beyond an exit; gaps in an interior count as inside."""
+    outside = find_outside_in_well_units(potential, energy, x[allowed], y[allowed])
     gap_numbers = [number for number, end in enumerate(potential.ends, potential.channels + 1) if end in potential.gaps]
-    # `~(… >)` also accepts NaN, as at the centre of a gap.
-    return ~(potential.value(x, y) > energy) & np.isin(outside, [0, *gap_numbers])
+    inside = allowed.copy()
+    inside[allowed] = np.isin(outside, [0, *gap_numbers])
+    return inside
 
 
 def _search_radius(potential: Potential, energy: float) -> float:
@@ -206,8 +212,13 @@ def _interior_on_rays(potential: Potential, energy: float, farthest: float) -> t
     angle = np.linspace(0.0, 2.0 * np.pi, _RAYS + 1)
     radius = np.linspace(0.0, farthest, _SCAN_POINTS // 2)
     x, y = radius * np.cos(angle)[:, None], radius * np.sin(angle)[:, None]
-    inside = _is_inside(potential, energy, x, y)
-    return x, y, inside if potential.escape_radius is not None else np.logical_and.accumulate(inside, axis=1)
+    allowed = _is_allowed(potential, energy, x, y)
+    if potential.escape_radius is not None:
+        return x, y, _without_outside(potential, energy, x, y, allowed)
+    # The accumulation ends each ray, first at its first forbidden point, then at its first point outside.
+    allowed = np.logical_and.accumulate(allowed, axis=1)
+    inside = _without_outside(potential, energy, x, y, allowed)
+    return x, y, np.logical_and.accumulate(inside, axis=1)
 
 
 def _shown_radius(potential: Potential, escape_radius: float) -> float:

@@ -172,7 +172,10 @@ class FigurePane(pn.pane.Bokeh):
 
 
 def changing_models(plots: Sequence[figure]) -> AbstractContextManager[object]:
-    """Return a context in which models of figures are replaced. Bokeh searches their page for models only at its end."""
+    """Return a context in which models of figures are replaced. Bokeh searches the page for models once, at the end.
+
+    Without figures, nothing is searched.
+    """
     document = plots[0].document if plots else None
     return document.models.freeze() if document is not None else nullcontext()
 

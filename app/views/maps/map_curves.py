@@ -38,13 +38,14 @@ class TracedCurves(NamedTuple):
 def trace_curves(spec: MapSpec) -> TracedCurves:
     """Return the curves of a map, cached. The job of the map calls this first, because tracing takes up to half a second."""
     window = spec.find_window()
-    limit = trace_zero_velocity_curve(spec.potential, spec.plane, spec.energy, window)
-    if spec.common_energy is None:
-        return TracedCurves(limit, [], [])
+    h = spec.common_energy
+    if h is None:
+        return TracedCurves(trace_zero_velocity_curve(spec.potential, spec.plane, spec.energy, window), [], [])
     critical = critical_energies(spec.potential)
-    energies = [*critical, *depth_levels(spec.potential, _DEPTH_MULTIPLES)]
-    lines_by_energy = trace_equipotentials(spec.potential, spec.plane, energies, window)
-    return TracedCurves(limit, _flatten(lines_by_energy[: len(critical)]), _flatten(lines_by_energy[len(critical) :]))
+    # The curve V = h is also the limiting curve.
+    energies = [h, *critical, *depth_levels(spec.potential, _DEPTH_MULTIPLES)]
+    limit, *others = trace_equipotentials(spec.potential, spec.plane, energies, window)
+    return TracedCurves(limit, _flatten(others[: len(critical)]), _flatten(others[len(critical) :]))
 
 
 def _flatten(lines_by_energy: Iterable[Sequence[np.ndarray]]) -> list[np.ndarray]:

@@ -61,11 +61,11 @@ class ProgressView:
     def start(self) -> None:
         """Show that a map is requested."""
         self._last_stage = self._frame = None
-        self._set(running=True, label=STOP, sentence="Starting …")
+        self._set("Starting …", running=True, button_label=STOP)
 
     def show_reviewing(self) -> None:
         """Show that the potential of a link is being reviewed."""
-        self._set(running=False, label=STOP, sentence="Reviewing the potential …")
+        self._set("Reviewing the potential …", running=False)
 
     def show_compiling(self) -> None:
         """Show that the kernels of the map are being compiled."""
@@ -76,22 +76,17 @@ class ProgressView:
         sentence = _describe_result(frame) if frame.complete else f"{_describe_stage(frame)}{self._time_left(frame)}"
         offer = next((layer.title for layer in LAYERS.values() if layer.is_offered(frame)), None)
         self._frame = frame
-        self._set(running=not frame.complete, label=offer or STOP, sentence=sentence)
-        # The stylesheet puts a button of class "stop" over the status line. The text beside an offer needs this space.
-        self.button.css_classes = ["solid", "offer" if offer else "stop"]
-        self.button.styles = keep_place(shown=offer is not None or not frame.complete)
-        self.bar.value = int(100 * frame.progress)
+        self._set(sentence, running=not frame.complete, button_label=offer or (None if frame.complete else STOP))
 
     def stop(self) -> None:
         """Show that the map is stopped, and offer to continue it."""
-        self._set(running=False, label=CONTINUE, sentence=f"Stopped: {self._sentence}")
-        self.button.styles = keep_place(shown=True)
+        self._set(f"Stopped: {self._sentence}", running=False, button_label=CONTINUE)
         self.text.css_classes = ["status", STOPPED]
 
     def fail(self) -> None:
         """Show that there is no map."""
         self._frame = None
-        self._set(running=False, label=STOP, sentence="")
+        self._set("", running=False)
 
     def _press(self) -> None:
         self._actions[self.button.label]()
@@ -110,9 +105,17 @@ class ProgressView:
         seconds_left = (now - begin_time) * frame.undecided / (undecided_at_begin - frame.undecided)
         return f", about {math.ceil(seconds_left)} s left"
 
-    def _set(self, *, running: bool, label: str, sentence: str) -> None:
-        self.bar.styles = {"opacity": "1" if running else "0"}
-        self.button.param.update(label=label, styles=keep_place(shown=running))
+    def _set(self, sentence: str, *, running: bool, button_label: str | None = None) -> None:
+        """Show a sentence, the bar while the map is `running`, and the button if it has a label.
+
+        The parameters of each widget change together, because each change is a message to the browser.
+        """
+        value = int(100 * self._frame.progress) if self._frame is not None else self.bar.value
+        self.bar.param.update(value=value, styles={"opacity": "1" if running else "0"})
+        # The stylesheet puts a button of class "stop" over the status line. The text beside an offer needs this space.
+        position = "stop" if button_label in (None, STOP, CONTINUE) else "offer"
+        styles = keep_place(shown=button_label is not None)
+        self.button.param.update(label=button_label or STOP, styles=styles, css_classes=["solid", position])
         self.text.css_classes = ["status"]
         self._write(sentence)
 

@@ -114,7 +114,7 @@ class OrbitPlots:
             style = {"line_color": THRESHOLD, "line_dash": "dashed", "line_width": 1.5}
             plot.add_layout(Span(location=quantity.threshold, dimension="width", **style))
         self._plots[name] = plot
-        self._set_time_scale(quantity)
+        self._set_time_scales()
         return plot
 
     def _select_interval(self, event: SelectionGeometry) -> None:
@@ -131,21 +131,21 @@ class OrbitPlots:
         begin, end = interval or (earliest, max(float(curves.orbit.t[-1]) for curves in drawn))
         if end > earliest:
             set_range(self._x_range, max(begin, earliest), end)
-        with changing_models([*self._plots.values()]):
-            for quantity in ORBIT_QUANTITIES:
-                histories = [curves.histories[quantity.name] for curves in drawn]
-                set_range(self._y_ranges[quantity.name], *quantity.limits(histories))
-                self._set_time_scale(quantity)
+        for quantity in ORBIT_QUANTITIES:
+            histories = [curves.histories[quantity.name] for curves in drawn]
+            set_range(self._y_ranges[quantity.name], *quantity.limits(histories))
+        self._set_time_scales()
 
-    def _set_time_scale(self, quantity: OrbitQuantity) -> None:
-        """Give the figure of a quantity, if it is made, a linear or a logarithmic axis of time."""
-        plot = self._plots.get(quantity.name)
-        is_log = has_log_time(self._x_range.end, logarithmic=quantity.logarithmic)
-        if plot is None or is_log == isinstance(plot.x_scale, LogScale):
-            return
-        plot.x_scale = LogScale() if is_log else LinearScale()
-        plot.xaxis.ticker = LogTicker() if is_log else BasicTicker()
-        plot.xaxis.formatter = LogTickFormatter() if is_log else BasicTickFormatter()
+    def _set_time_scales(self) -> None:
+        """Give the figures linear or logarithmic axes of time, as the range of the time demands."""
+        scales = {q.name: has_log_time(self._x_range.end, logarithmic=q.logarithmic) for q in ORBIT_QUANTITIES}
+        changed_plots = [plot for name, plot in self._plots.items() if isinstance(plot.x_scale, LogScale) != scales[name]]
+        with changing_models(changed_plots):
+            for plot in changed_plots:
+                is_log = scales[plot.name]
+                plot.x_scale = LogScale() if is_log else LinearScale()
+                plot.xaxis.ticker = LogTicker() if is_log else BasicTicker()
+                plot.xaxis.formatter = LogTickFormatter() if is_log else BasicTickFormatter()
 
 
 def prepare() -> None:
