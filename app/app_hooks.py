@@ -81,15 +81,18 @@ def on_server_unloaded(server_context: Any) -> None:
 
 
 def on_session_created(session_context: Any) -> None:
-    """Count a new session, build its page, and charge the time to the visitor.
+    """Count a new session, build its page, charge the time to the visitor, and record it for the capacity.
 
     Bokeh calls this hook on another thread, so the event loop serves other pages meanwhile. `main.py` would run on the loop.
     """
-    process_state().metrics.sessions_created.inc()
+    state = process_state()
+    state.metrics.sessions_created.inc()
     loop, document = session_context.server_context.application_context.io_loop.asyncio_loop, session_context.document
-    page_time, begin = process_state().page_time(document), time.thread_time()
+    page_time, begin = state.page_time(document), time.thread_time()
     import_module("app.session.page").build_page(document, loop)
-    loop.call_soon_threadsafe(page_time.charge, time.thread_time() - begin)
+    seconds = time.thread_time() - begin
+    for record in (page_time.charge, state.capacity.record_page):
+        loop.call_soon_threadsafe(record, seconds)
 
 
 def on_session_destroyed(session_context: Any) -> None:

@@ -1,7 +1,8 @@
 """The share of the processors that the open pages need. It decides when work is postponed and when new pages are refused.
 
 Each open page reserves the processor time that an active visitor uses: otherwise, a server would admit too many visitors while
-they are still reading. Two values are measured: the processors that other programs leave, and the use of the event loop.
+they are still reading. Three values are measured: the processors that other programs leave, the use of the event loop, and the
+processor time for making a page, from which the need of a visitor is estimated.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ import os
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping
-from statistics import fmean
+from statistics import fmean, median
 from typing import Any, NamedTuple
 
 import psutil
@@ -22,6 +23,16 @@ FULL = 0.85
 
 CROWDED = 0.5
 """Share (see `FULL`) above which work that can wait is postponed, so that open pages stay fast."""
+
+PAGES_PER_SECOND = 0.12
+"""Processor time that an active visitor uses in a second, in units of the processor time for making a page. Both consist mostly
+of Python code, so this ratio changes little from machine to machine."""
+
+FIRST_CORES_PER_PAGE = 0.03
+"""Processors that an active visitor is assumed to use before the first page is made."""
+
+MEASURED_PAGES = 15
+"""Number of pages from which the processor time for making a page is known: the last ones."""
 
 VISITOR_SHARE = 0.5
 """When a visitor opens a page, the pages of each other visitor count for at most this share of the capacity."""
@@ -79,7 +90,7 @@ class Capacity:
     Parameters
     ----------
     cores_per_page
-        Processors that an active visitor uses.
+        Processors that an active visitor uses; 0 to estimate them, see `PAGES_PER_SECOND`.
     processes
         Number of server processes that share the processors. All processes are assumed to be equally busy.
     measure
@@ -105,7 +116,8 @@ class Capacity:
         clock: Callable[[], float] = time.monotonic,
         usable_cores: int | None = None,
     ) -> None:
-        self._cores_per_page, self._processes, self._measure, self._clock = cores_per_page, processes, measure, clock
+        self._given_cores_per_page, self._processes, self._measure, self._clock = cores_per_page, processes, measure, clock
+        self._page_seconds = deque[float](maxlen=MEASURED_PAGES)
         self._usable_cores = count_cores() if usable_cores is None else usable_cores
         self._times = measure()
         # Measurements are a second or more apart, so this many of them cover the window.
@@ -127,19 +139,30 @@ class Capacity:
         self.loop_share = self._mean(use.loop_share for use in self._uses)
         return True
 
+    def record_page(self, seconds: float) -> None:
+        """Record the processor time for making a page, in seconds; called on the thread of the event loop."""
+        self._page_seconds.append(seconds)
+
+    @property
+    def cores_per_page(self) -> float:
+        """Processors that an active visitor uses."""
+        if self._given_cores_per_page:
+            return self._given_cores_per_page
+        return PAGES_PER_SECOND * median(self._page_seconds) if self._page_seconds else FIRST_CORES_PER_PAGE
+
     def is_crowded(self, pages: Mapping[str, float]) -> bool:
         """Whether work that can wait should be postponed, given the number of pages by visitor."""
         return self.occupied_share(pages) > CROWDED
 
     def has_room(self, pages: Mapping[str, float], visitor: str = "") -> bool:
         """Whether another page of a visitor is admitted, given the number of pages by visitor."""
-        most_pages = VISITOR_SHARE * FULL * self.cores / self._cores_per_page
+        most_pages = VISITOR_SHARE * FULL * self.cores / self.cores_per_page
         counted_pages = {name: min(count, most_pages) for name, count in pages.items() if name != visitor}
         return self.occupied_share(counted_pages | {visitor: pages.get(visitor, 0.0) + 1.0}) <= FULL
 
     def occupied_share(self, pages: Mapping[str, float]) -> float:
         """Return the share of the processors that the pages reserve, or the busy share of the event loop if that is larger."""
-        return max(self._cores_per_page * sum(pages.values()) / self.cores, self.loop_share)
+        return max(self.cores_per_page * sum(pages.values()) / self.cores, self.loop_share)
 
     def _mean_other_cores(self) -> float:
         return self._mean(use.other_cores for use in self._uses)

@@ -94,6 +94,7 @@ class StateCollector(Collector):
         yield _gauge("websockets_open", "Open WebSockets", sum(session.connection_count for session in sessions))
         yield _gauge("crowded", "Whether work that can wait is put off", state.is_crowded())
         yield _gauge("cores", f"Processors that other programs left in the last {WINDOW_SECONDS} s", state.capacity.cores)
+        yield _gauge("cores_per_page", "Processors that an active visitor is assumed to use", state.capacity.cores_per_page)
         yield _gauge(
             "capacity_taken",
             f"Share of these, or of the event loop, that open pages may take; beyond {FULL:g} pages are refused",

@@ -97,7 +97,7 @@ class Settings:
     processes
         Number of server processes that share the processors of the machine.
     cores_per_page
-        Processors that an active visitor uses (see `app.runtime.capacity`).
+        Processors that an active visitor uses; 0 to estimate them (see `app.runtime.capacity`).
     frame_ancestors
         Origins that may embed the page in a frame; empty if no origin may.
     bokeh_patches
@@ -116,7 +116,7 @@ class Settings:
     threads: int = field(default_factory=count_cores, metadata={"parser": _integer(1, 1024)})
     log: LogFormat = field(default=LogFormat.TEXT, metadata={"parser": _LOG_FORMAT})
     processes: int = _setting(1, _integer(1, 1024))
-    cores_per_page: float = _setting(0.03, _number(0.001, 1.0))
+    cores_per_page: float = _setting(0.0, _number(0.0, 1.0))
     frame_ancestors: tuple[str, ...] = _setting((), _ORIGINS)
     bokeh_patches: bool = _setting(True, _YES_OR_NO)
 

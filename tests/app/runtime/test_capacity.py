@@ -12,6 +12,7 @@ from app.runtime.capacity import (
     FULL,
     IDLE_WEIGHT,
     LEAST_CORES,
+    PAGES_PER_SECOND,
     Capacity,
     ProcessorTimes,
     page_weight,
@@ -36,8 +37,8 @@ class Machine:
     def measure(self) -> ProcessorTimes:
         return self.times
 
-    def capacity(self, processes: int = 1) -> Capacity:
-        return Capacity(CORES_PER_PAGE, processes, self.measure, self.clock.monotonic, usable_cores=2)
+    def capacity(self, processes: int = 1, cores_per_page: float = CORES_PER_PAGE) -> Capacity:
+        return Capacity(cores_per_page, processes, self.measure, self.clock.monotonic, usable_cores=2)
 
     def run(self, capacity: Capacity, seconds: int, siblings: float = 0.0) -> None:
         for _ in range(seconds):
@@ -57,6 +58,29 @@ def admitted(capacity: Capacity) -> int:
 
 def test_pages_are_admitted_before_anyone_acts_up_to_a_share_of_a_processor() -> None:
     assert admitted(Machine().capacity()) == int(FULL / CORES_PER_PAGE)
+
+
+def test_a_machine_that_makes_pages_half_as_fast_admits_half_as_many_visitors() -> None:
+    fast, slow = (Machine().capacity(cores_per_page=0.0) for _ in range(2))
+    for capacity, seconds in ((fast, 0.2), (slow, 0.4)):
+        # The first page of a process takes longer.
+        for page_seconds in (5.0, *[seconds] * 10):
+            capacity.record_page(page_seconds)
+    assert admitted(fast) == int(FULL / (0.2 * PAGES_PER_SECOND))
+    assert admitted(slow) == int(FULL / (0.4 * PAGES_PER_SECOND))
+
+
+def test_some_pages_are_admitted_before_any_page_is_made_and_after_a_slow_first_page() -> None:
+    capacity = Machine().capacity(cores_per_page=0.0)
+    assert 20 < admitted(capacity) < 40
+    capacity.record_page(2.0)
+    assert 1 < admitted(capacity) < 10
+
+
+def test_a_given_use_of_the_processors_is_not_estimated() -> None:
+    capacity = Machine().capacity()
+    capacity.record_page(1.0)
+    assert admitted(capacity) == int(FULL / CORES_PER_PAGE)
 
 
 def test_each_of_two_processes_beside_a_busy_program_admits_half_as_many_pages() -> None:
