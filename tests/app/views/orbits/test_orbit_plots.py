@@ -64,14 +64,16 @@ def test_short_orbits_have_r2_against_linear_time(plots: OrbitPlots, drawings: l
     assert scales() == ["LogScale"] * 3
 
 
-def test_the_page_is_searched_once_when_the_axes_of_time_change(plots: OrbitPlots, drawings: list[OrbitCurves]) -> None:
+def test_the_page_is_searched_only_when_axes_of_time_change_and_then_once(plots: OrbitPlots, drawings: list[OrbitCurves]) -> None:
     document, (long, short) = Document(), drawings
     for plot in figures(plots).values():
         document.add_root(plot)
     plots.show([short], chosen=0)
     with patch.object(DocumentModelManager, "recompute", autospec=True) as recompute:
         plots.show([short, long], chosen=0)
-    # The axis of R² has another scale, ticker and formatter.
+        # The axis of R² has another scale, ticker and formatter.
+        assert recompute.call_count == 1
+        plots.show([long], chosen=0)
     assert recompute.call_count == 1
 
 
