@@ -91,8 +91,8 @@ def on_session_created(session_context: Any) -> None:
     page_time, begin = state.page_time(document), time.thread_time()
     import_module("app.session.page").build_page(document, loop)
     seconds = time.thread_time() - begin
-    for record in (page_time.charge, state.capacity.record_page):
-        loop.call_soon_threadsafe(record, seconds)
+    loop.call_soon_threadsafe(page_time.charge, seconds)
+    loop.call_soon_threadsafe(state.capacity.record_page, seconds)
 
 
 def on_session_destroyed(session_context: Any) -> None:

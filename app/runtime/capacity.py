@@ -25,14 +25,16 @@ CROWDED = 0.5
 """Share (see `FULL`) above which work that can wait is postponed, so that open pages stay fast."""
 
 PAGES_PER_SECOND = 0.12
-"""Processor time that an active visitor uses in a second, in units of the processor time for making a page. Both consist mostly
-of Python code, so this ratio changes little from machine to machine."""
+"""Number of pages whose making takes as much processor time as an active visitor uses in a second.
+
+Both run mostly Python code, so this number changes little from machine to machine.
+"""
 
 FIRST_CORES_PER_PAGE = 0.03
 """Processors that an active visitor is assumed to use before the first page is made."""
 
 MEASURED_PAGES = 15
-"""Number of pages from which the processor time for making a page is known: the last ones."""
+"""Number of the last pages from whose making the use of the processors by a visitor is estimated."""
 
 VISITOR_SHARE = 0.5
 """When a visitor opens a page, the pages of each other visitor count for at most this share of the capacity."""
