@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from contextlib import nullcontext
 from functools import partial
 from typing import Any
 from urllib.parse import parse_qsl
@@ -31,6 +32,9 @@ from app.views.maps.progress import ProgressView
 from app.views.panels.browser_events import BrowserEvents
 from app.views.panels.embedding import OpenLink
 from engine import System
+
+# The fields of the view state whose changes add parts to the page and remove others.
+_WITH_PARTS = ("analysis", "compared", "layers")
 
 
 class LinkPresenter:
@@ -140,10 +144,11 @@ class LinkPresenter:
         """Show the values of a link with a reviewed system; return messages for invalid values."""
         fitting, problems = fit_to_system(values, reviewed)
         shown = ViewState(**fitting)
+        # With the models frozen, Bokeh searches the page once for all models that the link adds or removes.
+        adds_parts = any(getattr(shown, name) != getattr(self.state, name) for name in _WITH_PARTS)
         self._is_navigating = True
         try:
-            # A link can add figures and buttons. With the models frozen, Bokeh searches the page once for all of these.
-            with pn.io.hold(), self._document.models.freeze():
+            with pn.io.hold(), self._document.models.freeze() if adds_parts else nullcontext():
                 self.state.show(reviewed, **{name: getattr(shown, name) for name in LINKED})
         finally:
             self._is_navigating = False

@@ -42,7 +42,7 @@ class MapPresenter:
     def __init__(self, context: SessionContext, document: Document, history: History, *, alone: bool) -> None:
         state, locked = context.state, context.locked
         self._state, self._results, self._notice = state, context.results, context.notice
-        self._document, self._history = document, history
+        self._history = history
         # Time of the latest request, in seconds; None once its first frame has arrived.
         self._requested_at: float | None = None
         # The start that the last click added; None if the start was in the list already.
@@ -124,11 +124,9 @@ class MapPresenter:
         if state.orbit_job((x, ordinate)) is None:
             self._notice.show(describe_fate(Fate.FORBIDDEN))
             return
-        # The first orbits add figures and buttons. With the models frozen, Bokeh searches the page once for all of these.
         before = state.starts
-        with self._document.models.freeze():
-            added = state.add_start((x, ordinate))
-            state.analysis = Analysis.ORBIT
+        added = state.add_start((x, ordinate))
+        state.analysis = Analysis.ORBIT
         self._added_start = (x, ordinate) if state.starts != before else None
         if not added:
             self._notice.show(f"{MOST_ORBITS} orbits are shown already. Remove one first.")

@@ -255,11 +255,8 @@ class ViewState(param.Parameterized):
         self._review = reviewed
         values["plane"] = plane_of_system(values.get("plane", self.plane), reviewed.system)
         values["system"] = reviewed.system
-        for name in ("plane", "system"):
-            # Param would call the watchers even for an equal slice or system.
-            if values[name] == getattr(self, name):
-                del values[name]
-        self.param.update(**values)
+        # Param would call the watchers even for an equal slice, system or set of layers.
+        self.param.update(**{name: value for name, value in values.items() if value != getattr(self, name)})
 
     def show_slice(self, plane: Slice) -> None:
         """Set a slice, and remove window and starts."""

@@ -12,7 +12,17 @@ from typing import Any
 import panel as pn
 from bokeh.events import Event
 from bokeh.model import Model
-from bokeh.models import BasicTickFormatter, CustomJSHover, CustomJSTickFormatter, GlyphRenderer, HoverTool, Range1d, Span
+from bokeh.models import (
+    BasicTickFormatter,
+    ColumnDataSource,
+    CustomJSHover,
+    CustomJSTickFormatter,
+    Glyph,
+    GlyphRenderer,
+    HoverTool,
+    Range1d,
+    Span,
+)
 from bokeh.models.dom import HTML
 from bokeh.plotting import figure
 
@@ -181,32 +191,39 @@ def changing_models(plots: Sequence[figure]) -> AbstractContextManager[object]:
 
 
 class LaterGlyphs:
-    """Glyphs that are added to figures when they are first shown.
+    """Glyphs that are made and added to figures when they are first shown. All figures share them.
 
     Parameters
     ----------
-    add
-        Adds the glyphs to a figure.
+    make
+        Returns the glyphs with their data sources, from back to front.
+    level
+        Level of the glyphs in a figure, a name in `bokeh.core.enums.RenderLevel`.
     """
 
-    def __init__(self, add: Callable[[figure], object]) -> None:
-        self._add = add
+    def __init__(self, make: Callable[[], Sequence[tuple[ColumnDataSource, Glyph]]], level: str = "glyph") -> None:
+        self._make, self._level = make, level
+        self._glyphs: Sequence[tuple[ColumnDataSource, Glyph]] = ()
         self._waiting_plots: list[figure] = []
-        self._is_drawn = False
 
     def add_figure(self, plot: figure) -> None:
         """Add the glyphs to a figure, at once if other figures have them, otherwise when `draw` is called."""
-        if self._is_drawn:
+        if self._glyphs:
             self._add(plot)
         else:
             self._waiting_plots.append(plot)
 
     def draw(self) -> None:
         """Add the glyphs to the figures that lack them, and to later figures."""
-        plots, self._waiting_plots, self._is_drawn = self._waiting_plots, [], True
+        self._glyphs = self._glyphs or self._make()
+        plots, self._waiting_plots = self._waiting_plots, []
         with changing_models(plots):
             for plot in plots:
                 self._add(plot)
+
+    def _add(self, plot: figure) -> None:
+        for source, glyph in self._glyphs:
+            plot.add_glyph(source, glyph, level=self._level)
 
 
 def set_range(axis_range: Range1d, low: float, high: float) -> None:

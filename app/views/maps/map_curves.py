@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from bokeh.models import ColumnDataSource, MultiLine, Text
+from bokeh.models import ColumnDataSource, Glyph, MultiLine, Text
 from bokeh.plotting import figure
 
 from app.browser.browser_system import EXIT_NUMBER_DISTANCE
@@ -68,7 +68,7 @@ class MapCurves:
         self._critical_source = ColumnDataSource({"xs": [], "ys": []}, name="critical_equipotential")
         self._exit_source = ColumnDataSource({"xs": [], "ys": [], "colour": []}, name="lyapunov_orbits")
         self._label_source = ColumnDataSource({"x": [], "y": [], "text": [], "colour": []}, name="channel_numbers")
-        self._exit_lines, self._exit_numbers = LaterGlyphs(self._add_exit_lines), LaterGlyphs(self._add_exit_numbers)
+        self._exit_lines, self._exit_numbers = LaterGlyphs(self._make_exit_lines), LaterGlyphs(self._make_exit_numbers)
 
     def draw(self, plot: figure, *, full: bool) -> None:
         """Add the curves to a figure. Only a `full` figure gets equipotentials and exit numbers."""
@@ -80,14 +80,13 @@ class MapCurves:
         if full:
             self._exit_numbers.add_figure(plot)
 
-    def _add_exit_lines(self, plot: figure) -> None:
-        plot.add_glyph(self._exit_source, MultiLine(line_color=LIGHT.halo, line_width=5))
-        plot.add_glyph(self._exit_source, MultiLine(line_color="colour", line_width=3))
+    def _make_exit_lines(self) -> list[tuple[ColumnDataSource, Glyph]]:
+        styles = ({"line_color": LIGHT.halo, "line_width": 5}, {"line_color": "colour", "line_width": 3})
+        return [(self._exit_source, MultiLine(**style)) for style in styles]
 
-    def _add_exit_numbers(self, plot: figure) -> None:
-        label = Text(text_color="colour", text_align="center", text_baseline="middle", text_font_size="16px")
-        label.text_font_style = "bold"
-        plot.add_glyph(self._label_source, label)
+    def _make_exit_numbers(self) -> list[tuple[ColumnDataSource, Glyph]]:
+        font = {"text_align": "center", "text_baseline": "middle", "text_font_size": "16px", "text_font_style": "bold"}
+        return [(self._label_source, Text(text_color="colour", **font))]
 
     def show(self, spec: MapSpec) -> None:
         """Draw the curves of a map."""

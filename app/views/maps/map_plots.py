@@ -14,7 +14,7 @@ from bokeh.plotting import figure
 from app.state.view import PICTURES, Start
 from app.state.view_state import ViewState
 from app.views.components.legends import picture_legend
-from app.views.components.plots import FigurePane, annotate_picture, label_axes, map_figure
+from app.views.components.plots import FigurePane, annotate_picture, changing_models, label_axes, map_figure
 from app.views.maps.comparison import ComparedMap
 from app.views.maps.hover import pixel_hover
 from app.views.maps.map_curves import MapCurves, trace_curves
@@ -128,10 +128,11 @@ class MapsView:
         layers = [layer for name, layer in LAYERS.items() if name in state.layers]
         always_shown = PLAIN_PICTURES if state.compared is None else COMPARISON_PICTURES
         names = [*always_shown, *(layer.picture.name for layer in layers if layer.picture is not None)]
-        for name in names:
-            if name not in self._panes:
-                self._build(name)
-        self.grid.show({name: self._panes[name] for name in names})
+        with changing_models(list(self.figures.values())):
+            for name in names:
+                if name not in self._panes:
+                    self._build(name)
+            self.grid.show({name: self._panes[name] for name in names})
         self._redraw()
 
     def show(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from bokeh.models import ColumnDataSource, Quad, Scatter, Text
+from bokeh.models import ColumnDataSource, Glyph, Quad, Scatter, Text
 from bokeh.plotting import figure
 
 from app.state.view_state import ViewState
@@ -32,9 +32,9 @@ class Markers:
 
     def __init__(self, state: ViewState) -> None:
         self._glyphs_by_kind = {
-            "starts": LaterGlyphs(self._add_starts),
-            "sections": LaterGlyphs(self._add_sections),
-            "box": LaterGlyphs(self._add_box),
+            "starts": LaterGlyphs(self._make_starts, "annotation"),
+            "sections": LaterGlyphs(self._make_sections, "annotation"),
+            "box": LaterGlyphs(self._make_box, "annotation"),
         }
         self._starts = ColumnDataSource({"x": [], "y": [], "slot": [], "text": []}, name="starts")
         self._sections = ColumnDataSource({"x": [], "y": [], "slot": []}, name="sections")
@@ -47,14 +47,13 @@ class Markers:
         for kind in ("starts", "box", *(["sections"] if sections else [])):
             self._glyphs_by_kind[kind].add_figure(plot)
 
-    def _add_sections(self, plot: figure) -> None:
-        plot.add_glyph(self._sections, Scatter(size=3, fill_color=self._colour, line_color=None), level="annotation")
+    def _make_sections(self) -> list[tuple[ColumnDataSource, Glyph]]:
+        return [(self._sections, Scatter(size=3, fill_color=self._colour, line_color=None))]
 
-    def _add_box(self, plot: figure) -> None:
-        box = Quad(fill_alpha=0.0, line_color=MARK_EDGE, line_width=2, line_dash="dashed")
-        plot.add_glyph(self._box, box, level="annotation")
+    def _make_box(self) -> list[tuple[ColumnDataSource, Glyph]]:
+        return [(self._box, Quad(fill_alpha=0.0, line_color=MARK_EDGE, line_width=2, line_dash="dashed"))]
 
-    def _add_starts(self, plot: figure) -> None:
+    def _make_starts(self) -> list[tuple[ColumnDataSource, Glyph]]:
         crosses = [
             Scatter(marker="cross", size=size, line_width=width, line_color=ink)
             for size, width, ink in ((18, 7, LIGHT.halo), (17, 5, MARK_EDGE), (16, 3, self._colour))
@@ -62,8 +61,7 @@ class Markers:
         style = {"x_offset": 6, "y_offset": -4, "text_font_size": "14px", "text_font_style": "bold", "text_color": MARK_EDGE}
         # The outline of a text covers the text, so the number is drawn again without outline.
         numbers = [Text(text_outline_color=outline, **style) for outline in (LIGHT.halo, None)]
-        for glyph in (*crosses, *numbers):
-            plot.add_glyph(self._starts, glyph, level="annotation")
+        return [(self._starts, glyph) for glyph in (*crosses, *numbers)]
 
     def show_starts(self, starts: Sequence[tuple[float, float]]) -> None:
         """Mark each start with a numbered cross."""

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
-from bokeh.models import ColumnDataSource, Image, LinearColorMapper, MultiLine
+from bokeh.models import ColumnDataSource, Glyph, Image, LinearColorMapper, MultiLine
 from bokeh.plotting import figure
 
 from app.state.view_state import ViewState
@@ -35,7 +35,7 @@ class Overlays:
     def __init__(self, source: ColumnDataSource, state: ViewState) -> None:
         self._source, self._state = source, state
         self.curves = {name: ColumnDataSource(_no_curves(), name=name) for name in _DRAWN_LAYERS}
-        self._glyphs_by_layer = {name: LaterGlyphs(partial(self._add_glyphs, layer)) for name, layer in _DRAWN_LAYERS.items()}
+        self._glyphs_by_layer = {name: LaterGlyphs(partial(self._make_glyphs, layer)) for name, layer in _DRAWN_LAYERS.items()}
         self._strokes: dict[str, Sequence[Stroke]] = {}
         self._spec: MapSpec | None = None
         state.param.watch(lambda event: self._show_all_curves(), "palette")
@@ -75,18 +75,19 @@ class Overlays:
     def _show_curves(self, name: str) -> None:
         self.curves[name].data = _curve_columns(self._strokes[name], self._state.colours)
 
-    def _add_glyphs(self, layer: Layer, plot: figure) -> None:
-        """Add the marked pixels and the curves of a layer to a figure."""
+    def _make_glyphs(self, layer: Layer) -> list[tuple[ColumnDataSource, Glyph]]:
+        """Return the glyphs of the marked pixels and of the curves of a layer."""
         over = layer.over
+        glyphs: list[tuple[ColumnDataSource, Glyph]] = []
         if over is not None and over.pixel_colours is not None and layer.pixels is not None:
             colours = list(over.pixel_colours)
             mapper = LinearColorMapper(palette=colours, low=-0.5, high=len(colours) - 0.5)
-            plot.add_glyph(self._source, Image(image=layer.pixels.column, dw="dw", dh="dh", color_mapper=mapper))
+            glyphs.append((self._source, Image(image=layer.pixels.column, dw="dw", dh="dh", color_mapper=mapper)))
         if over is not None and over.strokes is not None:
             halo = {"line_color": LIGHT.halo, "line_width": "halo_width", "line_alpha": "halo_alpha"}
             stroke = {"line_color": "colour", "line_width": "width", "line_alpha": "alpha"}
-            for style in (halo, stroke):
-                plot.add_glyph(self.curves[layer.name], MultiLine(**style))
+            glyphs += [(self.curves[layer.name], MultiLine(**style)) for style in (halo, stroke)]
+        return glyphs
 
 
 def _curve_columns(strokes: Sequence[Stroke], palette: Palette) -> dict[str, list[Any]]:

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from bokeh.models import ColumnDataSource, ImageRGBA, MultiLine, Range1d, Scatter
-from bokeh.plotting import figure
+from bokeh.models import ColumnDataSource, Glyph, ImageRGBA, MultiLine, Range1d, Scatter
 
 from app.state.view_state import ViewState
 from app.views.components.legends import legend_items
@@ -55,20 +54,21 @@ class WellView:
         self._outline_key: tuple[MapSpec, Palette] | None = None
         self.plot = map_figure("well", TITLE, *self._ranges)
         self._outlines.draw(self.plot, full=True)
-        self._orbit_glyphs = LaterGlyphs(self._add_orbits)
+        self._orbit_glyphs = LaterGlyphs(self._make_orbits)
         self._orbit_glyphs.add_figure(self.plot)
         self.pane = FigurePane(self.plot)
         state.param.watch(lambda event: self._outline(), "palette")
 
-    def _add_orbits(self, plot: figure) -> None:
-        """Add the glyphs of paths, trails and points to the figure."""
+    def _make_orbits(self) -> list[tuple[ColumnDataSource, Glyph]]:
+        """Return the glyphs of paths, trails and points."""
         style = self._line_style
-        plot.add_glyph(self._shades, ImageRGBA(dw="dw", dh="dh", global_alpha="alpha"))
-        plot.add_glyph(self._paths, MultiLine(**style))
-        plot.add_glyph(self._trails, MultiLine(line_color=LIGHT.halo, line_width=5, line_alpha=0.7))
-        plot.add_glyph(self._trails, MultiLine(**style | {"line_width": 2.5}))
-        point = Scatter(size=11, fill_color=style["line_color"], line_color=MARK_EDGE, line_width=1.5)
-        plot.add_glyph(self._points, point)
+        return [
+            (self._shades, ImageRGBA(dw="dw", dh="dh", global_alpha="alpha")),
+            (self._paths, MultiLine(**style)),
+            (self._trails, MultiLine(line_color=LIGHT.halo, line_width=5, line_alpha=0.7)),
+            (self._trails, MultiLine(**style | {"line_width": 2.5})),
+            (self._points, Scatter(size=11, fill_color=style["line_color"], line_color=MARK_EDGE, line_width=1.5)),
+        ]
 
     def show_map(self, spec: MapSpec) -> None:
         """Show the well at the energy of a map."""

@@ -28,13 +28,13 @@ class Inspector:
     def __init__(
         self, controls: OrbitControls, player: OrbitPlayer, plots: OrbitPlots, separation: SeparationPlot, later: Later
     ) -> None:
-        self._controls, self._player = controls, player
+        self._controls = controls
         self._start_count = 0
         self._orbit_count = 0
         self._texts: list[pn.viewable.Viewable] = []
         self._figure_panes: list[pn.viewable.Viewable] = []
         self._boxes = controls.start_boxes()
-        self._build_later = later(self._build_texts)
+        self._texts_in_turns = InTurns([lambda: [controls.head(player)], lambda: [controls.details()]], self._add_texts, later)
         self._figures_in_turns = InTurns([*plots.parts(), separation.build], self._add_figures, later)
         self._grid = pn.Column(sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT)
         self._arrange()
@@ -47,17 +47,16 @@ class Inspector:
     def follow(self, start_count: int, orbit_count: int) -> None:
         """Show the panes that are needed for a number of starts, and for the orbits among them."""
         self._start_count, self._orbit_count = start_count, orbit_count
-        if start_count >= 1 and not self._texts:
-            self._build_later()
+        if start_count >= 1:
+            self._texts_in_turns.begin()
         if orbit_count >= 1:
             self._figures_in_turns.begin()
         self._show_parts()
 
-    def _build_texts(self) -> None:
-        if not self._texts:
-            self._texts = [self._controls.head(self._player), self._controls.details()]
-            self._arrange()
-            self._show_parts()
+    def _add_texts(self, texts: Sequence[pn.viewable.Viewable]) -> None:
+        self._texts += texts
+        self._arrange()
+        self._show_parts()
 
     def _add_figures(self, figures: Sequence[pn.viewable.Viewable]) -> None:
         self._figure_panes += figures

@@ -8,7 +8,7 @@ import panel as pn
 from bokeh.document import Document
 from bokeh.document.models import DocumentModelManager
 from bokeh.events import Tap
-from bokeh.models import Scatter
+from bokeh.models import ColumnDataSource, Scatter
 
 from app.views.components.plots import HOVER_FORMATS, FigurePane, LaterGlyphs, annotate_picture, chart_hover, square_figure
 
@@ -27,7 +27,7 @@ def test_a_figure_shown_again_handles_each_event_once() -> None:
 
 def test_glyphs_are_added_with_one_search_of_the_models() -> None:
     plots, document = [square_figure(name, name) for name in ("basins", "times")], Document()
-    glyphs = LaterGlyphs(lambda plot: plot.add_glyph(Scatter()))
+    glyphs = LaterGlyphs(lambda: [(ColumnDataSource(), Scatter())])
     for plot in plots:
         document.add_root(plot)
         glyphs.add_figure(plot)
@@ -39,11 +39,14 @@ def test_glyphs_are_added_with_one_search_of_the_models() -> None:
 
 
 def test_a_figure_that_is_made_later_gets_the_glyphs_that_other_figures_have() -> None:
-    glyphs = LaterGlyphs(lambda plot: plot.add_glyph(Scatter()))
+    glyphs = LaterGlyphs(lambda: [(ColumnDataSource(), Scatter())], level="annotation")
     glyphs.draw()
-    plot = square_figure("basins", "basins")
-    glyphs.add_figure(plot)
-    assert len(plot.renderers) == 1
+    plots = [square_figure(name, name) for name in ("basins", "times")]
+    for plot in plots:
+        glyphs.add_figure(plot)
+    renderers = [renderer for plot in plots for renderer in plot.renderers]
+    assert [renderer.level for renderer in renderers] == ["annotation"] * 2
+    assert len({renderer.glyph for renderer in renderers}) == 1
 
 
 def test_another_legend_is_written_into_the_same_model() -> None:
