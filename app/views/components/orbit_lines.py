@@ -18,8 +18,9 @@ Curve = tuple[np.ndarray, np.ndarray]
 
 # Opacity of the orbits that are not chosen.
 _FAINT_ALPHA = 0.35
-# A curve that encloses no area, in place of a missing envelope.
-_NO_AREA = np.full(1, np.nan), np.full(1, np.nan)
+# Coordinates of a curve that encloses no area, in place of a missing envelope. A list, because Bokeh sends each array in two
+# messages of its own.
+_NO_AREA = [np.nan]
 
 
 def in_front(orbits: Sequence[OrbitCurves | None], chosen: int) -> list[tuple[int, OrbitCurves]]:
@@ -63,9 +64,10 @@ def band_columns(
     The number must not change: Bokeh uses an index of the old envelopes for the new ones, and fails if an envelope is missing.
     """
     missing = MOST_ORBITS - len(orbits)
-    areas = [outline if outline[0].size else _NO_AREA for outline in outlines] + [_NO_AREA] * missing
-    columns = line_columns(orbits, areas, [ENVELOPE_ALPHA * alpha for alpha in alphas])
-    return columns | {"slot": columns["slot"] + [0] * missing, "alpha": columns["alpha"] + [0.0] * missing}
+    columns = line_columns(orbits, outlines, [ENVELOPE_ALPHA * alpha for alpha in alphas])
+    padding = {"xs": _NO_AREA, "ys": _NO_AREA, "slot": 0, "alpha": 0.0}
+    areas = {axis: [each if each.size else _NO_AREA for each in columns[axis]] for axis in ("xs", "ys")}
+    return {name: values + [padding[name]] * missing for name, values in (columns | areas).items()}
 
 
 def line_columns(

@@ -9,6 +9,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+import numpy as np
 import panel as pn
 from bokeh.events import Event
 from bokeh.model import Model
@@ -43,6 +44,9 @@ _HOVER_VALUE = re.compile(r"([@$]\w+)\{(\w+)\}")
 
 # Name of a momentum, px or py.
 _MOMENTUM = re.compile(r"^p([xy])$")
+
+# The point between two lines.
+_GAP = np.full((1, 2), np.nan)
 
 # Width of a history over its height.
 _HISTORY_ASPECT = 2.2
@@ -224,6 +228,15 @@ class LaterGlyphs:
     def _add(self, plot: figure) -> None:
         for source, glyph in self._glyphs:
             plot.add_glyph(source, glyph, level=self._level)
+
+
+def with_gaps(lines: Sequence[np.ndarray]) -> np.ndarray:
+    """Return lines, arrays of points (n, 2), as one line of shape (m, 2) with a gap, a point of NaN, before and after each.
+
+    Lines of the same style are sent to the browser as one line. Bokeh sends each array in two messages of its own. The stable
+    manifolds of a case have a thousand lines, and their messages would occupy the event loop for seconds.
+    """
+    return np.concatenate([_GAP, *(part for line in lines for part in (line, _GAP))])
 
 
 def set_range(axis_range: Range1d, low: float, high: float) -> None:

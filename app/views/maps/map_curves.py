@@ -12,7 +12,7 @@ from bokeh.plotting import figure
 
 from app.browser.browser_system import EXIT_NUMBER_DISTANCE
 from app.state.view_state import ViewState
-from app.views.components.plots import LaterGlyphs
+from app.views.components.plots import LaterGlyphs, with_gaps
 from app.views.components.theme import theme_colour, theme_line
 from engine import LyapunovOrbit, MapSpec, find_lyapunov_orbits
 from engine.slices.limiting_curves import trace_equipotentials, trace_zero_velocity_curve
@@ -91,14 +91,14 @@ class MapCurves:
     def show(self, spec: MapSpec) -> None:
         """Draw the curves of a map."""
         curves = trace_curves(spec)
-        self._limit_source.data = _line_columns(curves.limit)
+        self._limit_source.data = _columns_with_gaps(curves.limit)
         h = spec.common_energy
         orbits = find_lyapunov_orbits(spec.potential, h) if spec.plane.shows_positions and h is not None else ()
         # Without orbits before and now, nothing needs to be sent.
         if orbits or self._exit_source.data["xs"]:
             self._show_exits(orbits)
-        self._critical_source.data = _line_columns(curves.critical)
-        self._level_source.data = _line_columns(curves.levels)
+        self._critical_source.data = _columns_with_gaps(curves.critical)
+        self._level_source.data = _columns_with_gaps(curves.levels)
 
     def _show_exits(self, orbits: Sequence[LyapunovOrbit]) -> None:
         if orbits:
@@ -132,6 +132,11 @@ class MapCurves:
 def _draw_lines(plot: figure, source: ColumnDataSource, colour: str, width: float) -> None:
     """Draw lines in a colour of `LineColours`."""
     plot.add_glyph(source, MultiLine(line_color=theme_line(colour), line_width=width))
+
+
+def _columns_with_gaps(lines: Sequence[np.ndarray]) -> dict[str, list[np.ndarray]]:
+    """Return the columns of lines of the same style."""
+    return _line_columns([with_gaps(lines)])
 
 
 def _line_columns(lines: list[np.ndarray]) -> dict[str, list[np.ndarray]]:

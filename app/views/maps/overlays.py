@@ -10,7 +10,7 @@ from bokeh.models import ColumnDataSource, Glyph, Image, LinearColorMapper, Mult
 from bokeh.plotting import figure
 
 from app.state.view_state import ViewState
-from app.views.components.plots import LaterGlyphs
+from app.views.components.plots import LaterGlyphs, with_gaps
 from engine import MapSpec
 from plots.layers.layer import Layer, Stroke
 from plots.layers.table import LAYERS
@@ -91,16 +91,16 @@ class Overlays:
 
 
 def _curve_columns(strokes: Sequence[Stroke], palette: Palette) -> dict[str, list[Any]]:
-    lines = [(line, stroke) for stroke in strokes for line in stroke.lines]
+    lines = [with_gaps(stroke.lines) for stroke in strokes]
     return {
-        "xs": [line[:, 0] for line, _ in lines],
-        "ys": [line[:, 1] for line, _ in lines],
-        "colour": [palette.channels[stroke.channel - 1] for _, stroke in lines],
-        "width": [stroke.width for _, stroke in lines],
-        "alpha": [stroke.alpha for _, stroke in lines],
-        "halo_width": [stroke.halo_width for _, stroke in lines],
+        "xs": [line[:, 0] for line in lines],
+        "ys": [line[:, 1] for line in lines],
+        "colour": [palette.channels[stroke.channel - 1] for stroke in strokes],
+        "width": [stroke.width for stroke in strokes],
+        "alpha": [stroke.alpha for stroke in strokes],
+        "halo_width": [stroke.halo_width for stroke in strokes],
         # The browser draws even lines of width 0.
-        "halo_alpha": [float(stroke.halo_width > 0.0) for _, stroke in lines],
+        "halo_alpha": [float(stroke.halo_width > 0.0) for stroke in strokes],
     }
 
 

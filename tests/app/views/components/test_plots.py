@@ -4,13 +4,22 @@ from __future__ import annotations
 
 from unittest.mock import patch
 
+import numpy as np
 import panel as pn
 from bokeh.document import Document
 from bokeh.document.models import DocumentModelManager
 from bokeh.events import Tap
 from bokeh.models import ColumnDataSource, Scatter
 
-from app.views.components.plots import HOVER_FORMATS, FigurePane, LaterGlyphs, annotate_picture, chart_hover, square_figure
+from app.views.components.plots import (
+    HOVER_FORMATS,
+    FigurePane,
+    LaterGlyphs,
+    annotate_picture,
+    chart_hover,
+    square_figure,
+    with_gaps,
+)
 
 
 def test_a_figure_shown_again_handles_each_event_once() -> None:
@@ -47,6 +56,14 @@ def test_a_figure_that_is_made_later_gets_the_glyphs_that_other_figures_have() -
     renderers = [renderer for plot in plots for renderer in plot.renderers]
     assert [renderer.level for renderer in renderers] == ["annotation"] * 2
     assert len({renderer.glyph for renderer in renderers}) == 1
+
+
+def test_lines_are_joined_with_a_gap_between_them() -> None:
+    first, second = np.array([[0.0, 1.0], [2.0, 3.0]]), np.array([[4.0, 5.0]])
+    joined = with_gaps([first, second])
+    gap = np.full((1, 2), np.nan)
+    np.testing.assert_array_equal(joined, np.concatenate([gap, first, gap, second, gap]))
+    np.testing.assert_array_equal(with_gaps([]), gap)
 
 
 def test_another_legend_is_written_into_the_same_model() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from bokeh.models import ColumnDataSource, Image
 
@@ -29,6 +30,16 @@ def test_curves_have_the_colours_of_their_channels_while_they_are_drawn(manifold
         assert set(overlays.curves["manifolds"].data["colour"]) == set(palette.channels[:3])
     overlays.remove("manifolds")
     assert overlays.curves["manifolds"].data["xs"] == []
+
+
+def test_the_lines_of_an_exit_are_one_line_with_gaps(manifolds: StableManifolds) -> None:
+    overlays = Overlays(ColumnDataSource(), ViewState())
+    overlays.show("manifolds", manifolds)
+    columns = overlays.curves["manifolds"].data
+    assert len(columns["xs"]) == 3 < len(manifolds.arcs)
+    for name, positions in (("xs", [arc.x for arc in manifolds.arcs]), ("ys", [arc.px for arc in manifolds.arcs])):
+        sent = np.concatenate(columns[name])
+        np.testing.assert_array_equal(np.sort(sent[~np.isnan(sent)]), np.sort(np.concatenate(positions)))
 
 
 def test_marks_are_added_once_to_the_pictures_over_which_they_lie() -> None:
