@@ -11,6 +11,7 @@ import numpy as np
 
 from engine.foundations.arrays import read_only
 from engine.foundations.validation import replace_unchecked
+from engine.systems.forms.exit_saddles import in_channel_order
 from engine.systems.merged_channels import ChannelMerger
 from engine.systems.well import Well
 from engine.systems.well_units import WellUnits
@@ -82,7 +83,7 @@ class ContinuedWell(Well):
     @cached_property
     def saddles(self) -> np.ndarray:
         """See `Well.saddles`."""
-        return self._in_channel_order(self.exit_saddles)
+        return read_only(in_channel_order(self.exit_saddles, mirror_in_x=self.mirror_in_x))
 
     @cached_property
     def channel_mergers(self) -> tuple[ChannelMerger, ...]:

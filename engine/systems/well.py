@@ -15,7 +15,7 @@ from engine.foundations.arrays import ReadOnlyArrays, read_only
 from engine.integrator.bound_kernels import load_kernels
 from engine.integrator.source.recurrence import Structure, find_structure
 from engine.integrator.source.series import Setting
-from engine.systems.forms.exit_saddles import find_maxima_beside, leads_out_of_well
+from engine.systems.forms.exit_saddles import ROUNDING, find_maxima_beside, in_channel_order, leads_out_of_well
 from engine.systems.forms.expression_form import Form
 from engine.systems.forms.form import hessian_matrix
 from engine.systems.forms.stored_points import stored_points
@@ -25,10 +25,6 @@ from engine.systems.well_units import WellUnits, nearest_power_of_two
 
 EQUAL_ENERGY_TOLERANCE = 1e-12
 """Largest difference of the energies of saddles that count as equally high, in units of energy of the well."""
-
-# Coordinates below this share of the distance from the origin are rounding errors of zero. Their sign would change the channel
-# numbers on the +x axis.
-_ROUNDING = 1e-13
 
 # Time step for a frequency of 1. At the order of the Taylor kernels, energy is conserved as well as by adaptive steps.
 _FIXED_STEP = 1.0 / 3.0
@@ -90,16 +86,7 @@ class Well(ReadOnlyArrays):
             return read_only(np.empty((0, 2)))
         form, points, indices = self.form, self.critical_points, self.critical_indices
         leads_out = stored_points("exit_saddles", form, lambda: leads_out_of_well(form, points, indices, form.singular_points))
-        return self._in_channel_order(points[leads_out])
-
-    def _in_channel_order(self, points: np.ndarray) -> np.ndarray:
-        """Sort exit saddles (n, 2) counterclockwise from the +x axis, and make zeros and mirror symmetry exact."""
-        rounded = np.where(np.abs(points) < _ROUNDING * np.hypot(*points.T)[:, None], 0.0, points)
-        angle = np.arctan2(rounded[:, 1], rounded[:, 0]) % (2 * np.pi)
-        saddles = rounded[np.argsort(angle, kind="stable")]
-        if self.mirror_in_x:
-            _make_symmetric(saddles)
-        return read_only(saddles)
+        return read_only(in_channel_order(points[leads_out], mirror_in_x=self.mirror_in_x))
 
     @property
     def channels(self) -> int:
@@ -149,7 +136,7 @@ class Well(ReadOnlyArrays):
         _, eigenvectors = np.linalg.eigh(hessian_matrix(self.form, *saddle))
         # The first eigenvector belongs to the negative eigenvalue.
         unstable = eigenvectors[:, 0]
-        direction: np.ndarray = np.where(np.abs(unstable) < _ROUNDING, 0.0, unstable)
+        direction: np.ndarray = np.where(np.abs(unstable) < ROUNDING, 0.0, unstable)
         return direction if direction @ saddle > 0 else -direction
 
     @cached_property
@@ -345,11 +332,3 @@ class Well(ReadOnlyArrays):
     def energy_at(self, multiple: float) -> float:
         """Return the energy at a multiple of the depth of the well: 0 at the bottom, 1 at the escape energy."""
         return self.bottom + multiple * (self.escape_energy - self.bottom)
-
-
-def _make_symmetric(points: np.ndarray) -> None:
-    """Replace each point at x < 0 by the exact mirror image of its partner at x > 0, in place."""
-    right_points = points[points[:, 0] > 0.0]
-    for left in np.flatnonzero(points[:, 0] < 0.0):
-        distance = np.hypot(*(right_points - points[left] * [-1.0, 1.0]).T)
-        points[left] = right_points[np.argmin(distance)] * [-1.0, 1.0]

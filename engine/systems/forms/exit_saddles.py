@@ -16,6 +16,9 @@ import numpy as np
 from engine.systems.forms.expression_form import Form
 from engine.systems.forms.form import NO_POINTS, DescentError, Flow
 
+ROUNDING = 1e-13
+"""Coordinates of a point or a direction below this share of its distance from the origin are rounding errors of zero."""
+
 # Distance from the saddle at which a descent starts, in units of the distance to the nearest other critical point.
 _START_DISTANCE = 1e-3
 # Distance from a critical point at which a descent ends, in units of the distance of the critical point nearest to the origin.
@@ -93,6 +96,25 @@ def find_maxima_beside(form: Form, points: np.ndarray, indices: np.ndarray, sadd
         ends = ascent.find_ends(int(saddle), 1.0) | ascent.find_ends(int(saddle), -1.0)
         row[[end for end in ends if end >= 0]] = True
     return flags
+
+
+def in_channel_order(saddles: np.ndarray, *, mirror_in_x: bool) -> np.ndarray:
+    """Sort exit saddles (n, 2) counterclockwise from the +x axis, and make zeros and, with `mirror_in_x`, the symmetry exact."""
+    # The sign of a rounding error would change the channel numbers on the +x axis.
+    rounded = np.where(np.abs(saddles) < ROUNDING * np.hypot(*saddles.T)[:, None], 0.0, saddles)
+    angle = np.arctan2(rounded[:, 1], rounded[:, 0]) % (2 * np.pi)
+    ordered = rounded[np.argsort(angle, kind="stable")]
+    if mirror_in_x:
+        _make_symmetric(ordered)
+    return ordered
+
+
+def _make_symmetric(points: np.ndarray) -> None:
+    """Replace each point at x < 0 by the exact mirror image of its partner at x > 0, in place."""
+    right_points = points[points[:, 0] > 0.0]
+    for left in np.flatnonzero(points[:, 0] < 0.0):
+        distance = np.hypot(*(right_points - points[left] * [-1.0, 1.0]).T)
+        points[left] = right_points[np.argmin(distance)] * [-1.0, 1.0]
 
 
 class _Descent:
