@@ -255,8 +255,11 @@ class ViewState(param.Parameterized):
         self._review = reviewed
         values["plane"] = plane_of_system(values.get("plane", self.plane), reviewed.system)
         values["system"] = reviewed.system
-        # Param would call the watchers even for an equal slice, system or set of layers.
-        self.param.update(**{name: value for name, value in values.items() if value != getattr(self, name)})
+        for name in ("layers", "plane", "system"):
+            # Param would call the watchers even for equal layers, or an equal slice or system.
+            if values.get(name) == getattr(self, name):
+                del values[name]
+        self.param.update(**values)
 
     def show_slice(self, plane: Slice) -> None:
         """Set a slice, and remove window and starts."""

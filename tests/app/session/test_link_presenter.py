@@ -1,0 +1,21 @@
+"""A link shows its view, also if the view has much in common with the present view."""
+
+from __future__ import annotations
+
+from app.state.view_state import ViewState
+from engine import Window
+from tests.app.other_loop import run_on_new_loop
+from tests.app.session.opened_page import on_loop, opened_page
+
+
+def test_a_link_to_another_window_keeps_the_box_that_both_views_have() -> None:
+    async def follow() -> ViewState:
+        view = {"case": "I", "h": "0.3", "window": "-0.3,0.3,-0.3,0.3", "box": "-0.1,0.1,-0.1,0.1"}
+        async with opened_page(view) as (explorer, session):
+            link = "?case=I&h=0.3&window=-0.2,0.2,-0.2,0.2&box=-0.1,0.1,-0.1,0.1"
+            await on_loop(session, lambda: explorer.links.navigate(link, 0, 0))
+            return explorer.state
+
+    state = run_on_new_loop(follow)
+    assert state.window == Window(-0.2, 0.2, -0.2, 0.2)
+    assert state.box == Window(-0.1, 0.1, -0.1, 0.1)
