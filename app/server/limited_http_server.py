@@ -18,6 +18,7 @@ from tornado.iostream import IOStream
 from app.runtime.process_state import process_state
 from app.runtime.visitors import network_of
 from app.server.admission import LONGEST_LINK
+from app.server.batched_stream import batched
 from app.server.routes import redirect_to_page, refuse_other_hosts, refuse_other_routes
 
 LIMITS: Mapping[str, int] = {
@@ -64,7 +65,7 @@ class LimitedHTTPServer(HTTPServer):
             stream.close()
             return
         self._connection_counts[network] += 1
-        super().handle_stream(stream, address)
+        super().handle_stream(batched(stream), address)
 
     def start_request(self, server_conn: object, request_conn: HTTPConnection) -> HTTPMessageDelegate:
         """Read a request without the headers in `UNTRUSTED_HEADERS`."""

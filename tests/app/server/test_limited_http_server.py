@@ -6,14 +6,17 @@ import asyncio
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
 from typing import Any
+from unittest.mock import patch
 
 import pytest
 from tornado.httpclient import AsyncHTTPClient
+from tornado.iostream import IOStream
 from tornado.testing import bind_unused_port
 from tornado.web import Application, RequestHandler
 from tornado.websocket import WebSocketHandler, websocket_connect
 
 from app.runtime.process_state import ProcessState
+from app.server.batched_stream import BatchedStream
 from app.server.limited_http_server import CONNECTIONS_PER_PAGE, LIMITS, LimitedHTTPServer
 from tests.app.other_loop import run_on_new_loop
 from tests.waiting import SECONDS
@@ -34,8 +37,12 @@ class Origin(RequestHandler):
         self.write(f"{self.request.protocol} {self.request.remote_ip}")
 
 
-class Echo(WebSocketHandler):
-    pass
+class Burst(WebSocketHandler):
+    """Answers a message with ten messages."""
+
+    def on_message(self, message: str | bytes) -> None:
+        for number in range(10):
+            self.write_message(f"{message!r} {number}")
 
 
 @pytest.fixture
@@ -46,7 +53,7 @@ def state(start_state: Callable[..., ProcessState]) -> ProcessState:
 @asynccontextmanager
 async def served(**options: Any) -> AsyncIterator[int]:
     """Yield the port of a server."""
-    server = LimitedHTTPServer(Application([("/", Answer), ("/origin", Origin), ("/ws", Echo)]), **options)
+    server = LimitedHTTPServer(Application([("/", Answer), ("/origin", Origin), ("/ws", Burst)]), **options)
     listening, port = bind_unused_port()
     server.add_socket(listening)
     try:
@@ -112,6 +119,27 @@ def test_websockets_do_not_count_as_connections(state: ProcessState) -> None:
         for socket in sockets:
             socket.close()
             assert await socket.read_message() is None
+
+    run(scenario)
+
+
+def test_the_messages_of_an_iteration_are_sent_with_two_calls_of_the_system(state: ProcessState) -> None:
+    async def scenario(port: int) -> None:
+        socket = await websocket_connect(f"ws://127.0.0.1:{port}/ws")
+        sent: list[int] = []
+
+        def write_to_fd(stream: IOStream, data: memoryview) -> int:
+            if isinstance(stream, BatchedStream):
+                sent.append(len(data))
+            return int(write(stream, data))
+
+        write = IOStream.write_to_fd
+        with patch.object(IOStream, "write_to_fd", write_to_fd):
+            await socket.write_message("any")
+            assert [await socket.read_message() for _ in range(10)] == [f"'any' {number}" for number in range(10)]
+        assert len(sent) == 2
+        socket.close()
+        assert await socket.read_message() is None
 
     run(scenario)
 

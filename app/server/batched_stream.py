@@ -1,0 +1,76 @@
+"""Connections that send everything written in one iteration of the event loop with one system call."""
+
+from __future__ import annotations
+
+import asyncio
+from asyncio import Future
+from typing import Any
+
+from tornado.concurrent import chain_future
+from tornado.iostream import IOStream, StreamClosedError
+
+
+class BatchedStream(IOStream):
+    """A connection that sends the first data of an iteration of the event loop at once, and all further data at its end.
+
+    A Bokeh message consists of a dozen WebSocket messages and more, and Tornado calls the system for each. During each call other
+    threads get the interpreter lock, and the event loop waits for it again, while threads compute for up to a millisecond
+    (`sys.setswitchinterval`). The first data are sent at once, because Tornado expects this of the answer that opens a WebSocket.
+    """
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        super().__init__(*args, **kwargs)
+        # Whether data have been sent in this iteration.
+        self._has_sent = False
+        # Data that wait for the end of the iteration, and the result of each write.
+        self._parts: list[bytes | memoryview] = []
+        self._results: list[Future[None]] = []
+
+    def write(self, data: bytes | memoryview) -> Future[None]:
+        """Send data; see `IOStream.write`."""
+        if self.closed() or not self._has_sent:
+            self._begin_batch()
+            return super().write(data)
+        result: Future[None] = Future()
+        # The caller need not await the result.
+        result.add_done_callback(lambda done: done.cancelled() or done.exception())
+        self._parts.append(data)
+        self._results.append(result)
+        return result
+
+    def close(self, *args: Any, **kwargs: Any) -> None:
+        """Send what is written, and close the connection; see `IOStream.close`."""
+        self._end_batch()
+        super().close(*args, **kwargs)
+
+    def _begin_batch(self) -> None:
+        self._has_sent = True
+        asyncio.get_running_loop().call_soon(self._end_batch)
+
+    def _end_batch(self) -> None:
+        """Send the data that were written after the first data of the iteration."""
+        self._has_sent = False
+        parts, self._parts = self._parts, []
+        results, self._results = self._results, []
+        if not parts:
+            return
+        try:
+            sent = super().write(b"".join(parts))
+        except StreamClosedError as error:
+            sent = Future()
+            sent.set_exception(error)
+        for result in results:
+            chain_future(sent, result)
+
+
+def batched(stream: IOStream) -> IOStream:
+    """Return a stream of the same socket that sends in batches. A stream with encryption is returned as it is.
+
+    Parameters
+    ----------
+    stream
+        A new stream, of which nothing has been read.
+    """
+    if type(stream) is not IOStream:
+        return stream
+    return BatchedStream(stream.socket, max_buffer_size=stream.max_buffer_size, read_chunk_size=stream.read_chunk_size)
