@@ -1,4 +1,4 @@
-"""Connections that send everything written in one iteration of the event loop with one system call."""
+"""Connections that send what is written in one iteration of the event loop with few system calls."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tornado.iostream import IOStream, StreamClosedError
 
 
 class BatchedStream(IOStream):
-    """A connection that sends the first data of an iteration of the event loop at once, and all further data at its end.
+    """A connection that sends the first data of an iteration of the event loop at once, and all further data after it.
 
     A Bokeh message consists of a dozen WebSocket messages and more, and Tornado calls the system for each. During each call other
     threads get the interpreter lock, and the event loop waits for it again, while threads compute for up to a millisecond

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import asyncio
 import socket
+import ssl
 from collections.abc import Awaitable, Callable
 from unittest.mock import patch
 
 import pytest
-from tornado.iostream import IOStream, StreamClosedError
+from tornado.iostream import IOStream, SSLIOStream, StreamClosedError
 
 from app.server.batched_stream import batched
 from tests.app.other_loop import run_on_new_loop
@@ -66,6 +67,20 @@ def test_closing_sends_what_has_been_written() -> None:
             stream.write(b"late")
 
     run(scenario)
+
+
+def test_a_stream_with_encryption_stays_as_it_is() -> None:
+    async def check() -> None:
+        ours, theirs = socket.socketpair()
+        context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+        stream = SSLIOStream(context.wrap_socket(ours, server_side=True, do_handshake_on_connect=False))
+        try:
+            assert batched(stream) is stream
+        finally:
+            stream.close()
+            theirs.close()
+
+    run_on_new_loop(check)
 
 
 def test_one_cancelled_write_does_not_concern_the_others() -> None:
