@@ -119,13 +119,17 @@ class ProcessState:
         return self._page_times.setdefault(document, PageTime(share))
 
     def delay(self, visitor: str) -> float:
-        """Return how long the next message or page of a visitor must wait, in seconds; 0 if no other visitor has a page."""
+        """Return how long the next message or page of a visitor must wait, in seconds.
+
+        The result is 0 if no other visitor has a page or waits for a page.
+        """
         share = self._shares.get(visitor)
         seconds = share.wait_seconds() if share is not None else 0.0
         return seconds if seconds and self._has_other_visitors(visitor) else 0.0
 
     def _has_other_visitors(self, visitor: str) -> bool:
-        return any(session.connection_count and visitor_of(session.document) != visitor for session in self.sessions())
+        connected = (visitor_of(session.document) for session in self.sessions() if session.connection_count)
+        return any(other != visitor for other in connected) or self.making_page.are_wanted_by_others(visitor)
 
     def _processor_times(self) -> ProcessorTimes:
         helper_seconds = self.limited.totals.seconds + self.compiler.totals.seconds

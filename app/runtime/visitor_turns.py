@@ -14,7 +14,8 @@ class VisitorTurns:
     """A lock of one event loop. Of the waiting visitors, the visitor whose last turn is longest ago gets the next turn."""
 
     def __init__(self) -> None:
-        self._is_taken = False
+        # The visitor whose turn it is; None if the turn is free.
+        self._present: str | None = None
         self._waiting: defaultdict[str, deque[asyncio.Future[None]]] = defaultdict(deque)
         self._turns = LastTurns[str]()
 
@@ -33,8 +34,12 @@ class VisitorTurns:
         finally:
             self._end()
 
+    def are_wanted_by_others(self, visitor: str) -> bool:
+        """Return whether a visitor other than this visitor has the turn or waits for a turn."""
+        return self._present not in (None, visitor) or any(other != visitor for other in self._waiting)
+
     async def _begin(self, visitor: str) -> None:
-        if self._is_taken:
+        if self._present is not None:
             turn = asyncio.get_running_loop().create_future()
             self._waiting[visitor].append(turn)
             try:
@@ -44,18 +49,18 @@ class VisitorTurns:
                 if not turn.cancelled():
                     self._end()
                 raise
-        self._is_taken = True
+        self._present = visitor
         self._turns.record([visitor])
 
     def _end(self) -> None:
         """Give the turn to the next visitor; if nobody waits, free it."""
-        self._is_taken = False
-        while self._waiting and not self._is_taken:
+        self._present = None
+        while self._waiting and self._present is None:
             visitor = min(self._waiting, key=self._turns.last)
             turn = self._waiting[visitor].popleft()
             if not self._waiting[visitor]:
                 del self._waiting[visitor]
             # A task that is cancelled while it waits cancels its future.
             if not turn.done():
-                self._is_taken = True
+                self._present = visitor
                 turn.set_result(None)

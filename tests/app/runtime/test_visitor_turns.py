@@ -62,6 +62,20 @@ def test_a_turn_is_free_again_after_its_end() -> None:
     run(scenario)
 
 
+def test_turns_are_wanted_by_others_while_another_visitor_has_the_turn_or_waits() -> None:
+    async def scenario(visits: Visits) -> None:
+        wanted = [visits.turns.are_wanted_by_others("a")]
+        first = await visits.begin("a1", "a2")
+        wanted.append(visits.turns.are_wanted_by_others("a"))
+        last = await visits.begin("b1")
+        wanted += [visits.turns.are_wanted_by_others(visitor) for visitor in "ab"]
+        await visits.end([*first, *last])
+        wanted.append(visits.turns.are_wanted_by_others("a"))
+        assert wanted == [False, False, True, True, False]
+
+    run(scenario)
+
+
 def test_a_task_that_is_cancelled_while_it_waits_gets_no_turn() -> None:
     async def scenario(visits: Visits) -> None:
         first, cancelled, last = await visits.begin("a1", "b1", "c1")

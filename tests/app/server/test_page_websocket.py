@@ -125,6 +125,18 @@ def test_messages_of_a_visitor_beyond_a_fair_share_wait(state: ProcessState) -> 
     assert delayed_messages(state) >= 1
 
 
+def test_messages_beyond_a_fair_share_wait_while_another_visitor_waits_for_a_page(state: ProcessState) -> None:
+    async def scenario(channel: Channel, document: Document) -> None:
+        state.page_time(document).charge(BURST_SECONDS + 0.5 * SHARE)
+        async with state.making_page.turn(OTHER):
+            channel.set(slider_of(document).id, value=5)
+            assert DELAYED_NOTICE in await receive(channel, "PATCH-DOC")
+            assert slider_of(document).value == 0
+
+    run([VISITOR], scenario)
+    assert delayed_messages(state) >= 1
+
+
 @pytest.mark.parametrize(
     ("visitors", "debt"), [([OTHER, VISITOR], 0.0), ([VISITOR, VISITOR], 10.0)], ids=["within the share", "the only visitor"]
 )
