@@ -183,12 +183,15 @@ def fit_to_system(values: Mapping[str, Any], reviewed: PageReview) -> tuple[dict
             values["energy"] = potential.jacobi_energy(jacobi_constant)
         else:
             problems.append(f"Ignored C={jacobi_constant:.6g}: the frame of this system does not rotate.")
-    lowest, first_energy = float(potential.value(0.0, 0.0)), reviewed.energies.first
+    bottom, energies = float(potential.value(0.0, 0.0)), reviewed.energies
     t_max = min(ViewState.param.t_max.default, longest_first_t_max(potential))
-    completed = {"energy": first_energy, "t_max": t_max, **values, "system": reviewed.system}
-    if completed["energy"] <= lowest:
-        problems.append(f"Ignored h={completed['energy']:.6g}: choose an energy above {lowest:.6g}, such as {first_energy:.6g}.")
-        completed["energy"] = first_energy
+    completed = {"energy": energies.first, "t_max": t_max, **values, "system": reviewed.system}
+    energy = completed["energy"]
+    # The range of the page begins below V at the origin if a body lies elsewhere.
+    if energy <= bottom and energy < energies.low:
+        lowest = min(bottom, energies.low)
+        problems.append(f"Ignored h={energy:.6g}: choose an energy above {lowest:.6g}, such as {energies.first:.6g}.")
+        completed["energy"] = energies.first
     return completed, problems
 
 

@@ -7,7 +7,7 @@ import time
 from typing import Any
 from urllib.parse import parse_qsl
 
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from app.state.permalink import linked_view, read_link, write_link
@@ -49,7 +49,9 @@ def check_display(system: System, review: PotentialReview) -> None:
     energies = state.energies
     assert energies.low < energies.first < energies.high
     assert review.escape_energy < energies.first < review.highest_energy
-    assert state.orbit_job((0.0, 0.0)) is not None
+    # The first energy of a body elsewhere may forbid the origin.
+    if not state.potential.value(0.0, 0.0) >= energies.first:
+        assert state.orbit_job((0.0, 0.0)) is not None
     again, problems = open_link(dict(parse_qsl(write_link(state)[1:])))
     assert problems == []
     assert again.potential == system.potential
@@ -71,6 +73,8 @@ def test_any_formula_is_reviewed_or_refused(text: str) -> None:
 
 
 @given(st.integers(0, 2**32))
+# A body beside the origin.
+@example(52)
 def test_a_link_with_a_formula_of_any_kind_is_reviewed_or_refused(seed: int) -> None:
     values, _ = read_link({"case": TYPED, **random_link(random.Random(seed))})
     reviewed_system = result_or_error(lambda: review_for_page(linked_view(values).system), ["formula", *WELL_PARAMETERS])

@@ -131,6 +131,19 @@ def test_a_missing_chosen_orbit_is_the_first() -> None:
     assert read_link({"orbits": "0.1,0.2", "look": "3"})[0]["chosen"] == 0
 
 
+@pytest.mark.parametrize("energy", ["low", "first"])
+def test_a_link_may_have_each_energy_of_the_range_of_a_body_beside_the_origin(energy: str) -> None:
+    body = {"V": "−6/√((x−2.28)²+(y−0.08)²); centre B0 (2.28, 0.08) 0.001; escape 10", "rotation": "1"}
+    energies = open_link(body)[0].energies
+    value = getattr(energies, energy)
+    state, problems = open_link({**body, "h": repr(value)})
+    assert value < state.potential.value(0.0, 0.0)
+    assert (state.energy, problems) == (value, [])
+    lower = energies.low - 1.0
+    _, problems = open_link({**body, "h": repr(lower)})
+    assert problems == [f"Ignored h={lower:.6g}: choose an energy above {energies.low:.6g}, such as {energies.first:.6g}."]
+
+
 def test_a_case_without_an_energy_has_its_initial_energy() -> None:
     assert open_link({"case": "III"})[0].energy == 0.35
 
