@@ -15,7 +15,7 @@ class VisitorTurns:
 
     def __init__(self) -> None:
         # The visitor whose turn it is; None if the turn is free.
-        self._present: str | None = None
+        self._current_visitor: str | None = None
         self._waiting: defaultdict[str, deque[asyncio.Future[None]]] = defaultdict(deque)
         self._turns = LastTurns[str]()
 
@@ -36,10 +36,10 @@ class VisitorTurns:
 
     def are_wanted_by_others(self, visitor: str) -> bool:
         """Return whether a visitor other than this visitor has the turn or waits for a turn."""
-        return self._present not in (None, visitor) or any(other != visitor for other in self._waiting)
+        return self._current_visitor not in (None, visitor) or any(other != visitor for other in self._waiting)
 
     async def _begin(self, visitor: str) -> None:
-        if self._present is not None:
+        if self._current_visitor is not None:
             turn = asyncio.get_running_loop().create_future()
             self._waiting[visitor].append(turn)
             try:
@@ -49,18 +49,18 @@ class VisitorTurns:
                 if not turn.cancelled():
                     self._end()
                 raise
-        self._present = visitor
+        self._current_visitor = visitor
         self._turns.record([visitor])
 
     def _end(self) -> None:
         """Give the turn to the next visitor; if nobody waits, free it."""
-        self._present = None
-        while self._waiting and self._present is None:
+        self._current_visitor = None
+        while self._waiting and self._current_visitor is None:
             visitor = min(self._waiting, key=self._turns.last)
             turn = self._waiting[visitor].popleft()
             if not self._waiting[visitor]:
                 del self._waiting[visitor]
             # A task that is cancelled while it waits cancels its future.
             if not turn.done():
-                self._present = visitor
+                self._current_visitor = visitor
                 turn.set_result(None)

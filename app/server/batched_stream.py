@@ -7,14 +7,14 @@ from asyncio import Future
 from typing import Any
 
 from tornado.concurrent import chain_future
-from tornado.iostream import IOStream, StreamClosedError
+from tornado.iostream import IOStream
 
 
 class BatchedStream(IOStream):
     """A connection that sends the first data of an iteration of the event loop at once, and all further data after it.
 
-    A Bokeh message consists of a dozen WebSocket messages and more, and Tornado calls the system for each. During each call other
-    threads get the interpreter lock, and the event loop waits for it again, while threads compute for up to a millisecond
+    A Bokeh message consists of a dozen WebSocket messages or more, and Tornado makes a system call for each. During each call
+    another thread can take the interpreter lock, and the event loop then waits for it, up to a millisecond
     (`sys.setswitchinterval`). The first data are sent at once, because Tornado expects this of the answer that opens a WebSocket.
     """
 
@@ -28,8 +28,12 @@ class BatchedStream(IOStream):
 
     def write(self, data: bytes | memoryview) -> Future[None]:
         """Send data; see `IOStream.write`."""
-        if self.closed() or not self._has_sent:
-            self._begin_batch()
+        if self.closed():
+            # This raises StreamClosedError.
+            return super().write(data)
+        if not self._has_sent:
+            self._has_sent = True
+            asyncio.get_running_loop().call_soon(self._end_batch)
             return super().write(data)
         result: Future[None] = Future()
         # The caller need not await the result.
@@ -43,24 +47,16 @@ class BatchedStream(IOStream):
         self._end_batch()
         super().close(*args, **kwargs)
 
-    def _begin_batch(self) -> None:
-        self._has_sent = True
-        asyncio.get_running_loop().call_soon(self._end_batch)
-
     def _end_batch(self) -> None:
         """Send the data that were written after the first data of the iteration."""
         self._has_sent = False
         parts, self._parts = self._parts, []
         results, self._results = self._results, []
-        if not parts:
-            return
-        try:
+        if parts:
+            # The stream is open, because `close` ends the batch first.
             sent = super().write(b"".join(parts))
-        except StreamClosedError as error:
-            sent = Future()
-            sent.set_exception(error)
-        for result in results:
-            chain_future(sent, result)
+            for result in results:
+                chain_future(sent, result)
 
 
 def batched(stream: IOStream) -> IOStream:

@@ -49,9 +49,9 @@ def check_display(system: System, review: PotentialReview) -> None:
     energies = state.energies
     assert energies.low < energies.first < energies.high
     assert review.escape_energy < energies.first < review.highest_energy
-    # The first energy of a body elsewhere may forbid the origin.
-    if not state.potential.value(0.0, 0.0) >= energies.first:
-        assert state.orbit_job((0.0, 0.0)) is not None
+    # The origin is forbidden only if a body elsewhere has the first energy.
+    is_forbidden = state.potential.value(0.0, 0.0) > energies.first
+    assert (state.orbit_job((0.0, 0.0)) is None) == is_forbidden
     again, problems = open_link(dict(parse_qsl(write_link(state)[1:])))
     assert problems == []
     assert again.potential == system.potential

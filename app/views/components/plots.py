@@ -194,20 +194,24 @@ def changing_models(plots: Sequence[figure]) -> AbstractContextManager[object]:
     return document.models.freeze() if document is not None else nullcontext()
 
 
+SourcedGlyphs = Sequence[tuple[ColumnDataSource, Glyph]]
+"""Glyphs with their data sources, from back to front."""
+
+
 class LaterGlyphs:
     """Glyphs that are made and added to figures when they are first shown. All figures share them.
 
     Parameters
     ----------
     make
-        Returns the glyphs with their data sources, from back to front.
+        Returns the glyphs.
     level
         Level of the glyphs in a figure, a name in `bokeh.core.enums.RenderLevel`.
     """
 
-    def __init__(self, make: Callable[[], Sequence[tuple[ColumnDataSource, Glyph]]], level: str = "glyph") -> None:
+    def __init__(self, make: Callable[[], SourcedGlyphs], level: str = "glyph") -> None:
         self._make, self._level = make, level
-        self._glyphs: Sequence[tuple[ColumnDataSource, Glyph]] = ()
+        self._glyphs: SourcedGlyphs = ()
         self._waiting_plots: list[figure] = []
 
     def add_figure(self, plot: figure) -> None:

@@ -7,12 +7,12 @@ from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from bokeh.models import ColumnDataSource, Glyph, MultiLine, Text
+from bokeh.models import ColumnDataSource, MultiLine, Text
 from bokeh.plotting import figure
 
 from app.browser.browser_system import EXIT_NUMBER_DISTANCE
 from app.state.view_state import ViewState
-from app.views.components.plots import LaterGlyphs, with_gaps
+from app.views.components.plots import LaterGlyphs, SourcedGlyphs, with_gaps
 from app.views.components.theme import theme_colour, theme_line
 from engine import LyapunovOrbit, MapSpec, find_lyapunov_orbits
 from engine.slices.limiting_curves import trace_equipotentials, trace_zero_velocity_curve
@@ -80,11 +80,11 @@ class MapCurves:
         if full:
             self._exit_numbers.add_figure(plot)
 
-    def _make_exit_lines(self) -> list[tuple[ColumnDataSource, Glyph]]:
+    def _make_exit_lines(self) -> SourcedGlyphs:
         styles = ({"line_color": LIGHT.halo, "line_width": 5}, {"line_color": "colour", "line_width": 3})
         return [(self._exit_source, MultiLine(**style)) for style in styles]
 
-    def _make_exit_numbers(self) -> list[tuple[ColumnDataSource, Glyph]]:
+    def _make_exit_numbers(self) -> SourcedGlyphs:
         font = {"text_align": "center", "text_baseline": "middle", "text_font_size": "16px", "text_font_style": "bold"}
         return [(self._label_source, Text(text_color="colour", **font))]
 

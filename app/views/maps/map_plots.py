@@ -128,11 +128,12 @@ class MapsView:
         layers = [layer for name, layer in LAYERS.items() if name in state.layers]
         always_shown = PLAIN_PICTURES if state.compared is None else COMPARISON_PICTURES
         names = [*always_shown, *(layer.picture.name for layer in layers if layer.picture is not None)]
-        with changing_models(list(self.figures.values())):
-            for name in names:
-                if name not in self._panes:
-                    self._build(name)
-            self.grid.show({name: self._panes[name] for name in names})
+        if names != [*self.grid.shown]:
+            with changing_models(list(self.figures.values())):
+                for name in names:
+                    if name not in self._panes:
+                        self._build(name)
+                self.grid.show({name: self._panes[name] for name in names})
         self._redraw()
 
     def show(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:

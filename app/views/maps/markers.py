@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from bokeh.models import ColumnDataSource, Glyph, Quad, Scatter, Text
+from bokeh.models import ColumnDataSource, Quad, Scatter, Text
 from bokeh.plotting import figure
 
 from app.state.view_state import ViewState
 from app.views.components.orbit_lines import orbit_colours
-from app.views.components.plots import LaterGlyphs
+from app.views.components.plots import LaterGlyphs, SourcedGlyphs
 from engine import Window
 from plots.pictures.palette import LIGHT, MARK_EDGE
 
@@ -47,13 +47,13 @@ class Markers:
         for kind in ("starts", "box", *(["sections"] if sections else [])):
             self._glyphs_by_kind[kind].add_figure(plot)
 
-    def _make_sections(self) -> list[tuple[ColumnDataSource, Glyph]]:
+    def _make_sections(self) -> SourcedGlyphs:
         return [(self._sections, Scatter(size=3, fill_color=self._colour, line_color=None))]
 
-    def _make_box(self) -> list[tuple[ColumnDataSource, Glyph]]:
+    def _make_box(self) -> SourcedGlyphs:
         return [(self._box, Quad(fill_alpha=0.0, line_color=MARK_EDGE, line_width=2, line_dash="dashed"))]
 
-    def _make_starts(self) -> list[tuple[ColumnDataSource, Glyph]]:
+    def _make_starts(self) -> SourcedGlyphs:
         crosses = [
             Scatter(marker="cross", size=size, line_width=width, line_color=ink)
             for size, width, ink in ((18, 7, LIGHT.halo), (17, 5, MARK_EDGE), (16, 3, self._colour))

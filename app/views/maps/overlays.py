@@ -10,7 +10,7 @@ from bokeh.models import ColumnDataSource, Glyph, Image, LinearColorMapper, Mult
 from bokeh.plotting import figure
 
 from app.state.view_state import ViewState
-from app.views.components.plots import LaterGlyphs, with_gaps
+from app.views.components.plots import LaterGlyphs, SourcedGlyphs, with_gaps
 from engine import MapSpec
 from plots.layers.layer import Layer, Stroke
 from plots.layers.table import LAYERS
@@ -75,7 +75,7 @@ class Overlays:
     def _show_curves(self, name: str) -> None:
         self.curves[name].data = _curve_columns(self._strokes[name], self._state.colours)
 
-    def _make_glyphs(self, layer: Layer) -> list[tuple[ColumnDataSource, Glyph]]:
+    def _make_glyphs(self, layer: Layer) -> SourcedGlyphs:
         """Return the glyphs of the marked pixels and of the curves of a layer."""
         over = layer.over
         glyphs: list[tuple[ColumnDataSource, Glyph]] = []

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from bokeh.models import ColumnDataSource, Glyph, ImageRGBA, MultiLine, Range1d, Scatter
+from bokeh.models import ColumnDataSource, ImageRGBA, MultiLine, Range1d, Scatter
 
 from app.state.view_state import ViewState
 from app.views.components.legends import legend_items
 from app.views.components.orbit_lines import in_front, line_columns, line_source, line_style, opacities, orbit_colours
-from app.views.components.plots import FigurePane, LaterGlyphs, annotate_picture, map_figure, set_range
+from app.views.components.plots import FigurePane, LaterGlyphs, SourcedGlyphs, annotate_picture, map_figure, set_range
 from app.views.maps.map_curves import MapCurves
 from engine import MapSpec, Potential, Window
 from engine.slices.axes import highest_energy
@@ -59,7 +59,7 @@ class WellView:
         self.pane = FigurePane(self.plot)
         state.param.watch(lambda event: self._outline(), "palette")
 
-    def _make_orbits(self) -> list[tuple[ColumnDataSource, Glyph]]:
+    def _make_orbits(self) -> SourcedGlyphs:
         """Return the glyphs of paths, trails and points."""
         style = self._line_style
         return [

@@ -36,7 +36,7 @@ def run(scenario: Scenario) -> None:
     run_on_new_loop(with_streams)
 
 
-def test_all_parts_arrive_in_order_with_two_calls_of_the_system() -> None:
+def test_all_parts_arrive_in_order_with_two_system_calls() -> None:
     async def scenario(stream: IOStream, peer: IOStream) -> None:
         with patch.object(IOStream, "write_to_fd", autospec=True, side_effect=IOStream.write_to_fd) as write_to_fd:
             await asyncio.gather(*[stream.write(part) for part in PARTS])

@@ -123,7 +123,7 @@ def test_websockets_do_not_count_as_connections(state: ProcessState) -> None:
     run(scenario)
 
 
-def test_the_messages_of_an_iteration_are_sent_with_two_calls_of_the_system(state: ProcessState) -> None:
+def test_the_messages_of_an_iteration_are_sent_with_two_system_calls(state: ProcessState) -> None:
     async def scenario(port: int) -> None:
         socket = await websocket_connect(f"ws://127.0.0.1:{port}/ws")
         sent: list[int] = []

@@ -51,6 +51,7 @@ def searches_for(*actions: Action) -> int:
         pytest.param([follow("?case=I&h=0.31")], 0, id="link to another map"),
         pytest.param([follow("?case=I&h=0.31&trust=yes&analysis=measures")], 1, id="link with a layer and an analysis"),
         pytest.param([lambda explorer: explorer.state.switch_layer("judge", on=True)], 1, id="layer"),
+        pytest.param([lambda explorer: explorer.state.switch_layer("trust", on=True)], 0, id="layer without a picture"),
     ],
 )
 def test_the_page_is_searched_once_when_parts_are_added(actions: list[Action], searches: int) -> None:
