@@ -156,8 +156,8 @@ class PotentialPresenter:
         if previous.potential.escape_radius is not None or reviewed.potential.escape_radius is not None:
             # Without exits the depth is undefined, so the energy itself is kept.
             return self._state.energy if energies.low <= self._state.energy <= energies.high else None
-        depth = previous.escape_energy - previous.potential.well.bottom
-        multiple = (self._state.energy - previous.potential.well.bottom) / depth
+        well = previous.potential.well
+        multiple = (self._state.energy - well.bottom) / well.depth
         energy = round(float(reviewed.potential.well.energy_at(multiple)), energies.decimals + 1)
         return energy if energy < reviewed.highest_energy else None
 

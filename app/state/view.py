@@ -145,7 +145,8 @@ class View:
         """Return the energy of all starts, or the range of an axis h."""
         energies = reviewed.energies
         if self.plane.energy_axis is not None:
-            return max(reviewed.escape_energy, energies.low), energies.high
+            begins_at_escape = energies.low < reviewed.escape_energy < energies.high
+            return reviewed.escape_energy if begins_at_escape else energies.low, energies.high
         return energies.first if self.energy is None else self.energy
 
 

@@ -9,6 +9,7 @@ escape-explorer lyapunov III --energy 0.3 --json --output exits.csv
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
@@ -67,7 +68,8 @@ def _print(
 ) -> None:
     answer: dict[str, Any] = {"energy": energy, "escape_energy": escape_energy}
     if not orbits:
-        sentence = f"No Lyapunov orbits: h = {energy:g} is not above the escape energy {escape_energy:.12g}."
+        reason = f"h = {energy:g} is not above the escape energy {escape_energy:.12g}"
+        sentence = f"No Lyapunov orbits: {reason if math.isfinite(escape_energy) else 'there are no exits'}."
         print_result(as_json, answer | {"orbits": []}, sentence, files=files)
         return
     exit_fluxes = [None] * len(orbits) if flux is None else flux.flux.tolist()

@@ -57,10 +57,12 @@ def _print(review: PotentialReview, as_json: bool) -> None:
     answer = {
         "formula": review.formula,
         "escape_energy": review.escape_energy,
+        "closed_energy": review.closed_energy,
         "channels": review.channels,
         "highest_energy": review.highest_energy,
         "critical_points": points,
         "remarks": list(review.remarks),
     }
-    sentence = f"V = {review.formula}: {review.channels} exits above h = {review.escape_energy:.12g}."
+    exits = f"{review.channels} exits above h = {review.escape_energy:.12g}" if review.channels else "no exits"
+    sentence = f"V = {review.formula}: {exits}."
     print_result(as_json, answer, sentence, Table(("critical point", "(x, y)", "V", "channel"), rows), *review.remarks)

@@ -13,7 +13,6 @@ from engine.exits.lyapunov_orbits import UndefinedExitsError, find_orbits_in_wel
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.integrator.kernels import exit_geometry as geometry
 from engine.systems.potential import Potential
-from engine.systems.review.hill_region import check_closed_well
 from engine.systems.review.singularity_check import check_defined
 from engine.systems.well_units import nearest_power_of_two
 
@@ -27,13 +26,10 @@ def closed_exits(potential: Potential) -> np.ndarray:
     Raises
     ------
     ValueError
-        With an escape radius: if V is not defined somewhere within this radius. Without one: if there are no exits although the
-        well is not closed.
+        With an escape radius: if V is not defined somewhere within this radius.
     """
     if potential.escape_radius is not None:
         check_defined(potential)
-    elif not potential.channels:
-        check_closed_well(potential)
     rows = [
         *(closed_channel(saddle_axes(potential, k + 1), saddle) for k, saddle in enumerate(potential.saddles)),
         *(end.row for end in potential.ends),

@@ -11,6 +11,7 @@ from numpy.polynomial import chebyshev
 from engine.exits.brake_orbits import Axes, saddle_axes
 from engine.foundations.root_finding import bisect
 from engine.integrator.kernels import exit_geometry as geometry
+from engine.systems.forms.closed_energy import ridge_bend
 from engine.systems.potential import Potential
 
 # Largest distance of a curve from the path that it follows, in units of the well.
@@ -35,8 +36,6 @@ _WALL_POINTS = 400
 _BISECTIONS = 60
 # Number of points along an exit for drawings.
 _LINE_POINTS = 41
-# Step of the difference across the ridge, in units of the distance of the saddle from the origin.
-_RIDGE_STEP = 1e-3
 # Largest change of a wall's position in a step, in units of the channel's width; a larger change can be a jump to another wall.
 _LARGEST_WALL_STEP = 0.25
 # Largest distance between ends of two orbits that count as the same end, in units of the well.
@@ -61,25 +60,13 @@ def absent_channel(axes: Axes, saddle: np.ndarray) -> np.ndarray:
     return curve
 
 
-def ridge_bend(potential: Potential, channel: int) -> float:
-    """Return a of the ridge u = a q² near a saddle, in the axes of the saddle. On the ridge, V_u = 0.
-
-    a = −V_uqq/(2 V_uu). A central difference suffices for V_uqq, because any a near the exact value gives an exit.
-    """
-    axes = saddle_axes(potential, channel)
-    step = _RIDGE_STEP * float(np.hypot(*axes.origin)) * axes.across
-    sides = np.array([axes.origin - step, axes.origin + step])
-    slopes = axes.outward @ np.array(np.broadcast_arrays(*potential.gradient(*sides.T)))
-    curvature = axes.outward @ potential.hessian_matrix(*axes.origin) @ axes.outward
-    return float(-0.5 * slopes.sum() / (step @ step) / curvature)
-
-
 def line_across(potential: Potential, energy: float, channel: int, edge: float) -> np.ndarray | None:
     """Return the row of the exit u = edge + a q² between the walls of a channel, in the axes of the saddle; a is `ridge_bend`.
 
     The walls are followed from the saddle to the exit. The result is None if the walls do not reach the exit.
     """
-    axes, bend = saddle_axes(potential, channel), ridge_bend(potential, channel)
+    axes = saddle_axes(potential, channel)
+    bend = ridge_bend(potential.form, *axes)
     walls = _find_walls(potential, energy, axes, np.linspace(0.0, edge, _WALL_STEPS + 1), bend)
     widths = walls[:, 1] - walls[:, 0]
     # NaN marks a missing wall, and `not … <` rejects it.

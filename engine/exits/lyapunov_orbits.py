@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import functools
 import itertools
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -23,6 +24,7 @@ from engine.exits.brake_orbits import (
 from engine.exits.exit_shapes import curve_along, find_reach, line_across, paths_meet
 from engine.exits.lyapunov_orbit import LyapunovOrbit
 from engine.exits.merged_orbits import axes_between, find_merged_orbits, has_returns
+from engine.exits.open_wells import leads_to_infinity
 from engine.exits.periodic_orbits import find_orbit_in_rotating_frame
 from engine.foundations.validation import checked_number, checks_types
 from engine.integrator.kernels import exit_geometry as geometry
@@ -110,8 +112,46 @@ class _SearchError(Exception):
     """No Lyapunov orbit was found, or the orbit found cannot be used as an exit."""
 
 
-@functools.lru_cache(maxsize=1024)
 def _find_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:
+    """Return the orbits of a potential in units of its well, if orbits cannot leave for infinity without passing them."""
+    orbits = _find_all_orbits(potential, energy)
+    well = potential.well
+    if well.escape_radius is not None or energy <= min(well.closed_energy, well.escape_energy):
+        return orbits
+    if well.exits_unknown:
+        raise _SearchError(f"the exits are not known: {well.exits_unknown}")
+    if not potential.channels:
+        limit = well.closed_energy * well.stated_units.energy
+        raise _SearchError(
+            f"there is no exit, and the well is shown to be closed only up to h = {limit:.6g}; choose a lower energy"
+        )
+    if _is_open(potential, energy):
+        raise _SearchError("the region of motion leads to infinity beside the exits; choose a lower energy")
+    return orbits
+
+
+def _is_open(potential: Potential, energy: float) -> bool:
+    """Return whether orbits can leave for infinity without passing the exits at an energy."""
+    height = energy - potential.escape_energy
+    if height > 0.0:
+        try:
+            # A higher energy serves all lower ones, so few energies are examined.
+            if not _is_open_at(potential, potential.escape_energy + 2.0 ** math.ceil(math.log2(height))):
+                return False
+        except _SearchError:
+            # The exits are not defined at the higher energy.
+            pass
+    return _is_open_at(potential, energy)
+
+
+@functools.lru_cache(maxsize=1024)
+def _is_open_at(potential: Potential, energy: float) -> bool:
+    """Apply `_is_open` without recourse to another energy."""
+    return leads_to_infinity(potential, energy, _find_all_orbits(potential, energy))
+
+
+@functools.lru_cache(maxsize=1024)
+def _find_all_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:
     """Return the orbits of a potential in units of its well."""
     if potential.rotation:
         _check_separate(potential, energy)

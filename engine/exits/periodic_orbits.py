@@ -17,8 +17,8 @@ import numpy as np
 
 from engine.exits.brake_orbits import Axes, saddle_axes
 from engine.exits.continuation import StepLimits, follow
-from engine.exits.exit_shapes import ridge_bend
 from engine.integrator.kernels.dense_output import advance_states, sample_path, trace_pieces, trace_steps, transition_matrices
+from engine.systems.forms.closed_energy import ridge_bend
 from engine.systems.potential import Potential
 
 # Number of nodes: states of one period that are corrected together.
@@ -108,9 +108,8 @@ def find_orbit_in_rotating_frame(potential: Potential, energy: float, channel: i
     """
     saddle = potential.saddles[channel - 1]
     saddle_energy = float(potential.well.saddle_energies[channel - 1])
-    family = _Family(
-        potential, np.array([*saddle, 0.0, 0.0]), saddle_energy, saddle_axes(potential, channel), ridge_bend(potential, channel)
-    )
+    axes = saddle_axes(potential, channel)
+    family = _Family(potential, np.array([*saddle, 0.0, 0.0]), saddle_energy, axes, ridge_bend(potential.form, *axes))
     # Trial orbits that diverge are rejected later.
     with np.errstate(all="ignore"):
         unknowns = _continue_to(family, float(np.sqrt(energy - saddle_energy)))

@@ -39,8 +39,9 @@ class Fate(IntEnum):
 class Evidence(IntEnum):
     """The reason why an orbit is classified as bounded.
 
-    ``NONE``: the orbit is not classified as bounded. ``INTEGRATED``: it was integrated to t_max. ``CLOSED``: its energy is below
-    every saddle, which proves that it is bounded. The other members are numerical evidence, not proof, that it never escapes.
+    ``NONE``: the orbit is not classified as bounded. ``INTEGRATED``: it was integrated to t_max. ``CLOSED``: its well is
+    closed at its energy, which proves that it is bounded. The other members are numerical evidence, not proof, that it never
+    escapes.
     ``QUASI_PERIODIC``: its weighted Birkhoff averages converge as on an invariant torus, which is very rare for other orbits.
     ``ENCLOSED``: invariant curves of quasi-periodic orbits separate it from every exit; the orbit itself may be chaotic.
     ``MIRRORED``: it is the mirror image of an orbit that is bounded on evidence.
@@ -83,7 +84,7 @@ _SENTENCES = {
 _EVIDENCE_PHRASES = {
     Evidence.NONE: "",
     Evidence.INTEGRATED: "integrated to t_max",
-    Evidence.CLOSED: "its energy is below every saddle",
+    Evidence.CLOSED: "its well is closed at this energy",
     Evidence.QUASI_PERIODIC: "evidence: its averages converge as on an invariant torus",
     Evidence.ENCLOSED: "evidence: invariant curves separate it from every exit",
     Evidence.MIRRORED: "evidence: that of its mirror image",

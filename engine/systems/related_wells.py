@@ -53,6 +53,11 @@ class ScaledWell(Well):
         return self.stated.outward_directions
 
     @cached_property
+    def closed_energy(self) -> float:
+        """See `Well.closed_energy`."""
+        return self.stated.closed_energy / self.stated_units.energy
+
+    @cached_property
     def channel_mergers(self) -> tuple[ChannelMerger, ...]:
         """See `Well.channel_mergers`."""
         units = self.stated_units

@@ -15,9 +15,11 @@ from engine.foundations.arrays import ReadOnlyArrays, read_only
 from engine.integrator.bound_kernels import load_kernels
 from engine.integrator.source.recurrence import Structure, find_structure
 from engine.integrator.source.series import Setting
+from engine.systems.forms.closed_energy import component_search, find_closed_energy
 from engine.systems.forms.exit_saddles import ROUNDING, find_maxima_beside, in_channel_order, leads_out_of_well
 from engine.systems.forms.expression_form import Form
-from engine.systems.forms.form import hessian_matrix
+from engine.systems.forms.form import DescentError, NotIsolatedError, UndecidedError, hessian_matrix
+from engine.systems.forms.hill_component import ComponentSearch
 from engine.systems.forms.stored_points import stored_points
 from engine.systems.merged_channels import ChannelMerger, MergedExit, exit_numbers, merged_exits, name_exit
 from engine.systems.outcomes import End, EscapeCircle, Exit, Outcome, outcomes_of
@@ -80,10 +82,23 @@ class Well(ReadOnlyArrays):
 
         The saddles are in counterclockwise order from the +x axis: channel k passes over ``saddles[k - 1]``. A saddle is an exit
         if exactly one of the two lines of steepest descent from the saddle ends at the origin. Zotos (2014) prints the saddle
-        test without the square of V_xy, a misprint. With an escape radius, there are no exit saddles.
+        test without the square of V_xy, a misprint. With an escape radius, there are no exit saddles; if they are not known, see
+        `exits_unknown`, the array is empty.
         """
-        if self.escape_radius is not None:
+        if self.escape_radius is not None or self.exits_unknown:
             return read_only(np.empty((0, 2)))
+        return self._find_saddles()
+
+    @cached_property
+    def exits_unknown(self) -> str:
+        """The reason why the exit saddles are not known; empty if they are known."""
+        try:
+            self._find_saddles()
+        except (DescentError, NotIsolatedError, UndecidedError) as error:
+            return str(error)
+        return ""
+
+    def _find_saddles(self) -> np.ndarray:
         form, points, indices = self.form, self.critical_points, self.critical_indices
         leads_out = stored_points("exit_saddles", form, lambda: leads_out_of_well(form, points, indices, form.singular_points))
         return read_only(in_channel_order(points[leads_out], mirror_in_x=self.mirror_in_x))
@@ -114,13 +129,31 @@ class Well(ReadOnlyArrays):
             int(k) + 1 for k in np.flatnonzero(self.saddle_energies < energy - EQUAL_ENERGY_TOLERANCE * self.units.energy)
         )
 
-    def is_closed_at(self, energy: Any) -> Any:
-        """Return whether no orbit of the well with this energy has an end: no saddle is lower, and there are no other ends.
+    @cached_property
+    def component_search(self) -> ComponentSearch:
+        """The search for components of the Hill region around the origin."""
+        return component_search(self.form, self._length_unit)
 
-        With an escape radius, the result is always False. The criterion also holds in a rotating frame, because orbits cannot
-        pass the zero-velocity curve V = h.
+    @cached_property
+    def closed_energy(self) -> float:
+        """The highest energy up to which the well is shown to be closed, at most the escape energy; −∞ if it is not shown."""
+        form, saddles = self.form, self.saddles
+
+        def find() -> np.ndarray:
+            search, directions = self.component_search, self.outward_directions
+            return np.array(find_closed_energy(search, form, saddles, directions, self.bottom, self.units.energy))
+
+        return float(stored_points("closed_energy", (form, saddles.tolist()), find))
+
+    def is_closed_at(self, energy: Any) -> Any:
+        """Return whether no orbit of the well with this energy is shown to have an end, see `closed_energy`.
+
+        With ends other than exits, such as an escape radius, the result is always False. The criterion also holds in a rotating
+        frame, because orbits cannot pass the zero-velocity curve V = h.
         """
-        return np.logical_and(np.asarray(energy) <= self.escape_energy, not self.ends)
+        can_be_closed = np.logical_and(np.asarray(energy) <= self.escape_energy, not self.ends)
+        # Above the escape energy, the search is not needed.
+        return can_be_closed & (np.asarray(energy) <= self.closed_energy) if can_be_closed.any() else can_be_closed
 
     @cached_property
     def outward_directions(self) -> np.ndarray:
@@ -329,6 +362,12 @@ class Well(ReadOnlyArrays):
         value = self.form.value(*self._typical_circle)
         return float(value[np.isfinite(value)].mean())
 
+    @property
+    def depth(self) -> float:
+        """The height of the escape energy above the bottom; in a well without exits, the unit of energy."""
+        has_exits = self.channels or self.escape_radius is not None
+        return self.escape_energy - self.bottom if has_exits else self.units.energy
+
     def energy_at(self, multiple: float) -> float:
         """Return the energy at a multiple of the depth of the well: 0 at the bottom, 1 at the escape energy."""
-        return self.bottom + multiple * (self.escape_energy - self.bottom)
+        return self.bottom + multiple * self.depth

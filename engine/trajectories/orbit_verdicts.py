@@ -144,7 +144,7 @@ def judge_orbit(orbit: Orbit, digits: BirkhoffDigits | None = None) -> OrbitVerd
 
     A bounded orbit is regular or chaotic if an indicator concludes so and no indicator concludes the opposite. If none concludes
     either, and all indicators of deviation vectors conclude that there is no sign of chaos, so does the verdict. In all other
-    cases, the orbit is undecided. The orbit is bounded for ever if its energy is below every saddle. In a non-rotating well,
+    cases, the orbit is undecided. The orbit is bounded for ever if its well is closed at its energy. In a non-rotating well,
     Birkhoff averages that agree as on an invariant torus are evidence that the orbit is bounded for ever
     (`Potential.tori_are_evidence`), unless another indicator shows chaos. An escaping orbit is chaotic while inside if an
     indicator concludes so.

@@ -63,7 +63,7 @@ class Orbit(OrbitResult):
     energy
         h of the initial state.
     evidence
-        ``CLOSED`` if the energy is below every saddle, ``INTEGRATED`` if the orbit is bounded until t_max, otherwise ``NONE``.
+        ``CLOSED`` if the well is closed at this energy, ``INTEGRATED`` if the orbit is bounded until t_max, otherwise ``NONE``.
     time_unit
         Unit of time of the well before rounding, 1/ω, in which the chaos indicators measure the length of an orbit.
     potential

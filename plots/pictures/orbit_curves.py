@@ -83,13 +83,18 @@ def compute_orbit_curves(potential: Potential, orbit: Orbit, *, with_visits: boo
 
 
 def find_well_window(potential: Potential, energy: float) -> Window:
-    """Return the window of the interior; for an energy without an interior, the window at the escape energy."""
+    """Return the window of the interior; for an energy without an interior, that of the whole well, see `well_energy`."""
     try:
         return default_window(potential, SPACE, energy)
     except ValueError:
-        if not potential.channels:
+        if potential.escape_radius is not None:
             raise
-        return default_window(potential, SPACE, potential.escape_energy)
+        return default_window(potential, SPACE, well_energy(potential))
+
+
+def well_energy(potential: Potential) -> float:
+    """Return an energy at which the whole well is seen: the escape energy; in a well without exits, one unit above its bottom."""
+    return potential.escape_energy if potential.channels else potential.well.energy_at(1.0)
 
 
 def _path_window(potential: Potential, orbit: Orbit) -> Window:

@@ -34,7 +34,7 @@ from plots.pictures.charts import (
     sweep_charts,
     times_chart,
 )
-from plots.pictures.orbit_curves import compute_orbit_curves
+from plots.pictures.orbit_curves import compute_orbit_curves, well_energy
 from plots.pictures.orbit_quantities import ORBIT_QUANTITIES
 from plots.pictures.palette import LIGHT, MEASURED, PALETTES, PAPER, Entry, Palette, rgba
 from plots.printed.curve_figures import draw_chart
@@ -265,16 +265,20 @@ def _draw_lyapunov(result: LyapunovOrbit, axes: Axes, palette: Palette) -> None:
 
 @_draw.register
 def _draw_potential(result: Potential, axes: Axes, palette: Palette) -> None:
-    if not result.channels:
-        raise NoPictureError(f"the potential {result.name} has no exits and therefore no window to draw")
-    window = enlarge(default_window(result, SPACE, result.escape_energy))
+    if result.escape_radius is not None:
+        raise NoPictureError(f"the potential {result.name} has an escape radius and therefore no well to draw")
+    window = enlarge(default_window(result, SPACE, well_energy(result)))
     draw_equipotentials(axes, result, window)
     for channel, (x, y) in enumerate(result.saddles.tolist(), 1):
         axes.plot(x, y, "o", color=palette.channels[channel - 1], markeredgecolor=LIGHT.halo, zorder=3)
     axes.set_xlim(window.x_low, window.x_high)
     axes.set_ylim(window.ordinate_low, window.ordinate_high)
     axes.set_aspect("equal")
-    style_axes(axes, labels=("x", "y"), title=f"{result.name}: escape energy {result.escape_energy:.6g}")
+    style_axes(axes, labels=("x", "y"), title=f"{result.name}: {_escape_text(result)}")
+
+
+def _escape_text(potential: Potential) -> str:
+    return f"escape energy {potential.escape_energy:.6g}" if potential.channels else "no exits"
 
 
 @_draw.register

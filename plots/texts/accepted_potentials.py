@@ -18,7 +18,7 @@ def page_refusal(review: PotentialReview) -> str | None:
     for kind, count in Counter(outcome.kind for outcome in potential.outcomes).items():
         if count > (most := len(PAPER.of_kinds[kind.key])):
             return f"It has {count} {kind.word}s; the page has colours for {most}."
-    if potential.escape_radius is None and abs(potential.well.energy_at(HIGHEST_SHOWN)) > LARGEST_NUMBER:
+    if potential.channels and abs(potential.well.energy_at(HIGHEST_SHOWN)) > LARGEST_NUMBER:
         return f"Its escape energy is {review.escape_energy:.6g}; the page shows energies up to {LARGEST_NUMBER:g}."
     largest_energy = max(abs(review.energies.low), abs(review.energies.high))
     if largest_energy > LARGEST_NUMBER:

@@ -161,6 +161,14 @@ def exit_points(exit_curve, positions, points):
 
 
 @kernel
+def locate_points(exit_curve, x, y, distance, position):
+    """Set the distances (n,) of points x, y (n,) from an exit, and their positions s (n,), see `exit_distance`."""
+    for i in range(x.shape[0]):
+        distance[i] = exit_distance(x[i], y[i], exit_curve)
+        position[i] = position_across(x[i], y[i], exit_curve)
+
+
+@kernel
 def interpolate_exit(nodes, rows, saddle, shape, energies, number, curves, gates):
     """Set exit `number` in `curves` (n, exits, columns) at energies (n,) and its gate in `gates` (exits, 3), zeros initially.
 

@@ -214,7 +214,7 @@ class TrustTest:
         )
         energies, curve_row = np.unique(spec.energies(x, ordinate), return_inverse=True)
         curves = exit_curves_at(potential, energies)
-        # Orbits below every saddle are bounded without integration.
+        # Orbits in a closed well are bounded without integration.
         closed = np.flatnonzero(potential.well.is_closed_at(energies[curve_row]))
         reruns = []
         for start, tolerance in zip(perturbation.find_starts(spec, x, ordinate), perturbation.tolerances, strict=True):

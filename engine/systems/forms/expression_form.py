@@ -76,8 +76,11 @@ class ExpressionForm:
 
     @property
     def length(self) -> float:
-        """The distance of the nearest critical point from the origin, rounded to a power of 2; 1 if there is no such point."""
-        distance = np.hypot(*self.find_critical_points()[:, :2].T)
+        """The distance of the nearest critical point from the origin, rounded to a power of 2; 1 if no such point is known."""
+        try:
+            distance = np.hypot(*self.find_critical_points()[:, :2].T)
+        except (UndecidedError, NotIsolatedError):
+            return 1.0
         distance = distance[distance > 0.0]
         return nearest_power_of_two(float(distance.min())) if distance.size else 1.0
 

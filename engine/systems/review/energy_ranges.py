@@ -19,6 +19,10 @@ _LOWEST_SHOWN = 0.8
 _FIRST_SHOWN = 1.5
 # Upper limit of a range, as a share of the way from the escape energy to the highest energy with separate exits.
 _SEPARATE_SHARE = 0.99
+# Lower end, energy shown first and upper end of a range in a closed well, as shares of its span above the bottom.
+_CLOSED_SHARES = (0.05, 0.25, 1.0)
+# Largest span of this range, as a share of the height up to which the well is closed.
+_CLOSED_SHARE = 0.99
 # Smallest span of a range, in depths of the well or, with an escape radius, in units of energy of the well. Rounding dominates
 # narrower spans.
 _SMALLEST_SPAN = 1e-9
@@ -26,8 +30,12 @@ _SMALLEST_SPAN = 1e-9
 _SMALLEST_RELATIVE_SPAN = 0.25
 
 
-def energy_range(potential: Potential, highest_energy: float, critical_energies: Sequence[float]) -> EnergyRange:
+def energy_range(
+    potential: Potential, highest_energy: float, closed_energy: float, critical_energies: Sequence[float]
+) -> EnergyRange:
     """Return a range of energies around the escape energy; with an escape radius, around the critical energies.
+
+    In a well without exits, the range is below the energy up to which the well is closed.
 
     Parameters
     ----------
@@ -35,11 +43,15 @@ def energy_range(potential: Potential, highest_energy: float, critical_energies:
         The potential.
     highest_energy
         The energy up to which exits are separate; infinite if they do not merge.
+    closed_energy
+        The energy up to which the well is shown to be closed.
     critical_energies
         The energies of all critical points.
     """
     if potential.escape_radius is not None:
         return _range_around(potential, np.array(critical_energies or [potential.well.bottom]))
+    if not potential.channels:
+        return _closed_range(potential, closed_energy, critical_energies)
     escape = potential.escape_energy
     depth = escape - potential.well.bottom
     span = max(_SEPARATE_SHARE * (highest_energy - escape), _SMALLEST_SPAN * depth)
@@ -54,6 +66,16 @@ def energy_range(potential: Potential, highest_energy: float, critical_energies:
 def depth_levels(potential: Potential, multiples: Sequence[float]) -> list[float]:
     """Return energies at multiples of the depth of the well; empty with an escape radius, where the depth is not defined."""
     return [potential.well.energy_at(multiple) for multiple in multiples] if potential.escape_radius is None else []
+
+
+def _closed_range(potential: Potential, closed_energy: float, critical_energies: Sequence[float]) -> EnergyRange:
+    """Return a range above the bottom of a well without exits, beyond its critical energies as far as it is closed."""
+    bottom = potential.well.bottom
+    height = max(critical_energies, default=bottom) - bottom or potential.units.energy
+    span = min(HIGHEST_SHOWN * height, _CLOSED_SHARE * (closed_energy - bottom))
+    low, first, high = (bottom + share * span for share in _CLOSED_SHARES)
+    decimals = 2 - math.floor(math.log10(span))
+    return EnergyRange(round(low, decimals), round(high, decimals), (), round(first, decimals), decimals)
 
 
 def _range_around(potential: Potential, energies: np.ndarray) -> EnergyRange:

@@ -41,6 +41,9 @@ class PotentialReview(Result):
         All critical points, sorted by distance from the origin; empty if unknown, for example because they form a curve.
     escape_energy
         Energy of the lowest exit saddle; infinite if there is none.
+    closed_energy
+        The energy up to which the well is shown to be closed, so that no orbit leaves it; at most the escape energy. −∞ if this
+        is not shown at any energy, for a refused potential, or with an escape radius.
     channels
         Number of exit channels over saddles.
     highest_energy
@@ -63,6 +66,7 @@ class PotentialReview(Result):
     formula: str
     critical_points: tuple[CriticalPoint, ...]
     escape_energy: float
+    closed_energy: float
     channels: int
     highest_energy: float
     mirror_in_x: bool
@@ -76,7 +80,8 @@ class PotentialReview(Result):
     @cached_property
     def energies(self) -> EnergyRange:
         """Energies to explore, derived from the potential. They are not defined for a refused potential."""
-        return energy_range(self.potential, self.highest_energy, [point.energy for point in self.critical_points])
+        energies = [point.energy for point in self.critical_points]
+        return energy_range(self.potential, self.highest_energy, self.closed_energy, energies)
 
     def provenance(self) -> dict[str, Any]:
         """Return the potential and the version."""
@@ -135,8 +140,8 @@ def review_potential(potential: Potential) -> PotentialReview:
     >>> review = review_potential(parse_formula("½(x² + y²) + xy² + 2x³"))
     >>> review.channels, round(review.escape_energy, 6), review.refusal
     (1, 0.00463, None)
-    >>> review_potential(parse_formula("½(x² + y²) + x⁴ + y⁴")).refusal
-    'No saddle leads out of the well at the origin, so no orbit escapes at any energy.'
+    >>> review_potential(parse_formula("½(x² + y²) − x³")).refusal
+    'V is ...'
     """
     points, refusal = find_points_or_refusal(potential)
     return PotentialReview(
@@ -144,6 +149,7 @@ def review_potential(potential: Potential) -> PotentialReview:
         formula=write_formula(potential),
         critical_points=points,
         escape_energy=potential.escape_energy if points or potential.escape_radius is not None else float("inf"),
+        closed_energy=-np.inf if refusal or potential.escape_radius is not None else potential.well.closed_energy,
         channels=potential.channels if points else 0,
         highest_energy=potential.well.channel_mergers[0].energy if points and potential.well.channel_mergers else float("inf"),
         mirror_in_x=potential.form.mirror_in_x,
@@ -160,8 +166,16 @@ def _remarks(potential: Potential, points: tuple[CriticalPoint, ...]) -> tuple[s
     remarks = [_SHIFT_REMARK.format(*potential.origin)] if any(potential.origin) else []
     if potential.escape_radius is not None:
         return tuple(remarks)
-    energies = potential.well.saddle_energies
-    if np.ptp(energies) > EQUAL_ENERGY_TOLERANCE * potential.units.energy:
+    energies, closed_energy = potential.well.saddle_energies, potential.well.closed_energy
+    if not potential.channels:
+        remarks.append(
+            f"No saddle leads out of the well at the origin. The well is shown to be closed up to h = {closed_energy:.6g}, so no "
+            "orbit escapes up to this energy."
+        )
+    elif closed_energy < potential.escape_energy:
+        limit = f"only up to h = {closed_energy:.6g}" if np.isfinite(closed_energy) else "at no energy"
+        remarks.append(f"Below its lowest saddle, the well is probably closed, but this is shown {limit}.")
+    if potential.channels and np.ptp(energies) > EQUAL_ENERGY_TOLERANCE * potential.units.energy:
         order = np.argsort(energies, kind="stable")
         listed = ", ".join(f"{k + 1} above {energies[k]:.6g}" for k in order)
         remarks.append(f"The exits open at different energies: {listed}.")

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import numpy as np
+
+from engine.systems.forms.closed_energy import HIGHEST_TRIED
 from engine.systems.forms.form import DescentError, NotIsolatedError, UndecidedError
 from engine.systems.potential import Potential
 from engine.systems.review.classified_points import (
@@ -12,11 +15,15 @@ from engine.systems.review.classified_points import (
     minima_of,
     point_at_origin,
 )
-from engine.systems.review.hill_region import is_open_below, is_open_without_saddle
 from engine.systems.review.singularity_check import singularity_refusal
 
 MOST_CHANNELS = 16
 """Largest number of exit channels of a potential. The kernels support more."""
+
+
+# Energy at which a well that is not shown to be closed is tested for an opening, in depths of the well. At the saddle itself, the
+# opening of the saddle would count.
+_TESTED_DEPTH = 0.9
 
 
 def find_points_or_refusal(potential: Potential) -> tuple[tuple[CriticalPoint, ...], str | None]:
@@ -33,14 +40,21 @@ def find_points_or_refusal(potential: Potential) -> tuple[tuple[CriticalPoint, .
     except DescentError as error:
         return (), f"Which saddles are exits of the well is not known. {error}"
     except UndecidedError as error:
-        return (), str(error)
+        return (), None if _is_closed_well(potential) else str(error)
     except NotIsolatedError:
-        return (), (
+        return (), None if _is_closed_well(potential) else (
             "The force vanishes along a curve instead of at isolated points, as in an infinite valley or a circular potential, "
             "so the well at the origin is not bounded by isolated saddles. Add terms that make V vary along this curve."
         )
     refusals = (check(potential, points) for check in (_well_refusal, _degenerate_refusal, _exits_refusal))
     return points, next(filter(None, refusals), None)
+
+
+def _is_closed_well(potential: Potential) -> bool:
+    """Return whether the origin is a minimum in a well that is closed at all energies tried, so that saddles are not exits."""
+    well = potential.well
+    is_minimum = well.is_convex_at_origin and not np.any(potential.gradient(0.0, 0.0))
+    return is_minimum and well.closed_energy >= well.bottom + HIGHEST_TRIED * potential.units.energy
 
 
 def _known_points(potential: Potential) -> tuple[CriticalPoint, ...]:
@@ -82,16 +96,13 @@ def _degenerate_refusal(_potential: Potential, points: tuple[CriticalPoint, ...]
 
 
 def _exits_refusal(potential: Potential, _points: tuple[CriticalPoint, ...]) -> str | None:
-    if not potential.channels:
-        return _no_exit_refusal(potential)
+    well = potential.well
     if potential.channels > MOST_CHANNELS:
         return f"V has {potential.channels} channels; at most {MOST_CHANNELS} are allowed."
-    if is_open_below(potential, potential.escape_energy, potential.critical_points):
+    if well.closed_energy > well.bottom:
+        return None
+    if not potential.channels:
+        return "The well is open without a saddle, or is not shown to be closed at any energy, so its exits are not defined."
+    if well.component_search.is_open(well.energy_at(_TESTED_DEPTH)):
         return "The well is open below its lowest saddle, so orbits can escape without crossing an exit."
     return None
-
-
-def _no_exit_refusal(potential: Potential) -> str:
-    if is_open_without_saddle(potential, potential.critical_points):
-        return "The well is open without a saddle, or rises too slowly to be called closed, so its exits are not defined."
-    return "No saddle leads out of the well at the origin, so no orbit escapes at any energy."

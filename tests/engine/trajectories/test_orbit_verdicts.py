@@ -77,7 +77,7 @@ def test_sticky_orbits_are_not_called_regular(case: str, state: tuple[float, ...
 def test_an_orbit_below_the_escape_energy_is_bounded_for_ever(state: list[float], character: Verdict) -> None:
     verdict = judge_orbit(integrate_orbit(CASES["II"], state, 2000.0))
     assert (verdict.evidence, verdict.character) == (Evidence.CLOSED, character)
-    assert verdict.describe().startswith(f"Bounded for ever (its energy is below every saddle), {character} (")
+    assert verdict.describe().startswith(f"Bounded for ever (its well is closed at this energy), {character} (")
 
 
 @pytest.mark.parametrize(("digits", "on_a_torus"), [(7.9, False), (8.0, True)])

@@ -54,11 +54,6 @@ def test_a_region_in_which_v_is_not_defined_is_refused() -> None:
         # A dipole, singular on its axis.
         ("½(1/(x + 1) − (x + 1)/((x + 1)² + y²)^1.5)² + 0.02r²", "is not decided within the limit on the work"),
         ("cos(x) cos(y)", "V has a maximum there"),
-        ("exp(x) + exp(−x) + y²", "No saddle leads out"),
-        ("−1/√(r² + 1)", "open without a saddle"),
-        ("½log(0.04 + r²)", "rises too slowly to be called closed"),
-        ("½(x² + y²) + 1e-8(x⁴ + y⁴)", "No saddle leads out"),
-        ("1e4(x² + y²) + 1e4(x⁴ + y⁴)", "No saddle leads out"),
     ],
 )
 def test_refusals_have_reasons(text: str, reason: str) -> None:

@@ -1,0 +1,306 @@
+"""Proof by intervals that the component of {V ≤ h} around the origin is bounded, or that it is not.
+
+The plane is divided into cells, which grow with the distance from the origin. A cell is left out if a lower bound of V on the
+cell exceeds h. The remaining cells that hang together with those at the origin contain the component. If none of them reaches the
+edge of the plane, the component is bounded. Cells that V = h may pass are divided until this is shown, or until cells on which V
+never exceeds h lead to the edge. Barriers, such as lines across the saddles of exits, divide the component: only the part on the
+inner side of all barriers is examined.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields
+from enum import Enum
+from typing import Self
+
+import numpy as np
+
+from engine.expressions.calculus import slopes
+from engine.expressions.evaluation import evaluate
+from engine.expressions.graph import Graph, make_graph
+from engine.expressions.intervals import Interval, enclose
+from engine.expressions.nodes import Expression
+
+FARTHEST = 2.0**20
+"""Distance of the edge of the plane, in units of length: a component that reaches it counts as unbounded."""
+
+MOST_CELLS = 60_000
+"""Largest number of cells of all sizes on which V is bounded by default. This takes up to half a second."""
+
+# Number of cells along each side of the plane, before any is divided.
+_COARSEST = 32
+# Largest number of divisions of a cell.
+_MOST_DIVISIONS = 20
+# Number of divisions by which cells lag behind in a proof, for each factor of 2 in their distance from the origin, because most
+# openings are near it.
+_LAG = 0.7
+# Index shifts of the eight neighbours of a cell.
+_NEIGHBOURS = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if i or j]
+# Sample points of a cell, from 0 to 1 along its sides.
+_SAMPLES = np.stack(np.meshgrid(*[np.linspace(0.0, 1.0, 3)] * 2), axis=-1).reshape(-1, 2)
+
+
+Program = tuple[Graph, tuple[float, ...]]
+"""A graph and its numbers."""
+
+_Bounds = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
+
+
+class Extent(Enum):
+    """What is known of the size of a component."""
+
+    BOUNDED = "bounded"
+    UNBOUNDED = "unbounded"
+    UNDECIDED = "undecided"
+
+
+@dataclass(frozen=True)
+class Barrier:
+    """A curve with two ends that divides the plane near it. Both ends lie where V > h.
+
+    Attributes
+    ----------
+    position
+        Returns, for points x and y, their signed distance from the curve, negative on the inner side, and their position along
+        the curve. From −1 to 1, the curve is the barrier; farther out, the distance is that from its continuation. Only the sign
+        of the distance counts.
+    """
+
+    position: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
+
+    @classmethod
+    def parabola(cls, middle: np.ndarray, outward: np.ndarray, bend: float, half_length: float) -> Self:
+        """Return the barrier u = a q² up to |q| = `half_length`, with u along a unit vector (2,) from `middle`, a the `bend`."""
+
+        def position(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            dx, dy = x - middle[0], y - middle[1]
+            u, q = outward[0] * dx + outward[1] * dy, outward[0] * dy - outward[1] * dx
+            return u - bend * q**2, q / half_length
+
+        return cls(position)
+
+
+@dataclass(frozen=True)
+class _Cells:
+    """Cells of several sizes that do not overlap.
+
+    Attributes
+    ----------
+    level
+        (n,) number of divisions.
+    index
+        (n, 2) column and row among the cells of this size.
+    low, high
+        (n,) bounds of V on the cells.
+    barrier
+        (n,) the barrier that cuts the cell in two, from 0; −1 for none.
+    sides
+        (n, barriers) −1 on the inner side of a barrier, 1 on the outer side, 0 if the cell is on both sides.
+    """
+
+    level: np.ndarray
+    index: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    barrier: np.ndarray
+    sides: np.ndarray
+
+    def take(self, selection: np.ndarray) -> _Cells:
+        return _Cells(*(getattr(self, each.name)[selection] for each in fields(self)))
+
+    def join(self, other: _Cells) -> _Cells:
+        return _Cells(*(np.concatenate([getattr(self, each.name), getattr(other, each.name)]) for each in fields(self)))
+
+    def quarters(self, selection: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return level and index of the quarters of some cells."""
+        quarters = 2 * self.index[selection][:, None] + [[0, 0], [1, 0], [0, 1], [1, 1]]
+        return np.repeat(self.level[selection] + 1, 4), quarters.reshape(-1, 2)
+
+    @property
+    def size(self) -> int:
+        return len(self.level)
+
+    @property
+    def are_at_origin(self) -> np.ndarray:
+        half = (_COARSEST // 2) << self.level[:, None]
+        return ((self.index == half) | (self.index == half - 1)).all(axis=1)
+
+    @property
+    def are_at_edge(self) -> np.ndarray:
+        last = (_COARSEST << self.level[:, None]) - 1
+        return ((self.index == 0) | (self.index == last)).any(axis=1)
+
+
+class ComponentSearch:
+    """Examines components of {V ≤ h} around the origin for one V.
+
+    Parameters
+    ----------
+    expression
+        V.
+    length
+        Size of the region around the origin in which cells have about the same size, dimensionless.
+    """
+
+    def __init__(self, expression: Expression, length: float) -> None:
+        self._program: Program = make_graph((expression, *slopes(expression)))
+        self._value: Program = make_graph((expression,))
+        self._length = length
+
+    def examine(self, energy: float, barriers: Sequence[Barrier] = (), most_cells: int = MOST_CELLS) -> Extent:
+        """Return the extent of the component at an energy, on the inner side of the barriers, as proved.
+
+        The result is undecided if V must be bounded on more than `most_cells` cells.
+        """
+        return self._examine(energy, barriers, self.bounds, _LAG, most_cells)
+
+    def is_open(self, energy: float, barriers: Sequence[Barrier] = ()) -> bool:
+        """Return whether the component is unbounded, as proved or, where the proof is undecided, by samples of V."""
+        extent = self.examine(energy, barriers)
+        if extent is Extent.UNDECIDED:
+            extent = self._examine(energy, barriers, self._sampled_bounds, 0.0, MOST_CELLS)
+        return extent is Extent.UNBOUNDED
+
+    def _examine(self, energy: float, barriers: Sequence[Barrier], bounds: _Bounds, lag: float, most_cells: int) -> Extent:
+        """Apply `examine` with a function that returns the bounds of V on cells.
+
+        `lag` is the number of divisions by which cells lag behind for each factor of 2 in their distance from the origin.
+        """
+        whole_plane = np.stack(np.meshgrid(np.arange(_COARSEST), np.arange(_COARSEST)), axis=-1).reshape(-1, 2)
+        cells = self._make_cells(np.zeros(len(whole_plane), int), whole_plane, energy, barriers, bounds)
+        examined = len(whole_plane)
+        for most_divisions in range(1, _MOST_DIVISIONS + 1):
+            pairs = _connections(cells)
+            is_reached = _spread_from_origin(cells, pairs)
+            if not (is_reached & cells.are_at_edge).any():
+                return Extent.BOUNDED
+            is_below = cells.high <= energy
+            # The parts of cells that barriers cut are left out.
+            is_below_node = np.append(is_below, np.zeros(2 * len(barriers), bool))
+            if (_spread_from_origin(cells, pairs[is_below_node[pairs].all(axis=1)]) & is_below & cells.are_at_edge).any():
+                return Extent.UNBOUNDED
+            # A cell at the end of a barrier lies on both sides, and the barrier does not cut it in two.
+            is_at_end = (cells.sides == 0).any(axis=1) & (cells.barrier < 0)
+            is_due = cells.level + lag * self._log_distance(cells) < most_divisions
+            is_divided = is_reached & (~is_below | is_at_end) & is_due
+            level, index = cells.quarters(is_divided)
+            examined += len(level)
+            if examined > most_cells:
+                break
+            parts = self._make_cells(level, index, energy, barriers, bounds)
+            cells = cells.take(is_reached & ~is_divided).join(parts)
+        return Extent.UNDECIDED
+
+    def _make_cells(
+        self, level: np.ndarray, index: np.ndarray, energy: float, barriers: Sequence[Barrier], bounds: _Bounds
+    ) -> _Cells:
+        """Return the cells on which V can be as low as the energy."""
+        first, last = self._edges(level, index), self._edges(level, index + 1)
+        low, high = bounds(first, last)
+        is_kept = ~(low > energy)
+        level, index, first, last, low, high = (each[is_kept] for each in (level, index, first, last, low, high))
+        x, y = _samples(first, last)
+        sides, is_cut = np.ones((len(level), len(barriers)), int), np.zeros((len(level), len(barriers)), bool)
+        for k, barrier in enumerate(barriers):
+            distance, along = barrier.position(x, y)
+            is_inner, is_outer = (distance < 0.0).all(axis=1), (distance > 0.0).all(axis=1)
+            sides[:, k] = np.where(is_inner, -1, is_outer)
+            is_cut[:, k] = ~is_inner & ~is_outer & (np.abs(along) <= 1.0).all(axis=1)
+        # A cell that two barriers cut counts as cut by none, so that it connects both sides until it is divided.
+        barrier_of = np.where(is_cut.sum(axis=1) == 1, is_cut.argmax(axis=1) if barriers else 0, -1)
+        return _Cells(level, index, low, high, barrier_of, sides)
+
+    def _edges(self, level: np.ndarray, index: np.ndarray) -> np.ndarray:
+        """Return the lower edges (n, 2) of cells. Neighbours of any size have the same edge to the bit."""
+        share = index / (_COARSEST << level)[:, None] - 0.5
+        return self._length * np.sinh(2.0 * np.arcsinh(FARTHEST) * share)
+
+    def _log_distance(self, cells: _Cells) -> np.ndarray:
+        """Return the binary logarithm of the distance of cells (n,) from the origin, which is at least about 0."""
+        return np.log2(1.0 + np.hypot(*self._edges(cells.level, cells.index + 0.5).T) / self._length)
+
+    def bounds(self, first: np.ndarray, last: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return bounds of V on cells with corners (n, 2): those of its terms, or those from its slopes, which are narrower."""
+        x, y = (Interval(first[:, axis], last[:, axis]) for axis in (0, 1))
+        value, along_x, along_y = enclose(*self._program, x, y).values
+        middle = 0.5 * (first + last)
+        centre = enclose(*self._program, *(Interval(middle[:, axis], middle[:, axis]) for axis in (0, 1))).values[0]
+        with np.errstate(invalid="ignore", over="ignore"):
+            half_x, half_y = np.maximum(last - middle, middle - first).T
+            change = along_x.magnitude * half_x + along_y.magnitude * half_y
+            change = np.where(np.isfinite(change), change * (1.0 + 1e-15), np.inf)
+            low, high = np.fmax(value.low, centre.low - change), np.fmin(value.high, centre.high + change)
+        return low, high
+
+    def _sampled_bounds(self, first: np.ndarray, last: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the lowest and the highest value of V at nine points of each cell; infinite where V is not defined."""
+        values = np.nan_to_num(evaluate(*self._value, *_samples(first, last))[0], nan=np.inf, neginf=-np.inf, posinf=np.inf)
+        return values.min(axis=1), values.max(axis=1)
+
+
+def _samples(first: np.ndarray, last: np.ndarray) -> np.ndarray:
+    """Return x and y of nine points of each cell with corners (n, 2), of shape (2, n, 9)."""
+    return np.moveaxis(first[:, None] + _SAMPLES * (last - first)[:, None], -1, 0)
+
+
+def _spread_from_origin(cells: _Cells, pairs: np.ndarray) -> np.ndarray:
+    """Return which cells (n,) hang together with those at the origin by pairs of connected nodes, see `_connections`."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    nodes = cells.size + 2 * cells.sides.shape[1]
+    count, labels = connected_components(coo_array((np.ones(len(pairs), bool), pairs.T), shape=(nodes, nodes)), directed=False)
+    is_reached_label = np.zeros(count, bool)
+    is_reached_label[labels[: cells.size][cells.are_at_origin]] = True
+    is_reached = is_reached_label[labels]
+    # A cut cell counts as reached if one of its parts is.
+    part = cells.size + 2 * cells.barrier
+    return np.where(cells.barrier >= 0, is_reached[part] | is_reached[np.minimum(part + 1, nodes - 1)], is_reached[: cells.size])
+
+
+def _connections(cells: _Cells) -> np.ndarray:
+    """Return pairs (m, 2) of connected nodes: cells, or parts of cells that a barrier cuts in two.
+
+    Behind the cells, each barrier has two nodes: the parts of its cells on its inner side, and those on its outer side.
+    """
+    first, second = _neighbours(cells)
+    is_cut_first, is_cut_second = cells.barrier[first] >= 0, cells.barrier[second] >= 0
+    pairs = [np.column_stack([first, second])[~is_cut_first & ~is_cut_second]]
+    for cut, other in ((first[is_cut_first], second[is_cut_first]), (second[is_cut_second], first[is_cut_second])):
+        barrier = cells.barrier[cut]
+        side = cells.sides[other, barrier]
+        for part, is_beside in ((0, side <= 0), (1, side >= 0)):
+            node = cells.size + 2 * barrier + part
+            has_another_barrier = cells.barrier[other] >= 0
+            neighbour = np.where(has_another_barrier, cells.size + 2 * cells.barrier[other], other)
+            is_same = has_another_barrier & (cells.barrier[other] == barrier)
+            pairs.append(np.column_stack([node, neighbour])[is_beside & ~is_same])
+            # Both parts of a neighbour that another barrier cuts.
+            pairs.append(np.column_stack([node, neighbour + 1])[is_beside & ~is_same & has_another_barrier])
+    return np.concatenate(pairs)
+
+
+def _neighbours(cells: _Cells) -> tuple[np.ndarray, np.ndarray]:
+    """Return the indices of cells that touch, at an edge or a corner, each pair with the smaller cell first."""
+    numbers = np.arange(cells.size)
+    keys = cells.index[:, 0] * (_COARSEST << cells.level) + cells.index[:, 1]
+    of_level = {}
+    for level in np.unique(cells.level).tolist():
+        members = numbers[cells.level == level]
+        of_level[level] = members[np.argsort(keys[members])]
+    pairs = [np.empty((0, 2), int)]
+    for shift in _NEIGHBOURS:
+        for level, members in of_level.items():
+            searched, index = members, cells.index[members] + shift
+            for coarser in sorted((each for each in of_level if each <= level), reverse=True):
+                candidates = of_level[coarser]
+                parent = index >> (level - coarser)
+                wanted = parent[:, 0] * (_COARSEST << coarser) + parent[:, 1]
+                place = np.minimum(np.searchsorted(keys[candidates], wanted), len(candidates) - 1)
+                is_inside = ((parent >= 0) & (parent < _COARSEST << coarser)).all(axis=1)
+                is_found = is_inside & (keys[candidates[place]] == wanted)
+                pairs.append(np.column_stack([searched[is_found], candidates[place[is_found]]]))
+                searched, index = searched[~is_found], index[~is_found]
+    first, second = np.concatenate(pairs).T
+    return first, second
