@@ -237,7 +237,7 @@ def _alert(sentence: str) -> str:
 
 def _accepted(review: PageReview, note: str) -> str:
     ends = "Orbits end at: " if review.potential.ends else ""
-    return f"<p>{ends}{describe_outcomes(review.potential)}</p><p class='quiet'>{escape(note)}</p>"
+    return f"<p>{ends}{describe_outcomes(review)}</p><p class='quiet'>{escape(note)}</p>"
 
 
 def _critical_points_table(review: PageReview) -> str:

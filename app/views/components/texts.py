@@ -9,9 +9,8 @@ from typing import Any
 import panel as pn
 from bokeh.document import Document
 
-from engine import Potential
 from engine.foundations.wording import format_number, format_share, format_whole
-from engine.results import EscapeStatistics
+from engine.results import EscapeStatistics, PotentialReview
 
 # Spaces beside a sign such as = or ×, where a line must not break.
 _AROUND_SIGN = re.compile(r"(?<=\w) (?=(?:=|≈) [−-]?\d)|(?<=[=≤×]) (?=[−-]?\d)|(?<=\d) (?=×)")
@@ -47,11 +46,13 @@ def plain_symbol(symbol: str) -> str:
     return symbol.translate(_SUBSCRIPT_DIGITS)
 
 
-def describe_outcomes(potential: Potential) -> str:
-    """Describe the ends of orbits, and the energy above which exits are open."""
+def describe_outcomes(review: PotentialReview) -> str:
+    """Describe the ends of orbits, and the energy above which exits are open, or up to which a well without exits is closed."""
+    potential = review.potential
     above = f"above h = {format_number(potential.escape_energy)}" if potential.channels else ""
     if not potential.ends:
-        return f"{potential.channels} exits {above}" if above else "no exits"
+        closed = f"no exits, closed up to h = {format_number(review.closed_energy)}"
+        return f"{potential.channels} exits {above}" if above else closed
     labels = ", ".join(outcome.label for outcome in potential.outcomes)
     return f"{labels}; exits open {above}" if above else labels
 

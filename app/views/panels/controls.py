@@ -210,7 +210,7 @@ class Controls:
         facts = "<br>".join(["", *masses, *([f"Slice {slice_title}"] if slice_title else [])])
         self.facts.object = (
             f"<div title='H = (px² + py²)/2m + V(x, y)'><b>{escape_text(reviewed.system.title)}</b>: "
-            f"<span class='quiet'>{rotation_text}{escape_text(describe_outcomes(reviewed.potential))}</span><br>"
+            f"<span class='quiet'>{rotation_text}{escape_text(describe_outcomes(reviewed))}</span><br>"
             f"{escape_text(breakable(f'V = {formula}'))}<span class='quiet'>{facts}</span></div>"
         )
 

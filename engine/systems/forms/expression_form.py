@@ -40,6 +40,8 @@ _ROTATION_ERROR = 1e-11
 _RADII = 2.0 ** np.arange(-6.0, 3.0)[:, None]
 # Angles of the points on each circle, in radians. They have no symmetry of their own.
 _ANGLES = np.array([0.2, 0.9, 2.1, 3.3, 4.6, 5.9])
+# Number of bisections that locate a change of sign.
+_BISECTIONS = 52
 # Values of an expression up to this count as 0, relative to its curvature or to its largest term.
 _ZERO_TOLERANCE = 1e-14
 # An angle in radians that is not 2π/n: only V with all rotations is invariant.
@@ -126,11 +128,18 @@ class ExpressionForm:
 
     def find_critical_points(self) -> np.ndarray:
         """Find critical points in a region and their indices, of shape (n, 3); see `engine.systems.forms.stationary_points`."""
-        return self._critical_points
+        found = self._search_result
+        if isinstance(found, Exception):
+            raise type(found)(*found.args)
+        return found
 
     @cached_property
-    def _critical_points(self) -> np.ndarray:
-        return find_stationary_points(Derivatives.of(self.expression))
+    def _search_result(self) -> np.ndarray | NotIsolatedError | UndecidedError:
+        """The critical points, or the error of the search, which takes seconds."""
+        try:
+            return find_stationary_points(Derivatives.of(self.expression))
+        except (NotIsolatedError, UndecidedError) as error:
+            return error
 
     def descent_flow(self, length: float, sign: float) -> Flow:
         """Return the flow −sign ∇V with limited speed.
@@ -159,10 +168,25 @@ class ExpressionForm:
         zeros = [_isolated_zeros(base) for base in singular_bases(self.expression)]
         return read_only(np.concatenate([NO_POINTS, *zeros]))
 
-    def is_singular_on_curve(self, x: np.ndarray, y: np.ndarray) -> bool:
-        """Return whether a divisor, or the argument of a root or logarithm, has both signs at points, and so a curve of zeros."""
-        signs = (np.sign(self._evaluate(x, y, base)[0]) for base in singular_bases(self.expression))
-        return any(bool((each > 0.0).any() and (each < 0.0).any()) for each in signs)
+    def points_on_singular_curves(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """Return points (n, 2) at which a divisor, or the argument of a root or logarithm, changes its sign.
+
+        The changes are searched between neighbours on a grid of points x, y, of two dimensions each.
+        """
+        lines = ((x, y), (x.T, y.T))
+        changes = [self._sign_changes(base, *line) for base in singular_bases(self.expression) for line in lines]
+        return np.concatenate([NO_POINTS, *changes])
+
+    def _sign_changes(self, base: Expression, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """Return the points (n, 2) at which an expression changes its sign between neighbours on lines, found by bisection."""
+        points, sign = np.stack([x, y], axis=-1), np.sign(self._evaluate(x, y, base)[0])
+        changes = sign[:, :-1] * sign[:, 1:] < 0.0
+        first, last, first_sign = points[:, :-1][changes], points[:, 1:][changes], sign[:, :-1][changes]
+        for _ in range(_BISECTIONS):
+            middle = 0.5 * (first + last)
+            is_before = (np.sign(self._evaluate(*middle.T, base)[0]) == first_sign)[:, None]
+            first, last = np.where(is_before, middle, first), np.where(is_before, last, middle)
+        return 0.5 * (first + last)
 
     def plus(self, terms: Terms) -> ExpressionForm:
         """Return V plus a polynomial."""

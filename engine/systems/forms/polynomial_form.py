@@ -140,9 +140,9 @@ class PolynomialForm:
 
         return velocity
 
-    def is_singular_on_curve(self, _x: np.ndarray, _y: np.ndarray) -> bool:
-        """Return False, because a polynomial has no singular points."""
-        return False
+    def points_on_singular_curves(self, _x: np.ndarray, _y: np.ndarray) -> np.ndarray:
+        """Return no points, because a polynomial has no singular points."""
+        return NO_POINTS
 
     def plus(self, terms: Terms) -> PolynomialForm:
         """Add a polynomial. Terms that cancel are left out."""
@@ -159,7 +159,10 @@ class PolynomialForm:
         return checked_form(tuple((i, j, c * _parameter_factor(i, j, omega_1, omega_2, epsilon)) for i, j, c in self.terms))
 
     def moved(self, x: float, y: float) -> PolynomialForm:
-        """Expand V about a critical point (x, y), without linear terms. Each coefficient is rounded once."""
+        """Expand V about a critical point (x, y), without linear terms. Each coefficient is rounded once.
+
+        Coefficients that are rounding errors of 0 are left out. A constant has no effect on them.
+        """
         terms: dict[Powers, Fraction] = {}
         for i, j, c in self.terms:
             for k in range(i + 1):
@@ -168,7 +171,7 @@ class PolynomialForm:
                     terms[k, m] = terms.get((k, m), Fraction(0)) + part
         rounded = {powers: float(c) for powers, c in terms.items() if sum(powers) != 1}
         magnitudes = {powers: abs(c) * self.length ** sum(powers) for powers, c in rounded.items()}
-        threshold = _ZERO_COEFFICIENT * max(magnitudes.values(), default=0.0)
+        threshold = _ZERO_COEFFICIENT * max((each for powers, each in magnitudes.items() if any(powers)), default=0.0)
         kept = {powers: c for powers, c in rounded.items() if magnitudes[powers] > threshold}
         return checked_form(tuple((k, m, c) for (k, m), c in kept.items()))
 

@@ -57,7 +57,7 @@ def parse_formula(text: str, name: str | None = None, parameters: Mapping[str, f
         - exp(), log() or ln(), sin(), cos() and sqrt();
         - exponents from −12 to 12;
         - at most 8 letters for parameters, each with or without one digit: "a", "k1", "α". Greek letters and all Latin letters
-          except e, t, E and V are allowed. "px", "py", "vx" and "vy" are refused;
+          except e, t, z, E and V are allowed. "px", "py", "vx" and "vy" are refused;
         - "V =" in front, which is ignored.
 
         Clauses can follow:

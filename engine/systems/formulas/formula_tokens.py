@@ -24,11 +24,13 @@ _TOKEN = re.compile(
     r"(?P<function>sin|cos|exp|log|ln|sqrt)|(?P<number>(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)|(?P<name>[xyr])|(?P<letter>[A-DF-UW-Za-df-qs-wzΑ-Ωα-ω][0-9₀-₉]?)|(?P<superscript>⁻?[⁰¹²³⁴⁵⁶⁷⁸⁹]+)|(?P<power>\^|\*\*)"
     r"|(?P<fraction>[½⅓⅔¼¾⅕⅙⅛⅒])|(?P<sign>[+\-−–])|(?P<operator>[*·×⋅∗/÷∕⁄])|(?P<root>√)|(?P<open>\()|(?P<close>\))"
 )
-# Names that would otherwise be read as letters or products, such as momenta, velocities and time.
-_UNKNOWN = re.compile("tan|abs|pi|[pv][xy]|t")
+# Names that would otherwise be read as letters or products, such as momenta, velocities, a third coordinate and time.
+_UNKNOWN = re.compile("tan|abs|pi|[pv][xyz]|z(?![0-9₀-₉])|t")
 # "V =" or "V(x, y) =" in front of a formula.
 _PREFIX = re.compile(r"\s*V\s*(?:\(\s*x\s*,\s*y\s*\)\s*)?=")
-ALLOWED = "allowed are numbers, x, y, r, letters for coefficients, + − * / ^ √, exp, log, sin, cos and round brackets"
+ALLOWED = (
+    "allowed are numbers, x, y, r, letters except e, t and z for coefficients, + − * / ^ √, exp, log, sin, cos and round brackets"
+)
 """The elements of a formula."""
 
 

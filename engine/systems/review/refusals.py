@@ -21,6 +21,8 @@ MOST_CHANNELS = 16
 """Largest number of exit channels of a potential. The kernels support more."""
 
 
+# Hint for a potential whose critical points are not known.
+_WITHOUT_POINTS = "With an escape radius, such as “; escape 10” after the formula, they are not needed."
 # Energy at which a well that is not shown to be closed is tested for an opening, in depths of the well. At the saddle itself, the
 # opening of the saddle would count.
 _TESTED_DEPTH = 0.9
@@ -40,7 +42,7 @@ def find_points_or_refusal(potential: Potential) -> tuple[tuple[CriticalPoint, .
     except DescentError as error:
         return (), f"Which saddles are exits of the well is not known. {error}"
     except UndecidedError as error:
-        return (), None if _is_closed_well(potential) else str(error)
+        return (), None if _is_closed_well(potential) else f"{error} {_WITHOUT_POINTS}"
     except NotIsolatedError:
         return (), None if _is_closed_well(potential) else (
             "The force vanishes along a curve instead of at isolated points, as in an infinite valley or a circular potential, "
@@ -99,10 +101,11 @@ def _exits_refusal(potential: Potential, _points: tuple[CriticalPoint, ...]) -> 
     well = potential.well
     if potential.channels > MOST_CHANNELS:
         return f"V has {potential.channels} channels; at most {MOST_CHANNELS} are allowed."
-    if well.closed_energy > well.bottom:
-        return None
     if not potential.channels:
-        return "The well is open without a saddle, or is not shown to be closed at any energy, so its exits are not defined."
-    if well.component_search.is_open(well.energy_at(_TESTED_DEPTH)):
+        is_closed = well.closed_energy > well.bottom
+        problem = "The well is open without a saddle, or is not shown to be closed at any energy, so its exits are not defined."
+        return None if is_closed else problem
+    is_shown = well.closed_energy >= potential.escape_energy
+    if not is_shown and well.component_search.is_open(well.energy_at(_TESTED_DEPTH)):
         return "The well is open below its lowest saddle, so orbits can escape without crossing an exit."
     return None

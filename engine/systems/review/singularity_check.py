@@ -12,6 +12,12 @@ from engine.systems.potential import Potential
 _SCANNED_RADII = np.geomspace(1e-3, 1.0, 60)
 # Angles of the sample points, in radians, away from the axes.
 _SCANNED_ANGLES = 0.1 + np.linspace(0.0, 2.0 * np.pi, 180, endpoint=False)
+# Radii of circles around a singular point, in units of the well.
+_NEAR_RADII = 10.0 ** -np.arange(2.0, 7.0)
+# Smallest ratio of the rises of V on successive circles around a point of an infinite wall: 1 for a logarithm.
+_LEAST_GROWTH = 0.9
+# Largest ratio of the changes of V on successive circles around a point at which V is continuous: 0.1 for a kink.
+_LARGEST_GROWTH = 0.5
 # Number of potentials for which the check is cached.
 _CACHE_SIZE = 256
 
@@ -35,17 +41,46 @@ def singularity_refusal(potential: Potential) -> str | None:
     if potential.escape_radius is None:
         return _origin_refusal(potential)
     for x, y in potential.form.singular_points.tolist():
-        if not _is_beyond(potential, np.array([x]), np.array([y]))[0]:
-            return f"V is not defined at ({x:.6g}, {y:.6g}): there must be a centre with a radius of collision."
+        if not _is_beyond(potential, np.array([x]), np.array([y]))[0] and not _is_wall(potential, x, y):
+            undefined = "The slope of V" if _is_bounded_near(potential, x, y) else "V"
+            return f"{undefined} is not defined at ({x:.6g}, {y:.6g}): there must be a centre with a radius of collision."
     radius, angle = np.meshgrid(potential.escape_radius * _SCANNED_RADII, _SCANNED_ANGLES)
     x, y = radius * np.cos(angle), radius * np.sin(angle)
+    curve_points = potential.form.points_on_singular_curves(x, y)
+    if not all(_is_wall(potential, *point) for point in curve_points.tolist()):
+        return "V is not defined along a curve within the escape radius, where a divisor changes its sign."
     is_defined = np.isfinite([potential.value(x, y), *potential.gradient(x, y)]).all(axis=0)
     is_refused = ~is_defined & ~_is_beyond(potential, x, y)
-    if potential.form.is_singular_on_curve(x, y):
-        return "V is not defined along a curve within the escape radius, where a divisor changes its sign."
     if not is_refused.any():
         return None
     return f"V is not defined at ({x[is_refused][0]:.6g}, {y[is_refused][0]:.6g}), which is within the escape radius."
+
+
+def _is_wall(potential: Potential, x: float, y: float) -> bool:
+    """Return whether V rises to +∞ from all sides of a point, so that no orbit reaches it.
+
+    On smaller and smaller circles, the lowest V must rise at least like the logarithm of the radius.
+    """
+    lowest = _around(potential, x, y).min(axis=1)
+    if not np.isfinite(lowest).all():
+        return False
+    rises = np.diff(lowest)
+    return bool((rises > 0.0).all() and (rises[1:] >= _LEAST_GROWTH * rises[:-1]).all())
+
+
+def _is_bounded_near(potential: Potential, x: float, y: float) -> bool:
+    """Return whether V tends to a finite value at a point: on smaller and smaller circles it changes less and less."""
+    values = _around(potential, x, y)
+    if not np.isfinite(values).all():
+        return False
+    changes = np.abs(np.diff(values, axis=0)).max(axis=1)
+    return bool((changes[1:] < _LARGEST_GROWTH * changes[:-1]).all())
+
+
+def _around(potential: Potential, x: float, y: float) -> np.ndarray:
+    """Return V on circles around a point, of shape (circles, angles); the outermost circle is the first."""
+    radius, angle = np.meshgrid(_NEAR_RADII * potential.units.length, _SCANNED_ANGLES, indexing="ij")
+    return np.nan_to_num(potential.value(x + radius * np.cos(angle), y + radius * np.sin(angle)), nan=-np.inf, posinf=np.inf)
 
 
 def _origin_refusal(potential: Potential) -> str | None:

@@ -63,3 +63,12 @@ def test_files_keep_the_origin() -> None:
     moved = parse_formula(f"{CALDERA}; well (0, 0)")
     read = read_potential(moved.provenance())
     assert (read, read.origin) == (moved, moved.origin)
+
+
+@pytest.mark.parametrize("constant", [0.0, 1.0, 1e7])
+def test_a_constant_has_no_effect_on_the_terms_of_moved_axes(constant: float) -> None:
+    formula = "0.0001(½(x² + y²) + 0.05x³ − x²y²)"
+    moved, expected = parse_formula(f"{constant} + {formula}; well (0, 0)"), parse_formula(formula)
+    assert moved.channels == expected.channels
+    # The rounding error of V is that of the constant.
+    assert moved.escape_energy - constant == pytest.approx(expected.escape_energy, rel=1e-12, abs=4e-16 * constant)

@@ -202,3 +202,9 @@ def test_a_power_in_the_denominator_is_written_as_a_power(text: str, written: st
     potential, places = parse_formula(text), (np.array([0.3, -0.2]), np.array([0.1, 0.4]))
     assert potential.name == written
     np.testing.assert_allclose(potential.value(*places), function(*places), rtol=1e-13)
+
+
+@pytest.mark.parametrize("text", ["½(x² + y²) − x²y² + z²", "½r² + pz", "½r² + vz"])
+def test_a_third_coordinate_is_no_parameter(text: str) -> None:
+    with pytest.raises(FormulaError, match="z' is not understood"):
+        parse_formula(text)

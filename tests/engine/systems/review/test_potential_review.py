@@ -31,6 +31,46 @@ def test_invalid_potentials_are_refused_with_the_reason(formula: str, reason: st
 
 
 @pytest.mark.parametrize(
+    "formula",
+    [
+        # V rises to +∞ on x = −0.2, where L_z keeps orbits away from the axis of a galaxy.
+        "½log(x² + y²/0.81) + 0.02/x²; well (0.2, 0)",
+        "½log(x² + y²/0.81) + 0.02/x²; well (0.2, 0); escape 20",
+        "−1/(1 + √(1 + r²)) + 0.05/x²; well (0.5, 0); escape 30",
+        # Repulsive centres.
+        "1/r + x²; escape 5",
+        "−log(r); escape 5",
+    ],
+)
+def test_an_infinite_wall_is_no_gap(formula: str) -> None:
+    assert review_potential(parse_formula(formula)).refusal is None
+
+
+@pytest.mark.parametrize(
+    ("formula", "reason"),
+    [
+        ("1/x + x² + y²; escape 5", "V is not defined along a curve"),
+        ("−1/x² + y²; escape 5", "V is not defined along a curve"),
+        ("log(1 − x) + y²; escape 3", "V is not defined along a curve"),
+        ("−1/r; escape 5", "V is not defined at (0, 0)"),
+        ("−1/(1 + r); escape 50", "The slope of V is not defined at (0, 0)"),
+        ("−log(1 + r)/r; escape 50", "The slope of V is not defined at (0, 0)"),
+    ],
+)
+def test_places_where_v_is_singular_are_refused_with_the_reason(formula: str, reason: str) -> None:
+    assert str(review_potential(parse_formula(formula)).refusal).startswith(reason)
+
+
+@pytest.mark.parametrize("formula", ["r²/2", "x² + y² + 0.1x²y²", "−1/√(r² + 1)", "exp(6x + 7y) + exp(6x − 7y) + exp(−12x) − 3"])
+def test_wells_without_exits_are_accepted_with_energies_at_which_they_are_closed(formula: str) -> None:
+    review = review_potential(parse_formula(formula))
+    assert review.refusal is None
+    assert "is shown to be closed up to h" in review.remarks[0]
+    assert review.potential.well.bottom < review.energies.low < review.energies.first < review.energies.high
+    assert review.energies.high < review.closed_energy
+
+
+@pytest.mark.parametrize(
     ("formula", "well"),
     [
         ("((x−1)² + y²)/2 − (x−1)y²", (1.0, 0.0)),
