@@ -31,6 +31,11 @@ from engine.integrator.kernels import exit_geometry as geometry
 from engine.systems.merged_channels import MergedExit
 from engine.systems.potential import Potential
 
+# Heights above the escape energy at which wells are examined for openings to infinity: the powers of these numbers, from the least
+# height on, in units of the well.
+_HEIGHT_BASES = (4.0, 2.0)
+_LEAST_HEIGHT = 1.0 / 16.0
+
 # Reasons why an exit of several channels is not defined, by rank. Of the reasons of all orbits found, the highest is reported.
 _NO_ORBIT, _SHARP_BEND, _RETURNS = range(3)
 _REASONS = {
@@ -131,16 +136,18 @@ def _find_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ..
 
 
 def _is_open(potential: Potential, energy: float) -> bool:
-    """Return whether orbits can leave for infinity without passing the exits at an energy."""
+    """Return whether orbits can leave for infinity without passing the exits at an energy.
+
+    A higher energy serves all lower ones. Therefore a few energies are examined first, if the exits are defined there.
+    """
     height = energy - potential.escape_energy
-    if height > 0.0:
+    for base in _HEIGHT_BASES if height > 0.0 else ():
+        higher = max(_LEAST_HEIGHT, base ** math.ceil(math.log(height, base)))
         try:
-            # A higher energy serves all lower ones, so few energies are examined.
-            if not _is_open_at(potential, potential.escape_energy + 2.0 ** math.ceil(math.log2(height))):
+            if higher > height and not _is_open_at(potential, potential.escape_energy + higher):
                 return False
         except _SearchError:
-            # The exits are not defined at the higher energy.
-            pass
+            continue
     return _is_open_at(potential, energy)
 
 
