@@ -89,9 +89,9 @@ def test_pixels_agree_with_single_orbits_where_both_decide(text: str, energy: fl
     ("potential", "energy"), [(CASES["III"], 0.5), (parse_formula("½y² + 8x²(1−x)² + 0.2x²y"), 0.7)], ids=["open", "two wells"]
 )
 def test_orbits_that_leave_the_well_before_their_sali_falls_are_undecided(potential: Potential, energy: float) -> None:
-    """The orbits escape before their deviation vectors align. In the second well, they do not run to infinity."""
-    whole = compute_map(MapSpec(potential, Plane.X_PX, energy, (24, 24), t_max=8.0))
-    escapes = (whole.fate >= 1) & (whole.escape_time > 3.0) & (whole.escape_time < 7.8)
+    """The orbits escape just before the end. In the second well, they would not run to infinity."""
+    whole = compute_map(MapSpec(potential, Plane.X_PX, energy, (24, 24), t_max=3.0))
+    escapes = (whole.fate >= 1) & (whole.escape_time > 2.4)
     assert escapes.any()
     regularity = compute_regularity(replace(whole, fate=np.where(escapes, Fate.BOUNDED, whole.fate).astype(np.int8)))
     assert set(regularity.character[escapes].tolist()) == {Regularity.UNDECIDED}
