@@ -5,7 +5,7 @@ ends, converges fast with the window length T. Along a chaotic orbit, the averag
 two consecutive windows therefore agree to many digits on an invariant torus and to few digits otherwise (Das, Saiki, Sander &
 Yorke 2017, Nonlinearity 30, 4111; Duignan & Meiss 2023, Physica D 449, 133749). On a weakly chaotic orbit two averages can agree
 by chance. A third average, over a window that overlaps half of each of these windows, must therefore also agree. The observables
-are x² and y², sampled at a fixed time step.
+are x² and y², sampled at even intervals of any length: the flow over an interval also has the tori of the orbits.
 
 With the weight exp(−1/(s(1 − s))), s = t/T, of these papers, averages converge faster than any power of T. Here, eight digits are
 enough. With the Kaiser window (Kaiser & Schafer 1980, IEEE Trans. ASSP 28, 105), averages reach eight digits for motion that
@@ -20,6 +20,7 @@ import numpy as np
 
 from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
+from engine.propagation.limited_steps import LOOSE_TOLERANCE, is_energy_conserved, step_budget
 from engine.propagation.tiles import map_tiles
 from engine.systems.potential import Potential
 
@@ -37,8 +38,6 @@ REGULAR_DIGITS = 7.0
 
 # Shape parameter β of the Kaiser window. A larger β gives smaller weights at the ends but needs a longer window.
 _KAISER_SHAPE = 20.0
-# Largest change of the energy along an orbit whose averages count, in units of the well.
-_ENERGY_TOLERANCE = 1e-9
 # Largest number of digits, also for equal averages.
 _MOST_DIGITS = 16.0
 
@@ -100,12 +99,13 @@ def compare_halves(x: np.ndarray, y: np.ndarray) -> float:
 def _agreeing_digits(potential: Potential, tile: np.ndarray, window: float) -> np.ndarray:
     """Return the result of `compare_averages` for the orbits of a tile (4, lanes), of shape (lanes, 2)."""
     initial_energy = potential.energy(tile.T)
-    step = potential.well.fixed_step
+    interval = potential.well.sample_interval
+    weights = window_weights(window, interval)
     averages = np.zeros((3, 2, tile.shape[1]))
     # The kernel changes the states of the tile, and adds to the averages.
-    potential.well.kernels.birkhoff_averages(step, window_weights(window, step), tile, averages)
-    with np.errstate(all="ignore"):
-        is_conserved = np.abs(potential.energy(tile.T) - initial_energy) <= _ENERGY_TOLERANCE
+    limits = LOOSE_TOLERANCE, interval, step_budget(2.0 * window)
+    potential.well.kernels.birkhoff_averages(*limits, weights, tile, averages)
+    is_conserved = is_energy_conserved(potential, tile.T, initial_energy)
     return np.where(is_conserved, _digits(averages), 0.0).T
 
 

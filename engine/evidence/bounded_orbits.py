@@ -16,7 +16,7 @@ from engine.evidence.invariant_curves import InvariantCurve, find_invariant_curv
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, run_parts
 from engine.integrator.source.recurrence import LANES
 from engine.propagation.fates import Evidence
-from engine.propagation.fixed_steps import find_section_points, trace_section_points
+from engine.propagation.limited_steps import find_section_points, trace_section_points
 from engine.propagation.tiles import run_tiles
 from engine.systems.potential import Potential
 

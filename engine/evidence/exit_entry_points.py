@@ -11,7 +11,7 @@ from engine.exits.lyapunov_orbit import LyapunovOrbit
 from engine.exits.lyapunov_orbits import find_orbits_in_well_units
 from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION
-from engine.propagation.fixed_steps import find_section_points
+from engine.propagation.limited_steps import find_section_points
 from engine.slices.planes import SECTION
 from engine.systems.potential import Potential
 

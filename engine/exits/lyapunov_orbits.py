@@ -31,7 +31,7 @@ from engine.integrator.kernels import exit_geometry as geometry
 from engine.systems.merged_channels import MergedExit
 from engine.systems.potential import Potential
 
-# Heights above the escape energy at which wells are examined for openings to infinity: the powers of these numbers, from the least
+# Heights above the escape energy at which wells are examined for openings to infinity: powers of these numbers, from the least
 # height on, in units of the well.
 _HEIGHT_BASES = (4.0, 2.0)
 _LEAST_HEIGHT = 1.0 / 16.0

@@ -26,12 +26,12 @@ from engine.integrator.jit.decorator import kernel
 from engine.integrator.jit.disk_cache import DEFINE
 from engine.integrator.jit.function_pointers import SIGNATURES
 from engine.integrator.jit.llvm_emitter import straight_line, table_reader
-from engine.integrator.kernels import fixed_step, interior, orbit_lanes, periodic_shooting, propagate
+from engine.integrator.kernels import interior, limited_steps, orbit_lanes, periodic_shooting, propagate
 from engine.integrator.source.recurrence import CodeOutline, Definition, Structure, find_structure, generate_code
 from engine.integrator.source.series import Setting
 from engine.integrator.source.straight_line import StraightLine
 
-_KERNEL_MODULES = (propagate, periodic_shooting, fixed_step, orbit_lanes, interior)
+_KERNEL_MODULES = (propagate, periodic_shooting, limited_steps, orbit_lanes, interior)
 # Number of potentials whose bound kernels are cached. Binding another potential of a known structure takes milliseconds.
 _CACHED_POTENTIALS = 256
 # Held while code is generated.
@@ -42,7 +42,7 @@ _code_by_structure: dict[Structure, tuple[CodeOutline, dict[str, CompiledFunctio
 
 @functools.lru_cache(maxsize=_CACHED_POTENTIALS)
 def load_kernels(definition: Definition, setting: Setting, rotation: float = 0.0) -> ModuleType:
-    """Return the kernels of a potential: ``step``, ``fixed_step``, ``jets``, ``tangent``, ``propagate``, ``shoot``, …
+    """Return the kernels of a potential: ``step``, ``limited_step``, ``jets``, ``tangent``, ``propagate``, ``shoot``, …
 
     Parameters
     ----------

@@ -11,10 +11,7 @@ from engine.foundations.result import Result
 from engine.foundations.validation import short_repr
 from engine.foundations.wording import format_share, format_share_range
 from engine.measures.starts import wilson_interval
-from engine.propagation.fates import Regularity
-
-# Codes of bounded orbits that have been judged.
-_JUDGEMENTS = (Regularity.REGULAR, Regularity.CHAOTIC, Regularity.NO_SIGN_OF_CHAOS)
+from engine.propagation.fates import JUDGEMENTS, Regularity
 
 
 @dataclass(frozen=True)
@@ -48,7 +45,7 @@ class ChaoticShare(Result):
 def compute_chaotic_share(character: Any) -> ChaoticShare:
     """Count the chaotic orbits among the bounded orbits.
 
-    Orbits without a sign of chaos until t_max count as not chaotic, as in Zotos (2014).
+    Orbits without a sign of chaos until t_max count as not chaotic, as in Zotos (2014). Undecided orbits do not count.
 
     Parameters
     ----------
@@ -77,7 +74,7 @@ def compute_chaotic_share(character: Any) -> ChaoticShare:
     if codes.dtype.kind not in "iu":
         raise ValueError(f"character={short_repr(character)}: must be a RegularityMap, or an array of codes of Regularity")
     chaotic_count = int(np.count_nonzero(codes == Regularity.CHAOTIC))
-    judged_count = int(np.count_nonzero(np.isin(codes, _JUDGEMENTS)))
+    judged_count = int(np.count_nonzero(np.isin(codes, JUDGEMENTS)))
     if not judged_count:
         return ChaoticShare(0, 0, np.nan, np.nan, np.nan)
     low, high = wilson_interval(chaotic_count, judged_count)

@@ -60,7 +60,7 @@ class Regularity(IntEnum):
 
     ``NOT_APPLICABLE``: the orbit escapes or does not exist. ``REGULAR``: averages agree as on a torus. ``CHAOTIC``: SALI fell to
     1e-7 or below. ``NO_SIGN_OF_CHAOS``: neither happened until t_max; the orbit may be weakly chaotic. ``NOT_JUDGED``: not
-    computed yet.
+    computed yet. ``UNDECIDED``: rounding carried the orbit out of the well, or its energy was not conserved.
     """
 
     NOT_APPLICABLE = 0
@@ -68,10 +68,14 @@ class Regularity(IntEnum):
     CHAOTIC = 2
     NO_SIGN_OF_CHAOS = 3
     NOT_JUDGED = 4
+    UNDECIDED = 5
 
     def __str__(self) -> str:
         return self.name.lower().replace("_", " ")
 
+
+JUDGEMENTS = (Regularity.REGULAR, Regularity.CHAOTIC, Regularity.NO_SIGN_OF_CHAOS)
+"""Codes of bounded orbits that are judged."""
 
 _SENTENCES = {
     Fate.BOUNDED: "Bounded: has not escaped by t_max.",
@@ -146,5 +150,5 @@ class OrbitResult(RecordedResult):
 
 
 def is_chaotic(sali: np.ndarray | float) -> np.ndarray:
-    """Return whether bounded orbits with these final SALI values (any shape) are chaotic; NaN counts as chaotic."""
-    return np.logical_not(sali > CHAOS_THRESHOLD)
+    """Return whether bounded orbits with these final SALI values (any shape) are chaotic; False for NaN."""
+    return np.asarray(sali <= CHAOS_THRESHOLD)

@@ -86,7 +86,7 @@ def _find_exponent(measured: MeasuredMap) -> UncertaintyExponent | None:
 
 
 def _find_chaotic_share(measured: MeasuredMap) -> ChaoticShare | None:
-    """Return the share; None with gaps such as the discs of bodies, near which deviation vectors are not computed."""
+    """Return the share; None with gaps such as the discs of bodies, near which SALI does not show chaos."""
     return None if measured.spec.potential.gaps else compute_chaotic_share(measured.find_characters())
 
 

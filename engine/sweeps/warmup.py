@@ -21,7 +21,7 @@ from engine.integrator.jit.code_outlines import find_outline
 from engine.integrator.jit.compiled_operations import CompiledOperations, compiled_operations
 from engine.maps.compute import compute_map
 from engine.maps.spec import MapSpec
-from engine.propagation.fixed_steps import find_section_points
+from engine.propagation.limited_steps import find_section_points
 from engine.slices.planes import SECTION
 from engine.systems.known_potentials import POTENTIALS
 from engine.systems.potential import Potential

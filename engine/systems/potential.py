@@ -267,11 +267,11 @@ class Potential(Motion):
         return checked_t_max(t_max, longest, lambda: self.well.exact_time_unit, name=name)
 
     def check_without_gaps(self, what: str) -> None:
-        """Raise ValueError if there are `gaps`. `what` names, in the plural, computations with fixed steps."""
+        """Raise ValueError if there are `gaps`. `what` names, in the plural, results of SALI."""
         if self.gaps:
             raise ValueError(
                 f"potential={self.name}: has {self.gaps[0].word}s; "
-                f"{what} are computed with fixed steps, which cannot pass close to them"
+                f"{what} are not told apart, because near them SALI falls and rises again"
             )
 
     @property

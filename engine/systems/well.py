@@ -28,8 +28,8 @@ from engine.systems.well_units import WellUnits, nearest_power_of_two
 EQUAL_ENERGY_TOLERANCE = 1e-12
 """Largest difference of the energies of saddles that count as equally high, in units of energy of the well."""
 
-# Time step for a frequency of 1. At the order of the Taylor kernels, energy is conserved as well as by adaptive steps.
-_FIXED_STEP = 1.0 / 3.0
+# Interval between the samples of averages for a frequency of 1; near the escape energy, it is one integration step.
+_SAMPLE_INTERVAL = 1.0 / 3.0
 # Typical radius of orbits in units of the escape radius.
 _TYPICAL_RADIUS_SHARE = 0.1
 # Number of points on a circle of the typical radius.
@@ -193,9 +193,9 @@ class Well(ReadOnlyArrays):
         return load_kernels(self.form.definition, self.setting, self.rotation)
 
     @property
-    def fixed_step(self) -> float:
-        """The time step of fixed-step integration, for a potential in units of its well."""
-        return _FIXED_STEP / max(1.0, self.fastest_frequency)
+    def sample_interval(self) -> float:
+        """The time between the samples of Birkhoff averages, for a potential in units of its well."""
+        return _SAMPLE_INTERVAL / max(1.0, self.fastest_frequency)
 
     @cached_property
     def channel_mergers(self) -> tuple[ChannelMerger, ...]:

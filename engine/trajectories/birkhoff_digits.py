@@ -64,8 +64,8 @@ def compute_birkhoff_digits(
     Returns
     -------
     The `BirkhoffDigits` for T = 1000, 4000, 16 000 and 64 000 time units of the well, as long as the orbit is bounded for 2T ≤
-    t_max. There are no windows for an orbit along an axis, where one coordinate is always 0, nor around bodies, because the fixed
-    steps of the averages cannot pass close to a body.
+    t_max. There are no windows for an orbit along an axis, where one coordinate is always 0, nor around bodies, where the digits
+    of regular and chaotic orbits are not known.
 
     Raises
     ------

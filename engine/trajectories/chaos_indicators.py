@@ -147,13 +147,21 @@ def evaluate_indicators(orbit: Orbit, digits: BirkhoffDigits | None = None) -> t
 def _evaluate(indicator: Indicator, orbit: Orbit, digits: _Digits) -> IndicatorVerdict:
     """Return the conclusion of one indicator."""
     judgement: _Judgement
+    value = indicator.value(orbit, digits)
+    is_known = not indicator.of_deviations or np.isfinite(value)
     if orbit.fate == Fate.BOUNDED:
-        judgement = indicator.judge(orbit, digits)
+        judgement = indicator.judge(orbit, digits) if is_known else _undecided_not_finite(indicator)
     elif orbit.fate >= 1:
-        judgement = indicator.judge_inside(orbit) or (None, _describe_escape_without_chaos(orbit))
+        verdict = indicator.judge_inside(orbit) if is_known else None
+        judgement = verdict or (None, _describe_escape_without_chaos(orbit))
     else:
         judgement = (None, describe_fate(orbit.fate, orbit.outcomes))
-    return IndicatorVerdict(indicator.name, indicator.value(orbit, digits), *judgement)
+    return IndicatorVerdict(indicator.name, value, *judgement)
+
+
+def _undecided_not_finite(indicator: Indicator) -> _Judgement:
+    """Return the verdict of an indicator whose value is NaN or infinite."""
+    return Verdict.UNDECIDED, f"{indicator.name} is not known: the deviation vectors became too large for numbers."
 
 
 def _describe_escape_without_chaos(orbit: Orbit) -> str:
@@ -290,7 +298,7 @@ def _judge_digits(orbit: Orbit, digits: _Digits) -> _Judgement:
 def _reason_without_windows(orbit: Orbit) -> str:
     """Return why a bounded orbit has no Birkhoff digits, see `compute_birkhoff_digits`."""
     if orbit.potential is not None and orbit.potential.gaps:
-        return "the fixed steps of these averages cannot pass close to a body"
+        return "the digits of regular and chaotic orbits around a body are not known"
     shortest = 2.0 * WINDOWS[0] * orbit.time_unit
     if orbit.t[-1] < shortest:
         return f"t = {format_time(float(orbit.t[-1]))} is too short; the shortest two take t = {format_time(shortest)}"

@@ -16,7 +16,7 @@ from engine.foundations.validation import checked_state, checks_types
 from engine.integrator.kernels.dense_output import find_crossings, sample_deviations, sample_path, trace_steps
 from engine.propagation.classification import OrbitSteps, record_orbit
 from engine.propagation.fates import Evidence, Fate, OrbitResult
-from engine.propagation.fixed_steps import DEVIATION_VECTORS
+from engine.propagation.limited_steps import DEVIATION_VECTORS
 from engine.systems.outcomes import Outcome
 from engine.systems.potential import Potential
 from engine.systems.well_units import AREA, ENERGY, LENGTH, MOMENTUM, RATE, TIME

@@ -32,6 +32,12 @@ CODES = (
         "regular or chaotic: not known yet",
         (PAPER.bounded, COLOUR_BLIND_SAFE.bounded),
     ),
+    Code(
+        Regularity.UNDECIDED,
+        "bounded, undecided whether regular or chaotic",
+        "undecided whether regular or chaotic",
+        ("#909090", "#808080"),
+    ),
 )
 """All codes in order."""
 
@@ -51,7 +57,7 @@ def _job(spec: MapSpec, settings: Settings) -> Job[RegularityMap]:
 
 def _refusal(spec: MapSpec) -> str:
     has_gaps = bool(spec.potential.gaps)
-    return "Regular and chaotic orbits are found with fixed steps, which cannot pass close to a body." if has_gaps else ""
+    return "Near a body, SALI falls and rises again, so it does not tell regular from chaotic orbits." if has_gaps else ""
 
 
 def _codes(regularity: RegularityMap, frame: EscapeMap | None) -> np.ndarray:
@@ -68,9 +74,11 @@ def _codes_by_evidence(images: Mapping[str, np.ndarray]) -> np.ndarray:
 
 def _legend(shown: ShownMap) -> Legend:
     # In the order of `CODES`.
-    escapes, *judged, unjudged = entries(shown.palette)
+    escapes, *judged, unjudged, undecided = entries(shown.palette)
     result = shown.results.get("judge")
     pending = [] if result is not None and result.complete else [unjudged]
+    if result is not None and np.any(result.character == Regularity.UNDECIDED):
+        pending.append(undecided)
     others = [entry for fate, entry in shown.outcome_entries().items() if fate is not Fate.BOUNDED]
     return Legend([*judged, *pending], [escapes, *others])
 

@@ -38,7 +38,7 @@ from engine import (
     sample_starts,
 )
 from engine.foundations.execution import SerialExecutor
-from engine.propagation.fixed_steps import attach_deviations, find_section_points, propagate_deviations
+from engine.propagation.limited_steps import attach_deviations, find_section_points, propagate_deviations
 
 III, STATE = CASES["III"], (0.1, 0.0, 0.05, 0.6)
 # Enough orbits for several parts in each of three threads.

@@ -1,7 +1,7 @@
 """Calls of generated functions by address, from kernels that are compiled once for all potentials.
 
 A kernel that calls a function by name contains a copy of this function, and would have to be compiled again for every structure
-of a potential. Kernels therefore take the addresses of `step`, `fixed_step`, `jets`, `tangent`, `potential_value` and
+of a potential. Kernels therefore take the addresses of `step`, `limited_step`, `jets`, `tangent`, `potential_value` and
 `potential_slopes` as arguments, and contain only the types of these functions.
 """
 
@@ -22,7 +22,7 @@ _rows = types.float64[:, ::1]
 
 SIGNATURES: dict[str, Signature] = {
     "step": types.void(_table, types.int64, types.float64, types.float64, _gates, _rows, _rows, _flags, _flags),
-    "fixed_step": types.void(_table, types.int64, types.float64, types.float64, _rows, _rows),
+    "limited_step": types.void(_table, types.int64, types.float64, _lanes, _rows, _rows),
     "jets": types.void(_table, types.int64, *[_lanes] * 4, _rows, _rows),
     "tangent": types.void(_table, types.int64, *[_lanes] * 9),
     "potential_value": types.float64(_table, types.float64, types.float64),
@@ -59,4 +59,4 @@ def _caller(name: str) -> Any:
 
 
 # In the order of `SIGNATURES`.
-call_step, call_fixed_step, call_jets, call_tangent, call_potential_value, call_potential_slopes = map(_caller, SIGNATURES)
+call_step, call_limited_step, call_jets, call_tangent, call_potential_value, call_potential_slopes = map(_caller, SIGNATURES)

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from engine.integrator.source.straight_line import TABLE, StraightLine, Value
 
-ACCUMULATED = ("crossed", "sums")
+ACCUMULATED = ("crossed",)
 """Names of the arrays to which kernels add results; in other arrays, results replace the previous numbers."""
 
 
@@ -54,7 +54,7 @@ def lane_loop(
     program: StraightLine,
     arguments: str,
     reads: Mapping[str, Place],
-    writes: Mapping[Place, Value | str],
+    writes: Mapping[Place, Value],
     constants: Mapping[str, Place] | None = None,
     rows: Mapping[str, int] = MappingProxyType({}),
 ) -> GeneratedFunction:
@@ -62,13 +62,12 @@ def lane_loop(
 
     The values in `writes` become the results of the program.
 
-    reads, constants: places of the inputs, by name; writes: values of the program, or source, by place; rows: lengths of the rows
+    reads, constants: places of the inputs, by name; writes: values of the program by place; rows: lengths of the rows
     of arrays with a fixed length. Constants are read before the loop. In the loop, the compiler would check each for overlap
     with every array that the loop writes, and beyond about 100 checks it vectorises nothing. Rows of a fixed length need no
     checks. For separate arrays, the checks would take as long as the steps of 16 lanes.
     """
-    program.results = [value.index for value in writes.values() if isinstance(value, Value)]
-    sources = {place: f"r{value.index}" if isinstance(value, Value) else value for place, value in writes.items()}
+    program.results = [value.index for value in writes.values()]
     name = program.name.removeprefix("_")
     constants = constants or {}
     lines = [
@@ -79,11 +78,10 @@ def lane_loop(
         "    for i in range(n):",
         *(f"        {variable} = {place}" for variable, place in reads.items()),
         f"        ({''.join(f'r{index}, ' for index in program.results)}) = {program.name}({', '.join(program.parameters)})",
-        *(f"        {place} {'+=' if place.array in ACCUMULATED else '='} {source}" for place, source in sources.items()),
+        *(f"        {place} {'+=' if place.array in ACCUMULATED else '='} r{value.index}" for place, value in writes.items()),
     ]
-    result_places = tuple(place for place, value in writes.items() if isinstance(value, Value))
     names = ("coefficients", "n", *arguments.split(", "))
-    return GeneratedFunction(name, program, "\n".join(lines) + "\n", names, {**constants, **reads}, result_places)
+    return GeneratedFunction(name, program, "\n".join(lines) + "\n", names, {**constants, **reads}, tuple(writes))
 
 
 def point_function(name: str, append: Callable[[StraightLine], Mapping[str, Value]], table: dict[Any, int]) -> GeneratedFunction:

@@ -10,7 +10,7 @@ For each potential there are four functions with a loop over lanes `i`, and one 
 
 ``step``             one step of each orbit with a size chosen from the last coefficients, and flags for steps that may
                      contain an event;
-``fixed_step``       one step of a given size, which also adds weighted x² and y² to sums;
+``limited_step``     one step as ``step`` takes, without flags, and no longer than until a given time of each lane;
 ``jets``             the coefficients of x and y: the dense output of a step;
 ``tangent``          propagates a deviation vector over a given time by the linearised recurrence;
 ``potential_value``  V at one point; for expressions, ``potential_slopes`` also gives V and its gradient.
@@ -95,7 +95,7 @@ class GeneratedCode(NamedTuple):
     Attributes
     ----------
     functions
-        ``step``, ``fixed_step``, ``jets``, ``tangent`` and ``potential_value``. Besides the programs, their kernels refer to
+        ``step``, ``limited_step``, ``jets``, ``tangent`` and ``potential_value``. Besides the programs, their kernels refer to
         ``kernel`` and ``read_table``.
     entries
         The entries of the table, as defined by the structure.
@@ -189,7 +189,10 @@ def _horner(series: Series, h: Value) -> tuple[Value, Value]:
     return value, slope
 
 
-def _end_of_step(series: Series, h: Value, remainder: Value | None) -> tuple[Value, Value, list[Value]]:
+_AxisEnd = tuple[Value, Value, list[Value]]
+
+
+def _end_of_step(series: Series, h: Value, remainder: Value | None) -> _AxisEnd:
     """Return value and slope as `_horner` does, with a remainder added to the first coefficient, and [new remainder].
 
     The new remainder is the rounding error of the last sum, computed exactly (Knuth's TwoSum). Without a remainder, the list is
@@ -207,51 +210,63 @@ def _end_of_step(series: Series, h: Value, remainder: Value | None) -> tuple[Val
 _START = {"x0": Place("x"), "y0": Place("y"), "x1": Place("px"), "y1": Place("py")}
 
 
-def _start_in(lanes: str) -> dict[str, Place]:
-    """Return the inputs of `_START`, read from the first rows of an array of lanes."""
-    return {name: Place(lanes, row) for row, name in enumerate(_START)}
+def _lane_reads(structure: Structure) -> dict[str, Place]:
+    """Return the inputs of a step of lanes, read from the rows of the array `now`."""
+    reads = {name: Place("now", row) for row, name in enumerate(_START)} | {"t0": Place("now", TIME_ROW)}
+    if structure.carries_remainders:
+        reads |= {f"{axis}_remainder": Place("now", REMAINDER_ROW + row) for row, axis in enumerate("xy")}
+    return reads
+
+
+def _remainders(structure: Structure, program: StraightLine) -> dict[str, Value]:
+    """Return the remainders of x and y at the start of a step, by axis; none if steps do not carry them."""
+    return {axis: program.input(f"{axis}_remainder") for axis in "xy"} if structure.carries_remainders else {}
+
+
+def _end_of_lane(x_end: _AxisEnd, y_end: _AxisEnd, t_end: Value, h: Value) -> dict[Place, Value]:
+    """Return the places in the array `new` of the results of a step of lanes, see `ROWS`, with their values."""
+    (x, px, x_remainder), (y, py, y_remainder) = x_end, y_end
+    return {Place("new", row): value for row, value in enumerate((x, y, px, py, t_end, h, *x_remainder, *y_remainder))}
 
 
 def _step(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
     """Return the function ``step``, with arrays `now` and `new` as described by `ROWS`, and flags of `step_flags`."""
     program = StraightLine("_step", table)
-    remainders = {axis: program.input(f"{axis}_remainder") for axis in "xy"} if structure.carries_remainders else {}
+    remainders = _remainders(structure, program)
     x, y = structure.orbit(program, remainders)
     h = _step_size(program, x, y, structure)
-    x_end, px_end, x_remainder = _end_of_step(x, h, remainders.get("x"))
-    y_end, py_end, y_remainder = _end_of_step(y, h, remainders.get("y"))
-    hidden_flag = flag_hidden_crossings(y, y_end, h) if structure.can_hide_crossings else program.constant(0)
-    gate_places, gate_flag = flag_gates(structure.setting, program, (x, y), (x_end, y_end), h)
+    x_end, y_end = _end_of_step(x, h, remainders.get("x")), _end_of_step(y, h, remainders.get("y"))
+    hidden_flag = flag_hidden_crossings(y, y_end[0], h) if structure.can_hide_crossings else program.constant(0)
+    gate_places, gate_flag = flag_gates(structure.setting, program, (x, y), (x_end[0], y_end[0]), h)
     t_end = program.input("t0") + h
-    end = x_end, y_end, px_end, py_end
     flags = hidden_flag + gate_flag + where(t_end <= program.input("horizon"), 0, OVERSHOOT)
     writes = {
-        Place("crossed"): where((y[0] < 0.0) & (y_end >= 0.0) & flags.equals(0), 1, 0),
+        Place("crossed"): where((y[0] < 0.0) & (y_end[0] >= 0.0) & flags.equals(0), 1, 0),
         Place("flag"): flags,
-        **{Place("new", row): value for row, value in enumerate((*end, t_end, h, *x_remainder, *y_remainder))},
+        **_end_of_lane(x_end, y_end, t_end, h),
     }
     arguments = "tolerance, horizon, gates, now, new, flag, crossed"
-    reads = {**_start_in("now"), "t0": Place("now", TIME_ROW)}
-    if remainders:
-        reads |= {"x_remainder": Place("now", REMAINDER_ROW), "y_remainder": Place("now", REMAINDER_ROW + 1)}
     constants = {name: Place("gates", *place) for name, place in gate_places.items()}
-    return lane_loop(program, arguments, reads, writes, constants, rows=dict.fromkeys(("now", "new"), LANES))
+    return lane_loop(program, arguments, _lane_reads(structure), writes, constants, rows=dict.fromkeys(("now", "new"), LANES))
 
 
-def _fixed_step(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
-    """Return the function ``fixed_step``, which changes `state` in place and adds weighted x² and y² at its start to `sums`."""
-    program = StraightLine("_fixed_step", table)
-    x, y = structure.orbit(program)
-    h = program.input("h")
-    x_end, px_end = _horner(x, h)
-    y_end, py_end = _horner(y, h)
-    # The sums are written as source, because as operations of the program they would make it up to a sixth slower.
-    writes: dict[Place, Value | str] = {
-        Place("sums", 0): "weight*(x0*x0)",
-        Place("sums", 1): "weight*(y0*y0)",
-        **{Place("state", row): value for row, value in enumerate((x_end, y_end, px_end, py_end))},
-    }
-    return lane_loop(program, "h, weight, state, sums", _start_in("state"), writes, rows=dict.fromkeys(("state", "sums"), LANES))
+def _limited_step(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
+    """Return the function ``limited_step``, with arrays `now` and `new` as described by `ROWS`.
+
+    No step passes the time in `limits`. A step that would pass it ends exactly at this time.
+    """
+    program = StraightLine("_limited_step", table)
+    remainders = _remainders(structure, program)
+    x, y = structure.orbit(program, remainders)
+    own_size = _step_size(program, x, y, structure)
+    t_start, until = program.input("t0"), program.input("until")
+    time_left = until - t_start
+    # Neither comparison is true for NaN, so that the size of a failed step stays NaN.
+    h = where(time_left <= own_size, time_left, own_size)
+    t_end = where(time_left <= own_size, until, t_start + own_size)
+    results = _end_of_lane(_end_of_step(x, h, remainders.get("x")), _end_of_step(y, h, remainders.get("y")), t_end, h)
+    reads = {**_lane_reads(structure), "until": Place("limits")}
+    return lane_loop(program, "tolerance, limits, now, new", reads, results, rows=dict.fromkeys(("now", "new"), LANES))
 
 
 def _jets(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
@@ -301,7 +316,7 @@ def generate_code(structure: Structure) -> GeneratedCode:
     # All programs share the table, which each of them extends.
     table: dict[Any, int] = {}
     functions = [
-        *(write(structure, table) for write in (_step, _fixed_step, _jets, _tangent)),
+        *(write(structure, table) for write in (_step, _limited_step, _jets, _tangent)),
         *(point_function(name, append, table) for name, append in structure.point_functions().items()),
     ]
     return GeneratedCode(tuple(functions), tuple(table))

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 from typing import ClassVar
 
 import numpy as np
 
 from engine.evidence.birkhoff_averages import REGULAR_DIGITS, TORUS_DIGITS, WINDOWS, count_agreeing_digits
+from engine.exits.exit_rows import closed_exits, exit_curves_at
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.validation import checks_types
 from engine.foundations.wording import format_share
@@ -17,8 +18,9 @@ from engine.maps.parameter_map import analyse_map
 from engine.maps.pixels import PixelAnalysis, PixelCodes, code_share
 from engine.maps.result import EscapeMap, MapLike, as_complete_map
 from engine.maps.stages import OnChange, Stage
-from engine.propagation.fates import MIN_REGULAR_TIME, Evidence, Fate, Regularity, is_chaotic
-from engine.propagation.fixed_steps import attach_deviations, propagate_deviations
+from engine.propagation.batch import OrbitBatch
+from engine.propagation.fates import JUDGEMENTS, MIN_REGULAR_TIME, Evidence, Fate, Regularity, is_chaotic
+from engine.propagation.limited_steps import attach_deviations, is_energy_conserved, propagate_deviations
 
 # Times up to which SALI is computed, with a test for tori after each, in units of the well. The SALI of strongly chaotic orbits
 # falls early, and most regular orbits are found to be on a torus, so only few orbits are integrated to t_max.
@@ -39,8 +41,8 @@ class RegularityMap(PixelAnalysis):
         (rows, columns) int8 `Regularity` codes, read-only.
     sali
         (rows, columns) the smallest SALI of each bounded orbit until it was judged, 0 to √2, sampled every few units of time. It
-        is at most 1e-7 for chaotic orbits and larger for others. NaN for other pixels, and for orbits that are quasi-periodic on
-        the map. Read-only.
+        is at most 1e-7 for chaotic orbits and larger for others. NaN for undecided orbits, for orbits that are quasi-periodic on
+        the map, and for other pixels. Read-only.
     complete
         Whether every bounded pixel is judged.
     """
@@ -52,7 +54,7 @@ class RegularityMap(PixelAnalysis):
 
     @property
     def chaotic_share(self) -> float:
-        """Share of chaotic orbits among the judged bounded orbits; NaN if there are none."""
+        """Share of chaotic orbits among the judged bounded orbits, without undecided ones; NaN if there are none."""
         return self.share_of(Regularity.CHAOTIC)
 
     def describe(self) -> str:
@@ -63,13 +65,17 @@ class RegularityMap(PixelAnalysis):
         if not self.complete:
             return f"{format_share(code_share(characters, Regularity.NOT_JUDGED))} of the bounded orbits are not judged yet."
         shares = self.chaotic_share, self.share_of(Regularity.NO_SIGN_OF_CHAOS)
+        if np.isnan(self.chaotic_share):
+            return "All bounded orbits are undecided."
         chaotic, without_sign = (format_share(share, 2) for share in shares)
-        return f"{chaotic} of the bounded orbits are chaotic, {without_sign} show no sign of chaos until t_max."
+        undecided_share = code_share(characters, Regularity.UNDECIDED)
+        of_which = "judged bounded orbits" if undecided_share else "bounded orbits"
+        undecided = f" {format_share(undecided_share, 2)} of the bounded orbits are undecided." if undecided_share else ""
+        return f"{chaotic} of the {of_which} are chaotic, {without_sign} show no sign of chaos until t_max.{undecided}"
 
     def share_of(self, character: Regularity) -> float:
         """Return the share of orbits of a character among the judged bounded orbits; NaN if there are none."""
-        is_judged = ~np.isin(self.character, (Regularity.NOT_APPLICABLE, Regularity.NOT_JUDGED))
-        return code_share(self.character[is_judged], character)
+        return code_share(self.character[np.isin(self.character, JUDGEMENTS)], character)
 
 
 @shows_progress("regularity")
@@ -85,7 +91,8 @@ def compute_regularity(
     An orbit is regular if the map has evidence of its torus, or if its Birkhoff averages show a torus, over windows that begin
     before t_max/2 or over both halves of the orbit. An orbit is chaotic if its SALI falls to 1e-7 by t_max (Zotos 2014, eq. 9).
     Any other orbit shows no sign of chaos until t_max; Zotos (2014) calls it regular. An orbit that is bounded on the map only
-    because of rounding can run to infinity in this second integration. Such an orbit is judged by its smallest SALI until then.
+    because of rounding can leave the well in this second integration before its SALI falls. Such an orbit is undecided, as is an
+    orbit whose energy is not conserved to 1e-9.
 
     Parameters
     ----------
@@ -125,10 +132,14 @@ class _RegularityClassification:
         self._codes = PixelCodes(self._map, codes, Regularity.NOT_JUDGED)
         # The pixels still to be judged, (n,), and their orbits, (n, 13), see `attach_deviations`.
         self._pixels = self._codes.pixels
-        self._orbits = attach_deviations(self._spec.start_states(*self._map.coordinates(self._pixels)))
-        self._sali = np.full(codes.size, np.nan)
+        starts = self._spec.start_states(*self._map.coordinates(self._pixels))
+        self._orbits = attach_deviations(starts)
+        self._sali, self._energies = np.full((2, codes.size), np.nan)
+        self._energies[self._pixels] = self._spec.potential.energy(starts)
         # Time reached by these orbits.
         self._time = 0.0
+        # The row of `_curves` for each pixel of the map.
+        self._curve_row = self._spec.plane.energy_groups(*self._map.fate.shape)
 
     def stages(self, execution: Execution, _on_change: OnChange) -> Iterator[Stage]:
         """Yield the stages, see `Staged`. Each stage integrates orbits and judges them by one criterion."""
@@ -149,11 +160,30 @@ class _RegularityClassification:
         if not self._pixels.size:
             return
         orbits = propagate_deviations(self._spec.potential, self._orbits, time - self._time, execution=execution)
+        is_kept = self._are_inside(orbits[:, :4], execution)
         if execution.is_cancelled:
             return
-        self._orbits, self._time = orbits, time
+        is_kept &= is_energy_conserved(self._spec.potential, orbits[:, :4], self._energies[self._pixels])
         # The last column is the smallest SALI so far.
-        self._judge(is_chaotic(orbits[:, -1]), Regularity.CHAOTIC)
+        orbits[~is_kept, -1] = np.nan
+        self._orbits, self._time = orbits, time
+        self._judge(np.isnan(orbits[:, -1]), Regularity.UNDECIDED)
+        self._judge(is_chaotic(self._orbits[:, -1]), Regularity.CHAOTIC)
+
+    def _are_inside(self, states: np.ndarray, execution: Execution) -> np.ndarray:
+        """Return whether the states (n, 4) of the remaining orbits are finite and inside all exits, of shape (n,)."""
+        batch = OrbitBatch.from_starts(states, self._curve_row[self._pixels])
+        batch.mark_outside(self._spec.potential, np.arange(len(states)), self._curves, execution=execution)
+        return batch.fate == Fate.NOT_COMPUTED
+
+    @cached_property
+    def _curves(self) -> np.ndarray:
+        """The exits at the energies of the pixels to judge, see `exit_curves_at`; other rows are not used."""
+        curves = np.repeat(closed_exits(self._spec.potential)[None], self._curve_row.max() + 1, axis=0)
+        pixels = self._codes.pixels
+        rows, first_indices = np.unique(self._curve_row[pixels], return_index=True)
+        curves[rows] = exit_curves_at(self._spec.potential, self._energies[pixels[first_indices]])
+        return curves
 
     def _find_tori(self, window: float, execution: Execution) -> None:
         """Judge orbits as regular if their averages agree as on a torus, over windows that begin at the time reached."""

@@ -31,12 +31,17 @@ def test_two_averages_that_agree_by_chance_are_not_enough() -> None:
     assert count_agreeing_digits(CASES["III"], state, 4000.0) < TORUS_DIGITS - 1.0
 
 
-def test_an_orbit_whose_energy_drifts_has_zero_digits() -> None:
-    # All orbits still lie on tori, but at the larger amplitude the fixed step is too long.
-    states = np.array([[amplitude, 0.0, 0.0, 0.3] for amplitude in (0.5, 2.0)])
-    digits = count_agreeing_digits(SEPARABLE, states, 1000.0)
-    assert digits[0] > TORUS_DIGITS
-    assert digits[1] == 0.0
+def test_tori_far_above_the_bottom_are_recognised() -> None:
+    """At the largest amplitude, the energy is 10 000 times that of the first, and the frequency 20 times as high."""
+    states = np.array([[amplitude, 0.0, 0.0, 0.3] for amplitude in (0.5, 2.0, 10.0, 16.0)])
+    assert np.all(count_agreeing_digits(SEPARABLE, states, 1000.0) > TORUS_DIGITS)
+
+
+def test_the_digits_of_an_orbit_do_not_depend_on_the_others() -> None:
+    """The other orbits take more steps, or run to infinity."""
+    torus, others = [0.1, 0.0, 0.0, 0.3], [[0.0, 0.0, 1.0, 1.0], [0.3, 0.1, -0.2, 0.2]]
+    alone = count_agreeing_digits(CASES["III"], np.array([torus]), 100.0)
+    np.testing.assert_array_equal(count_agreeing_digits(CASES["III"], np.array([*others, torus]), 100.0)[2:], alone)
 
 
 def test_escaping_orbit_has_zero_digits() -> None:

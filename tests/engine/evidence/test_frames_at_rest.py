@@ -1,4 +1,4 @@
-"""Time reversal, tori as evidence and fixed steps are used only for potentials that permit them."""
+"""Time reversal, tori as evidence and regularity maps are used only for potentials that permit them."""
 
 from __future__ import annotations
 
@@ -79,5 +79,5 @@ def test_orbits_below_all_saddles_are_closed_unless_they_can_collide() -> None:
 
 def test_regularity_of_maps_refuses_centres() -> None:
     escapes = compute_map(MapSpec(WITH_CENTRE, Plane.X_PX, 0.12, (4, 4), t_max=100.0))
-    with pytest.raises(ValueError, match="has centres; regular and chaotic orbits of a map are computed with fixed steps"):
+    with pytest.raises(ValueError, match="has centres; regular and chaotic orbits of a map are not told apart"):
         compute_regularity(escapes)

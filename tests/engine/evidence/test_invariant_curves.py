@@ -9,7 +9,7 @@ import pytest
 
 from engine import CASES, Plane, start_states
 from engine.evidence.invariant_curves import InvariantCurve, find_invariant_curve
-from engine.propagation.fixed_steps import find_section_points
+from engine.propagation.limited_steps import find_section_points
 
 type Curve = Callable[[np.ndarray], np.ndarray]
 

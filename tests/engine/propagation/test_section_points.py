@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from engine import CASES, Plane, start_states
-from engine.propagation.fixed_steps import find_section_points
+from engine.propagation.limited_steps import find_section_points
 
 POTENTIAL, ENERGY = CASES["III"], 0.24
 

@@ -20,8 +20,8 @@ def test_kernels_are_compiled_in_the_order_of_need() -> None:
     compiled = []
     for prepare in (prepare_for_maps, prepare_for_evidence):
         prepare(OTHER)
-        compiled.append({name for name in ("step", "jets", "fixed_step") if getattr(kernels, name).signatures})
-    assert compiled == [{"step", "jets"}, {"step", "jets", "fixed_step"}]
+        compiled.append({name for name in ("step", "jets", "limited_step") if getattr(kernels, name).signatures})
+    assert compiled == [{"step", "jets"}, {"step", "jets", "limited_step"}]
 
 
 def test_maps_go_before_background_compilation() -> None:

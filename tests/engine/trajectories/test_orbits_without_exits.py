@@ -75,7 +75,7 @@ def test_an_exit_all_around_a_well_is_not_needed() -> None:
 @pytest.mark.parametrize(
     ("name", "state", "t_max", "reason"),
     [
-        ("Hill", (0.1, 0.0, 0.0, 3.0), 3000.0, "the fixed steps of these averages cannot pass close to a body"),
+        ("Hill", (0.1, 0.0, 0.0, 3.0), 3000.0, "the digits of regular and chaotic orbits around a body are not known"),
         ("III", (0.1, 0.0, 0.0, 0.3), 100.0, "t = 100 is too short; the shortest two take t = 2 000"),
         ("III", (0.1, 0.0, 0.3, 0.0), 3000.0, "the orbit runs along an axis"),
     ],

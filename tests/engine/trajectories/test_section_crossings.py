@@ -19,7 +19,7 @@ from engine import (
     sample_starts,
     start_states,
 )
-from engine.propagation.fixed_steps import find_section_points
+from engine.propagation.limited_steps import find_section_points
 from engine.trajectories.chaos_indicators import Verdict
 
 POTENTIAL, ENERGY = CASES["III"], 0.24

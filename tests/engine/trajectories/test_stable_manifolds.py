@@ -11,7 +11,7 @@ import shapely
 
 from engine import CASES, MapSpec, Plane, Potential, Window, classify_orbits, compute_map, start_states
 from engine.exits.lyapunov_orbits import find_orbits_in_well_units
-from engine.propagation.fixed_steps import find_section_points
+from engine.propagation.limited_steps import find_section_points
 from engine.trajectories.stable_manifolds import StableManifolds, find_stable_manifolds
 from engine.trajectories.unstable_manifold import UnstableManifold
 

@@ -21,7 +21,7 @@ from engine import (
     sample_starts,
     start_states,
 )
-from engine.propagation.fixed_steps import DEVIATION_VECTORS
+from engine.propagation.limited_steps import DEVIATION_VECTORS
 from engine.trajectories.birkhoff_digits import compute_birkhoff_digits
 from engine.trajectories.chaos_indicators import Verdict
 from tests.peers.dop853 import equations, variational_equations

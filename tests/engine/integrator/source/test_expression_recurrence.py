@@ -15,7 +15,7 @@ from engine.expressions.calculus import derivative
 from engine.expressions.nodes import Coordinate, Expression, Function, Product, Sum
 from engine.integrator.bound_kernels import load_kernels
 from engine.integrator.jit.function_pointers import SIGNATURES
-from engine.integrator.source.recurrence import LANES, ROWS, TOLERANCE
+from engine.integrator.source.recurrence import LANES, ROWS, SIZE_ROW, TOLERANCE
 from engine.integrator.source.series import ORDER, Setting
 
 # Together these formulas have all kinds of nodes.
@@ -94,10 +94,11 @@ def assert_tangent_map(text: str) -> None:
     kernels, state, h, shift = kernels_of(text), states_of(1)[0], 0.2, 1e-5
     deviations = np.eye(4)
     kernels.tangent(4, np.full(4, h), *(np.full(4, value) for value in state), *deviations)
-    ends = np.zeros((4, LANES))
-    ends[:, :8] = np.concatenate([state + shift * np.eye(4), state - shift * np.eye(4)]).T
-    kernels.fixed_step(8, h, 0.0, ends, np.zeros((2, LANES)))
-    np.testing.assert_allclose(deviations, (ends[:, :4] - ends[:, 4:8]) / (2.0 * shift), atol=1e-8)
+    starts, ends = np.zeros((2, ROWS, LANES))
+    starts[:4, :8] = np.concatenate([state + shift * np.eye(4), state - shift * np.eye(4)]).T
+    kernels.limited_step(8, np.inf, np.full(LANES, h), starts, ends)
+    np.testing.assert_array_equal(ends[SIZE_ROW, :8], h)
+    np.testing.assert_allclose(deviations, (ends[:4, :4] - ends[:4, 4:8]) / (2.0 * shift), atol=1e-8)
 
 
 @texts_of(fast=2)

@@ -12,7 +12,7 @@ from numba import njit
 from engine import CASES, Fate, Potential, classify_orbits, start_states
 from engine.integrator.bound_kernels import load_kernels
 from engine.integrator.jit.function_pointers import SIGNATURES
-from engine.integrator.source.recurrence import LANES, ROWS, TOLERANCE
+from engine.integrator.source.recurrence import LANES, ROWS, SIZE_ROW, TIME_ROW, TOLERANCE
 from engine.integrator.source.series import ORDER, Setting
 from engine.slices.planes import Plane
 from tests.channel_family import channel_family
@@ -93,19 +93,44 @@ def test_energy_error_is_at_most_1e_11_over_1e5_time_units(name: str, energy: fl
 def test_generated_functions_compile_for_any_polynomial(terms: tuple) -> None:
     kernels = load_kernels(terms, Setting())
     assert kernels.potential_value(0.5, 0.7) == pytest.approx(sum(c * 0.5**i * 0.7**j for i, j, c in terms))
-    state, sums = some_states(LANES).T.copy(), np.zeros((2, LANES))
-    kernels.fixed_step(LANES, 0.1, 1.0, state, sums)
-    assert np.isfinite(state).all()
+    now, new = np.zeros((2, ROWS, LANES))
+    now[:4] = some_states(LANES).T
+    kernels.limited_step(LANES, TOLERANCE, np.full(LANES, 0.1), now, new)
+    assert np.isfinite(new).all()
+
+
+def stepped_until(potential: Potential, states: np.ndarray, t: float, limits: np.ndarray) -> np.ndarray:
+    """Return the lanes after a limited step of orbits at time t, of shape (ROWS, LANES)."""
+    now, new = np.zeros((2, ROWS, LANES))
+    now[:4], now[TIME_ROW] = states.T, t
+    load_kernels(potential.terms, Setting(potential.channels)).limited_step(LANES, TOLERANCE, limits, now, new)
+    return new
 
 
 @each_potential
-def test_a_fixed_step_is_the_flow_and_adds_weighted_squares(name: str) -> None:
-    h = 0.25
-    potential, states = POTENTIALS[name], some_states(LANES)
-    ends, sums = states.T.copy(), np.zeros((2, LANES))
-    load_kernels(potential.terms, Setting(potential.channels)).fixed_step(LANES, h, 2.0, ends, sums)
-    np.testing.assert_allclose(ends.T, flowed(potential, states, h), rtol=0, atol=1e-14)
-    np.testing.assert_array_equal(sums.T, 2.0 * states[:, :2] ** 2)
+def test_a_step_that_is_cut_short_is_the_flow_until_its_limit(name: str) -> None:
+    potential, states, limits = POTENTIALS[name], some_states(LANES), np.linspace(5.01, 5.2, LANES)
+    ends = stepped_until(potential, states, 5.0, limits)
+    np.testing.assert_array_equal(ends[TIME_ROW], limits)
+    expected = [flowed(potential, state[None], h)[0] for state, h in zip(states, limits - 5.0, strict=True)]
+    np.testing.assert_allclose(ends[:4].T, expected, rtol=0, atol=1e-14)
+
+
+@each_potential
+def test_a_step_before_its_limit_is_that_of_maps(name: str) -> None:
+    states = some_states(LANES)
+    found, expected = (
+        stepped_until(POTENTIALS[name], states, 0.0, np.full(LANES, np.inf)),
+        stepped(POTENTIALS[name], states, TOLERANCE),
+    )
+    np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-13)
+
+
+def test_an_orbit_at_its_limit_does_not_move() -> None:
+    states = some_states(LANES)
+    ends = stepped_until(ODD, states, 3.0, np.full(LANES, 3.0))
+    np.testing.assert_array_equal(ends[:4].T, states)
+    np.testing.assert_array_equal(ends[SIZE_ROW], 0.0)
 
 
 @pytest.mark.parametrize("exponent", [-12, 0, 12])
