@@ -36,7 +36,7 @@ CODES = (
         Regularity.UNDECIDED,
         "bounded, undecided whether regular or chaotic",
         "undecided whether regular or chaotic",
-        ("#909090", "#808080"),
+        ("#e8e810", "#8858e8"),
     ),
 )
 """All codes in order."""

@@ -7,7 +7,8 @@ import itertools
 import numpy as np
 import pytest
 
-from plots.layers.regularity import entries
+from engine import Regularity
+from plots.layers.regularity import CODES, entries
 from plots.layers.trust import TONES
 from plots.pictures.palette import (
     DARK,
@@ -19,6 +20,8 @@ from tests.plots.colour_vision import VISIONS, contrast, differences
 
 # Differences CIEDE2000: 2 is just visible, 10 is clear at a glance.
 CLEAR = 10.0
+# Characters with colours of their own.
+SHOWN = set(Regularity) - {Regularity.NOT_APPLICABLE, Regularity.NOT_JUDGED}
 PAGES = {"light": "#f5f6f8", "dark": "#13161a"}
 of_each_palette = pytest.mark.parametrize("palette", PALETTES.values(), ids=PALETTES)
 for_each_vision = pytest.mark.parametrize("vision", VISIONS)
@@ -36,7 +39,7 @@ def test_channels_crossing_classes_characters_and_orbits_have_no_colour_in_commo
         palette.channels,
         palette.ends[len(palette.channels) :],
         palette.classes,
-        [entry.colour for entry in entries(palette)[1:-1]],
+        [entry.colour for code, entry in zip(CODES, entries(palette), strict=True) if code.code in SHOWN],
         palette.orbits,
         (palette.bounded,),
     )
