@@ -281,7 +281,11 @@ class _Trials:
 
     def solve(self, bracket: tuple[float, float], largest_speed: float) -> _Shot | None:
         """Return the orbit that starts between two offsets and ends slower than `largest_speed`; None if no orbit does."""
-        u = find_root(self.outward_velocity, *bracket, xtol=1e-17)
+        try:
+            u = find_root(self.outward_velocity, *bracket, xtol=1e-17)
+        except ValueError:
+            # A trial orbit between the two offsets does not turn, so its velocity is NaN.
+            return None
         velocity, half_period, count = self._kernels.shoot(u, *self._arguments)
         if not (np.isfinite(half_period) and abs(velocity) < largest_speed):
             return None

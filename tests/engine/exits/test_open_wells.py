@@ -11,6 +11,7 @@ from engine.maps.spec import MapSpec
 from engine.propagation.fates import Evidence, Fate
 from engine.slices.planes import SECTION
 from engine.systems.formulas.formula_parser import parse_formula
+from engine.systems.known_potentials import POTENTIALS
 from engine.systems.potential import Potential
 from engine.trajectories.orbit_verdicts import judge_orbit
 from engine.trajectories.trajectory import integrate_orbit
@@ -80,3 +81,10 @@ def test_an_orbit_needs_no_list_of_critical_points() -> None:
     orbit = integrate_orbit(potential, (0.01, 0.0, 0.0, 0.4), 100.0)
     assert (orbit.fate, orbit.evidence) == (Fate.BOUNDED, Evidence.CLOSED)
     assert orbit.energy_error < 1e-10
+
+
+def test_an_energy_at_which_no_orbit_turns_is_refused_in_the_usual_words() -> None:
+    # The energy of the maximum between both exits.
+    potential = POTENTIALS["Separable"]
+    with pytest.raises(UndefinedExitsError, match="no Lyapunov orbit was found"):
+        find_lyapunov_orbits(potential, 2.0 * potential.escape_energy)
