@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import groupby
 from types import ModuleType
 from typing import Any
 
@@ -22,13 +21,13 @@ from engine.systems.forms.mirror_images import (
     MIRROR_X,
     MIRROR_Y,
     Signs,
-    find_images,
     make_symmetric,
     mirrors_of,
     without_rounding,
 )
 from engine.systems.forms.stored_points import stored_points
 from engine.systems.merged_channels import ChannelMerger, MergedExit, exit_numbers, merged_exits, name_exit
+from engine.systems.mirror_symmetry import image_fates, well_mirrors
 from engine.systems.outcomes import End, EscapeCircle, Exit, Outcome, outcomes_of
 from engine.systems.well_units import WellUnits, nearest_power_of_two
 
@@ -244,22 +243,12 @@ class Well(ReadOnlyArrays):
     @property
     def mirrors(self) -> tuple[Signs, ...]:
         """The reflections that map V and the ends onto themselves, in a frame at rest."""
-        circles = {(end.key, end.x, end.y, end.radius) for end in self.ends}
-
-        def maps_ends(signs: Signs) -> bool:
-            return circles == {(key, signs[0] * x, signs[1] * y, radius) for key, x, y, radius in circles}
-
-        return () if self.rotation else tuple(signs for signs in mirrors_of(self.form) if maps_ends(signs))
+        return well_mirrors(self.form, self.rotation, self.ends)
 
     @cached_property
     def mirror_fates(self) -> np.ndarray:
         """The fate onto which x → −x maps each fate, of shape (outcomes + 1,). Entry 0 is 0. Requires `mirror_in_x`."""
-        ends_by_kind = [np.array([(end.x, end.y) for end in group]) for _, group in groupby(self.ends, type)]
-        images = [np.arange(1)]
-        for points in (self.saddles, *ends_by_kind):
-            # The fates of a kind follow those of the previous kinds.
-            images.append(sum(map(len, images)) + find_images(points, MIRROR_X))
-        return read_only(np.concatenate(images).astype(np.int8))
+        return read_only(image_fates(self.saddles, self.ends, MIRROR_X))
 
     def mirror_numbers(self, energy: Any) -> np.ndarray:
         """Return `mirror_fates` as exit numbers at energies (…), of shape (…, outcomes + 1)."""

@@ -33,6 +33,5 @@ def test_vectors_without_a_symmetry_stay_as_they_are() -> None:
 
 
 def test_rounding_errors_of_zero_become_zero_and_small_points_stay() -> None:
-    np.testing.assert_array_equal(
-        without_rounding(np.array([[5.0, 1e-15], [1e-15, 1e-15], [0.0, 0.0]])), [[5.0, 0.0], [1e-15, 1e-15], [0.0, 0.0]]
-    )
+    points = np.array([[5.0, 1e-15], [1e-15, 1e-15], [0.0, 0.0]])
+    np.testing.assert_array_equal(without_rounding(points), [[5.0, 0.0], [1e-15, 1e-15], [0.0, 0.0]])
