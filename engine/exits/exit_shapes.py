@@ -5,6 +5,8 @@ An exit is a graph u = f(s) in the axes of a saddle (`brake_orbits.Axes`), with 
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.polynomial import chebyshev
 
@@ -12,6 +14,7 @@ from engine.exits.brake_orbits import Axes, saddle_axes
 from engine.foundations.root_finding import bisect
 from engine.integrator.kernels import exit_geometry as geometry
 from engine.systems.forms.closed_energy import ridge_bend
+from engine.systems.forms.mirror_images import Signs
 from engine.systems.potential import Potential
 
 # Largest distance of a curve from the path that it follows, in units of the well.
@@ -40,6 +43,9 @@ _LINE_POINTS = 41
 _LARGEST_WALL_STEP = 0.25
 # Largest distance between ends of two orbits that count as the same end, in units of the well.
 _END_TOLERANCE = 1e-6
+# Columns that a reflection of x or y multiplies by its sign.
+_X_COLUMNS = [geometry.ORIGIN_X, geometry.OUTWARD_X, geometry.BEARING_X]
+_Y_COLUMNS = [geometry.ORIGIN_Y, geometry.OUTWARD_Y, geometry.BEARING_Y]
 
 
 def closed_channel(axes: Axes, saddle: np.ndarray) -> np.ndarray:
@@ -105,13 +111,16 @@ def curve_along(axes: Axes, saddle: np.ndarray, path: np.ndarray) -> np.ndarray 
     return curve
 
 
-def mirrored_curve(curve: np.ndarray) -> np.ndarray:
-    """Return the row of the mirror image of an exit under x → −x: in the axes of the mirrored saddle, q changes its sign."""
+def mirrored_curve(curve: np.ndarray, signs: Signs) -> np.ndarray:
+    """Return the row of the mirror image of an exit. In the axes of the mirrored saddle, a reflection changes the sign of q."""
     mirrored = curve.copy()
-    mirrored[[geometry.ORIGIN_X, geometry.OUTWARD_X, geometry.BEARING_X, geometry.MIDDLE]] *= -1.0
-    mirrored[[geometry.SLOPE_LOW, geometry.SLOPE_HIGH]] = -curve[[geometry.SLOPE_HIGH, geometry.SLOPE_LOW]]
-    # The odd Chebyshev polynomials change their signs with q.
-    mirrored[geometry.COEFFICIENTS + 1 :: 2] *= -1.0
+    for sign, columns in zip(signs, (_X_COLUMNS, _Y_COLUMNS), strict=True):
+        mirrored[columns] *= sign
+    if math.prod(signs) < 0.0:
+        mirrored[geometry.MIDDLE] *= -1.0
+        mirrored[[geometry.SLOPE_LOW, geometry.SLOPE_HIGH]] = -curve[[geometry.SLOPE_HIGH, geometry.SLOPE_LOW]]
+        # The odd Chebyshev polynomials change their signs with q.
+        mirrored[geometry.COEFFICIENTS + 1 :: 2] *= -1.0
     return mirrored
 
 
@@ -164,13 +173,13 @@ def _find_walls(potential: Potential, energy: float, axes: Axes, offset: np.ndar
 
 def paths_meet(one: np.ndarray, other: np.ndarray) -> bool:
     """Return whether two paths, (n, 2) and (m, 2), intersect, or have the same ends and thus are the same path."""
-    return _paths_cross(one, other) or bool(np.abs(one[[0, -1]] - other[[0, -1]]).max() < _END_TOLERANCE)
+    return count_crossings(one, other) > 0 or bool(np.abs(one[[0, -1]] - other[[0, -1]]).max() < _END_TOLERANCE)
 
 
-def _paths_cross(one: np.ndarray, other: np.ndarray) -> bool:
-    """Return whether two polygonal lines, (n, 2) and (m, 2), intersect."""
+def count_crossings(one: np.ndarray, other: np.ndarray) -> int:
+    """Return how often two polygonal lines, (n, 2) and (m, 2), intersect."""
     if np.any(one.max(axis=0) < other.min(axis=0)) or np.any(other.max(axis=0) < one.min(axis=0)):
-        return False
+        return 0
 
     def sides(line: np.ndarray, points: np.ndarray) -> np.ndarray:
         """Return whether each point lies to the left of each segment of a line, of shape (segments, points)."""
@@ -179,4 +188,4 @@ def _paths_cross(one: np.ndarray, other: np.ndarray) -> bool:
 
     # Two segments intersect if the ends of each lie on different sides of the other.
     other_sides, one_sides = sides(one, other), sides(other, one).T
-    return bool(np.any((other_sides[:, 1:] != other_sides[:, :-1]) & (one_sides[1:] != one_sides[:-1])))
+    return int(np.count_nonzero((other_sides[:, 1:] != other_sides[:, :-1]) & (one_sides[1:] != one_sides[:-1])))

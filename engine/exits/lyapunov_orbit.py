@@ -13,6 +13,7 @@ from engine.exits.periodic_orbits import floquet_multipliers, monodromy_matrix
 from engine.foundations.arrays import read_only
 from engine.foundations.result import Result
 from engine.integrator.kernels import exit_geometry as geometry
+from engine.systems.forms.mirror_images import Signs
 from engine.systems.merged_channels import name_channels
 from engine.systems.potential import Potential
 from engine.systems.well_units import ENERGY, LENGTH, MOMENTUM, TIME, WellUnits
@@ -126,10 +127,11 @@ class LyapunovOrbit(Result):
         curve[unitless] = self.curve[unitless]
         return replace(units.restore(self), curve=curve)
 
-    def mirrored(self, channel: int) -> LyapunovOrbit:
-        """Return the exact image under x → −x in a frame at rest, so that mirror images of orbits escape at the same time."""
-        return replace(self, channel=channel, x=-self.x, curve=mirrored_curve(self.curve))
+    def mirrored(self, channel: int, signs: Signs) -> LyapunovOrbit:
+        """Return the exact image under a reflection in a frame at rest, so that mirror images escape at the same time."""
+        x_sign, y_sign = signs
+        return replace(self, channel=channel, x=x_sign * self.x, y=y_sign * self.y, curve=mirrored_curve(self.curve, signs))
 
-    def symmetrized(self) -> LyapunovOrbit:
-        """Return this orbit over a saddle on the y axis, with an exit curve that is exactly symmetric under x → −x."""
-        return replace(self, curve=0.5 * (self.curve + mirrored_curve(self.curve)))
+    def symmetrized(self, signs: Signs) -> LyapunovOrbit:
+        """Return this orbit, which is its own mirror image, with an exit curve that is exactly its own mirror image."""
+        return replace(self, curve=0.5 * (self.curve + mirrored_curve(self.curve, signs)))

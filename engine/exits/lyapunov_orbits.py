@@ -9,6 +9,7 @@ from __future__ import annotations
 import functools
 import itertools
 import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -24,6 +25,8 @@ from engine.exits.brake_orbits import (
 from engine.exits.exit_shapes import curve_along, find_reach, line_across, paths_meet
 from engine.exits.lyapunov_orbit import LyapunovOrbit
 from engine.exits.merged_orbits import axes_between, find_merged_orbits, has_returns
+from engine.exits.mirrored_orbits import Images, OrbitSearchError, find_with_images, image_exits, meets_image
+from engine.exits.necks import closes_channel
 from engine.exits.open_wells import leads_to_infinity
 from engine.exits.periodic_orbits import find_orbit_in_rotating_frame
 from engine.foundations.validation import checked_number, checks_types
@@ -99,7 +102,7 @@ def find_orbits_in_well_units(potential: Potential, energy: float) -> tuple[Lyap
     """Apply `find_lyapunov_orbits` to a potential in units of its well; errors state the energy in the units of the user."""
     try:
         orbits = _find_orbits(potential, energy)
-    except _SearchError as error:
+    except OrbitSearchError as error:
         stated = energy * potential.well.stated_units.energy
         raise UndefinedExitsError(f"energy={stated}: {error} (potential {potential.name})", str(error)) from None
     return tuple(replace(orbit, potential=potential) for orbit in orbits)
@@ -113,8 +116,11 @@ def find_known_exits(potential: Potential, energy: float) -> tuple[LyapunovOrbit
         return ()
 
 
-class _SearchError(Exception):
-    """No Lyapunov orbit was found, or the orbit found cannot be used as an exit."""
+_Search = Callable[[Potential, float, int], BrakeOrbit | None]
+# Functions that find the orbit over a saddle in a frame at rest. If the first one does not find all orbits, the slower ones are
+# tried, in turn.
+_FIRST = (find_directly,)
+_SLOWER = (continue_in_energy, find_from_both_ends)
 
 
 def _find_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:
@@ -124,14 +130,14 @@ def _find_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ..
     if well.escape_radius is not None or energy <= min(well.closed_energy, well.escape_energy):
         return orbits
     if well.exits_unknown:
-        raise _SearchError(f"the exits are not known: {well.exits_unknown}")
+        raise OrbitSearchError(f"the exits are not known: {well.exits_unknown}")
     if not potential.channels:
         limit = well.closed_energy * well.stated_units.energy
-        raise _SearchError(
+        raise OrbitSearchError(
             f"there is no exit, and the well is shown to be closed only up to h = {limit:.6g}; choose a lower energy"
         )
     if _is_open(potential, energy):
-        raise _SearchError("the region of motion leads to infinity beside the exits; choose a lower energy")
+        raise OrbitSearchError("the region of motion leads to infinity beside the exits; choose a lower energy")
     return orbits
 
 
@@ -146,7 +152,7 @@ def _is_open(potential: Potential, energy: float) -> bool:
         try:
             if higher > height and not _is_open_at(potential, potential.escape_energy + higher):
                 return False
-        except _SearchError:
+        except OrbitSearchError:
             continue
     return _is_open_at(potential, energy)
 
@@ -167,41 +173,34 @@ def _find_all_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit
         _check_exits_apart(orbits)
         return orbits
     try:
-        return _find_separate_orbits(potential, energy, follow=False)
-    except _SearchError:
-        return _find_separate_orbits(potential, energy, follow=True)
+        return _find_separate_orbits(potential, energy, _FIRST)
+    except OrbitSearchError:
+        return _find_separate_orbits(potential, energy, _SLOWER)
 
 
-def _find_separate_orbits(potential: Potential, energy: float, follow: bool) -> tuple[LyapunovOrbit, ...]:
-    """Find orbits that do not meet, directly or by continuation in energy. Orbits of mirror channels are exact mirror images."""
+def _find_separate_orbits(potential: Potential, energy: float, searches: Sequence[_Search]) -> tuple[LyapunovOrbit, ...]:
+    """Find orbits that do not meet, each over a single saddle by the first of the `searches` that succeeds."""
     orbits: dict[int, LyapunovOrbit] = {}
     merged = {exit.channels[0]: exit for exit in potential.well.merged_exits(energy)}
-    numbers = potential.well.exit_numbers(energy)
-    mirror_numbers = potential.well.mirror_numbers(energy) if potential.well.mirror_in_x else numbers
+    numbers, images = potential.well.exit_numbers(energy), image_exits(potential, energy)
+    find_merged = functools.partial(_find_merged, potential, energy, merged)
+    find_single = functools.partial(_find_orbit, potential, energy, searches, images)
     for channel in potential.well.open_channels(energy):
-        if numbers[channel] < channel:
-            # The channel belongs to an exit with the number of a lower channel.
-            continue
-        mirror_channel = int(mirror_numbers[channel])
-        others = merged[channel].channels[1:] if channel in merged else ()
-        if mirror_channel in orbits:
-            orbits[channel] = replace(orbits[mirror_channel].mirrored(channel), others=others)
-        elif channel in merged:
-            orbits[channel] = _find_merged(potential, energy, merged[channel])
-        else:
-            orbits[channel] = _find_orbit(potential, energy, channel, follow)
-        if mirror_channel == channel and potential.well.mirror_in_x:
-            orbits[channel] = orbits[channel].symmetrized()
-    in_channel_order = tuple(orbits.values())
-    _check_exits_apart(in_channel_order)
-    return in_channel_order
+        # A channel may belong to an exit with the number of a lower channel.
+        if channel not in orbits and numbers[channel] == channel:
+            find = find_merged if channel in merged else find_single
+            orbits |= find_with_images(find, channel, images, needs_all=searches is _FIRST)
+    others = {channel: exit.channels[1:] for channel, exit in merged.items()}
+    separate = tuple(replace(orbits[channel], others=others.get(channel, ())) for channel in sorted(orbits))
+    _check_exits_apart(separate)
+    return separate
 
 
 def _check_separate(potential: Potential, energy: float) -> None:
     """Raise an error if several channels form one exit."""
     if merged_exits := potential.well.merged_exits(energy):
         exit_text = _describe_merged_exit(potential, merged_exits[0])
-        raise _SearchError(f"{exit_text}, which has no Lyapunov orbit in a rotating frame; choose a lower energy")
+        raise OrbitSearchError(f"{exit_text}, which has no Lyapunov orbit in a rotating frame; choose a lower energy")
 
 
 def _describe_merged_exit(potential: Potential, merged: MergedExit) -> str:
@@ -213,10 +212,13 @@ def _describe_merged_exit(potential: Potential, merged: MergedExit) -> str:
     return f"channels {merged.name} are one exit above V = {lowest.energy * units.energy:.6g}, the maximum at {position}"
 
 
-def _find_merged(potential: Potential, energy: float, merged: MergedExit) -> LyapunovOrbit:
-    """Return the orbit between the outer walls of an exit of several channels."""
+def _find_merged(potential: Potential, energy: float, exits: Mapping[int, MergedExit], channel: int) -> LyapunovOrbit:
+    """Return the orbit between the outer walls of an exit of several channels; `exits` by their lowest channels."""
+    merged = exits[channel]
     if merged.closes_ring:
-        raise _SearchError(f"{_describe_merged_exit(potential, merged)}, and it leads all around the well; choose a lower energy")
+        raise OrbitSearchError(
+            f"{_describe_merged_exit(potential, merged)}, and it leads all around the well; choose a lower energy"
+        )
     axes, saddle = axes_between(potential, merged.channels), potential.saddles[merged.channels[0] - 1]
     reason = _NO_ORBIT
     for orbit in find_merged_orbits(potential, energy, merged.channels):
@@ -226,26 +228,26 @@ def _find_merged(potential: Potential, energy: float, merged: MergedExit) -> Lya
             continue
         lyapunov_orbit = _exit_over(potential, energy, merged.channels[0], orbit, curve)
         if not has_returns(potential, energy, orbit, lyapunov_orbit.curve):
-            return replace(lyapunov_orbit, others=merged.channels[1:])
+            return lyapunov_orbit
         reason = _RETURNS
-    raise _SearchError(f"{_describe_merged_exit(potential, merged)}, and {_REASONS[reason]}")
+    raise OrbitSearchError(f"{_describe_merged_exit(potential, merged)}, and {_REASONS[reason]}")
 
 
 def _check_exits_apart(orbits: tuple[LyapunovOrbit, ...]) -> None:
     """Raise an error if two exits meet."""
     for first, second in itertools.combinations(orbits, 2):
         if paths_meet(first.exit_path, second.exit_path):
-            raise _SearchError(f"the exits of channels {first.channel} and {second.channel} meet; choose a lower energy")
+            raise OrbitSearchError(f"the exits of channels {first.channel} and {second.channel} meet; choose a lower energy")
 
 
 def _find_closed_orbit(potential: Potential, energy: float, channel: int) -> LyapunovOrbit:
     """Return the orbit over a saddle in a rotating frame, with the exit just outside the orbit."""
     orbit = find_orbit_in_rotating_frame(potential, energy, channel)
     if orbit is None:
-        raise _SearchError(f"no Lyapunov orbit was found across channel {channel}; choose another energy")
+        raise OrbitSearchError(f"no Lyapunov orbit was found across channel {channel}; choose another energy")
     curve = line_across(potential, energy, channel, orbit.edge)
     if curve is None:
-        raise _SearchError(
+        raise OrbitSearchError(
             f"the line at the outer edge of the Lyapunov orbit across channel {channel} does not end on its walls; "
             "choose a lower energy"
         )
@@ -253,17 +255,23 @@ def _find_closed_orbit(potential: Potential, energy: float, channel: int) -> Lya
     return LyapunovOrbit(channel, energy, orbit.period, x, y, curve, orbit.path[2:, 0].copy(), potential=potential)
 
 
-def _find_orbit(potential: Potential, energy: float, channel: int, follow: bool) -> LyapunovOrbit:
-    """Return the orbit over a saddle in a frame at rest, found directly or, with `follow`, by continuation in energy."""
-    arguments = potential, energy, channel
-    orbit = (continue_in_energy(*arguments) or find_from_both_ends(*arguments)) if follow else find_directly(*arguments)
-    if orbit is None:
-        raise _SearchError(f"no Lyapunov orbit was found across channel {channel}; choose another energy")
-    axes = chord_axes(orbit.path) if follow else saddle_axes(potential, channel)
-    curve = curve_along(axes, potential.saddles[channel - 1], orbit.path)
-    if curve is None:
-        raise _SearchError(f"the Lyapunov orbit across channel {channel} is not a smooth graph; choose another energy")
-    return _exit_over(potential, energy, channel, orbit, curve)
+def _find_orbit(potential: Potential, energy: float, searches: Sequence[_Search], images: Images, channel: int) -> LyapunovOrbit:
+    """Return the orbit over a saddle in a frame at rest, found by the first of the searches that succeeds."""
+    reason = f"no Lyapunov orbit was found across channel {channel}; choose another energy"
+    for search in searches:
+        orbit = search(potential, energy, channel)
+        if (
+            orbit is None
+            or not closes_channel(potential, energy, channel, orbit.path)
+            or meets_image(orbit.path, channel, images)
+        ):
+            continue
+        axes = saddle_axes(potential, channel) if search in _FIRST else chord_axes(orbit.path)
+        curve = curve_along(axes, potential.saddles[channel - 1], orbit.path)
+        if curve is not None:
+            return _exit_over(potential, energy, channel, orbit, curve)
+        reason = f"the Lyapunov orbit across channel {channel} is not a smooth graph; choose another energy"
+    raise OrbitSearchError(reason)
 
 
 def _exit_over(potential: Potential, energy: float, channel: int, orbit: BrakeOrbit, curve: np.ndarray) -> LyapunovOrbit:

@@ -11,7 +11,7 @@ import numpy as np
 
 from engine.foundations.arrays import read_only
 from engine.foundations.validation import replace_unchecked
-from engine.systems.forms.exit_saddles import in_channel_order
+from engine.systems.forms.exit_saddles import find_exit_lines, in_channel_order
 from engine.systems.merged_channels import ChannelMerger
 from engine.systems.well import Well
 from engine.systems.well_units import WellUnits
@@ -58,6 +58,11 @@ class ScaledWell(Well):
         return self.stated.closed_energy / self.stated_units.energy
 
     @cached_property
+    def exit_lines(self) -> tuple[np.ndarray, ...]:
+        """See `Well.exit_lines`."""
+        return tuple(line / self.stated_units.length for line in self.stated.exit_lines)
+
+    @cached_property
     def channel_mergers(self) -> tuple[ChannelMerger, ...]:
         """See `Well.channel_mergers`."""
         units = self.stated_units
@@ -88,7 +93,15 @@ class ContinuedWell(Well):
     @cached_property
     def saddles(self) -> np.ndarray:
         """See `Well.saddles`."""
-        return read_only(in_channel_order(self.exit_saddles, mirror_in_x=self.mirror_in_x))
+        return read_only(in_channel_order(self.exit_saddles, self.mirrors))
+
+    @cached_property
+    def exit_lines(self) -> tuple[np.ndarray, ...]:
+        """See `Well.exit_lines`. Critical points other than the origin and those of the exits are not known."""
+        points = np.concatenate([self.saddles, np.zeros((1, 2)), self.maxima])
+        indices = np.where(np.arange(len(points)) < self.channels, -1, 1)
+        rows = find_exit_lines(self.form, points, indices)
+        return tuple(rows[rows[:, 0] == k, 1:] for k in range(self.channels))
 
     @cached_property
     def channel_mergers(self) -> tuple[ChannelMerger, ...]:

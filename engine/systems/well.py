@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import groupby
 from types import ModuleType
 from typing import Any
 
@@ -16,12 +15,21 @@ from engine.integrator.bound_kernels import load_kernels
 from engine.integrator.source.recurrence import Structure, find_structure
 from engine.integrator.source.series import Setting
 from engine.systems.forms.closed_energy import component_search, find_closed_energy
-from engine.systems.forms.exit_saddles import ROUNDING, find_maxima_beside, in_channel_order, leads_out_of_well
+from engine.systems.forms.exit_saddles import find_exit_lines, find_maxima_beside, in_channel_order
 from engine.systems.forms.expression_form import Form
 from engine.systems.forms.form import DescentError, NotIsolatedError, UndecidedError, hessian_matrix
 from engine.systems.forms.hill_component import ComponentSearch
+from engine.systems.forms.mirror_images import (
+    MIRROR_X,
+    MIRROR_Y,
+    Signs,
+    make_symmetric,
+    mirrors_of,
+    without_rounding,
+)
 from engine.systems.forms.stored_points import stored_points
 from engine.systems.merged_channels import ChannelMerger, MergedExit, exit_numbers, merged_exits, name_exit
+from engine.systems.mirror_symmetry import image_fates, well_mirrors
 from engine.systems.outcomes import End, EscapeCircle, Exit, Outcome, outcomes_of
 from engine.systems.well_units import WellUnits, nearest_power_of_two
 
@@ -74,7 +82,8 @@ class Well(ReadOnlyArrays):
     @cached_property
     def _points_and_indices(self) -> np.ndarray:
         """x, y and index of each critical point, of shape (n, 3)."""
-        return read_only(stored_points("critical_points", self.form, self.form.find_critical_points))
+        points, indices = np.split(stored_points("critical_points", self.form, self.form.find_critical_points), [2], axis=1)
+        return read_only(np.column_stack([make_symmetric(points, points, mirrors_of(self.form)), indices]))
 
     @cached_property
     def saddles(self) -> np.ndarray:
@@ -87,21 +96,30 @@ class Well(ReadOnlyArrays):
         """
         if self.escape_radius is not None or self.exits_unknown:
             return read_only(np.empty((0, 2)))
-        return self._find_saddles()
+        exits = np.unique(self._exit_places[:, 0].astype(int))
+        return read_only(in_channel_order(self.critical_points[exits], self.mirrors))
 
     @cached_property
     def exits_unknown(self) -> str:
         """The reason why the exit saddles are not known; empty if they are known."""
         try:
-            self._find_saddles()
+            _ = self._exit_places
         except (DescentError, NotIsolatedError, UndecidedError) as error:
             return str(error)
         return ""
 
-    def _find_saddles(self) -> np.ndarray:
+    @cached_property
+    def _exit_places(self) -> np.ndarray:
+        """The places on lines of steepest descent over the exit saddles, see `find_exit_lines`."""
         form, points, indices = self.form, self.critical_points, self.critical_indices
-        leads_out = stored_points("exit_saddles", form, lambda: leads_out_of_well(form, points, indices, form.singular_points))
-        return read_only(in_channel_order(points[leads_out], mirror_in_x=self.mirror_in_x))
+        return stored_points("exit_lines", form, lambda: find_exit_lines(form, points, indices, form.singular_points))
+
+    @cached_property
+    def exit_lines(self) -> tuple[np.ndarray, ...]:
+        """For each channel, the places (n, 2) on lines of steepest descent over its saddle, from the origin to the outside."""
+        index, places = self._exit_places[:, 0], self._exit_places[:, 1:]
+        nearest = [np.argmin(np.hypot(*(self.critical_points - saddle).T)) for saddle in self.saddles]
+        return tuple(places[index == k] for k in nearest)
 
     @property
     def channels(self) -> int:
@@ -159,17 +177,13 @@ class Well(ReadOnlyArrays):
     def outward_directions(self) -> np.ndarray:
         """Unit vectors along the unstable directions of the exit saddles, away from the well, of shape (channels, 2)."""
         directions = np.array([self._unstable_direction(saddle) for saddle in self.saddles]).reshape(-1, 2)
-        if self.mirror_in_x:
-            for k in np.flatnonzero(self.saddles[:, 0] < 0.0):
-                directions[k] = directions[self.mirror_fates[k + 1] - 1] * [-1.0, 1.0]
-        return read_only(directions)
+        return read_only(make_symmetric(self.saddles, directions, self.mirrors))
 
     def _unstable_direction(self, saddle: np.ndarray) -> np.ndarray:
         """Return the unit vector along the unstable direction of a saddle, away from the origin."""
         _, eigenvectors = np.linalg.eigh(hessian_matrix(self.form, *saddle))
         # The first eigenvector belongs to the negative eigenvalue.
-        unstable = eigenvectors[:, 0]
-        direction: np.ndarray = np.where(np.abs(unstable) < ROUNDING, 0.0, unstable)
+        direction = without_rounding(eigenvectors[None, :, 0])[0]
         return direction if direction @ saddle > 0 else -direction
 
     @cached_property
@@ -249,31 +263,22 @@ class Well(ReadOnlyArrays):
     @property
     def mirror_in_x(self) -> bool:
         """Whether (x, px) → (−x, −px) maps orbits to orbits exactly: V and the ends are even in x, and the frame is at rest."""
-        return self.form.mirror_in_x and self._mirrors_ends([-1.0, 1.0])
+        return MIRROR_X in self.mirrors
 
     @property
     def mirror_in_y(self) -> bool:
         """Whether (y, py) → (−y, −py) maps orbits to orbits exactly: V and the ends are even in y, and the frame is at rest."""
-        return self.form.mirror_in_y and self._mirrors_ends([1.0, -1.0])
+        return MIRROR_Y in self.mirrors
 
-    def _mirrors_ends(self, signs: Sequence[float]) -> bool:
-        """Return whether a change of the signs of x and y maps the ends onto each other, in a frame at rest."""
-        circles = {(end.key, end.x, end.y, end.radius) for end in self.ends}
-        images = {(key, signs[0] * x, signs[1] * y, radius) for key, x, y, radius in circles}
-        return not self.rotation and images == circles
+    @property
+    def mirrors(self) -> tuple[Signs, ...]:
+        """The reflections that map V and the ends onto themselves, in a frame at rest."""
+        return well_mirrors(self.form, self.rotation, self.ends)
 
     @cached_property
     def mirror_fates(self) -> np.ndarray:
         """The fate onto which x → −x maps each fate, of shape (outcomes + 1,). Entry 0 is 0. Requires `mirror_in_x`."""
-        ends_by_kind = [np.array([(end.x, end.y) for end in group]) for _, group in groupby(self.ends, type)]
-        images = [np.arange(1)]
-        for points in (self.saddles, *ends_by_kind):
-            if len(points):
-                distance = np.hypot(*(points[:, None] - points * [-1.0, 1.0]).T)
-                # The fates of a kind follow those of the previous kinds.
-                first_fate = sum(map(len, images))
-                images.append(first_fate + np.argmin(distance, axis=0))
-        return read_only(np.concatenate(images).astype(np.int8))
+        return read_only(image_fates(self.saddles, self.ends, MIRROR_X))
 
     def mirror_numbers(self, energy: Any) -> np.ndarray:
         """Return `mirror_fates` as exit numbers at energies (…), of shape (…, outcomes + 1)."""

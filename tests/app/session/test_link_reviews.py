@@ -24,7 +24,7 @@ from engine.systems.forms.polynomial_form import find_critical_points
 from engine.systems.forms.stored_points import stored_points
 from engine.systems.review.potential_review import review_system
 from engine.systems.system import TYPED
-from engine.systems.well import find_maxima_beside, leads_out_of_well
+from engine.systems.well import find_exit_lines, find_maxima_beside
 from plots.texts.mathml import equations, potential_formula
 from tests.app.browser_messages import send
 from tests.app.other_loop import run_on_new_loop
@@ -34,7 +34,7 @@ CIRCULAR = {"case": TYPED, "V": "r^2/2 - r^4 + r^6 - r^8 + r^10 - 1.0183r^12"}
 LEGAL = {"case": TYPED, "V": "½(x² + y²) − 0.83x²y²"}
 WITH_FUNCTIONS = {"case": TYPED, "V": "½(x² + y²) − a x²y exp(−0.017 y²)"}
 # Functions that compute slow quantities of a potential, or read them from the disk.
-SLOW = [parse_formula, review_system, find_critical_points, stored_points, leads_out_of_well, find_maxima_beside]
+SLOW = [parse_formula, review_system, find_critical_points, stored_points, find_exit_lines, find_maxima_beside]
 # Functions that derive other formulas, texts, and structures and outlines of code from a formula. Jobs call `find_outline`.
 DERIVING = [derivative, substitute, equations, potential_formula, find_structure, find_outline]
 STARTED, TOOL = sys.monitoring.events.PY_START, 4

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine.systems.forms.exit_saddles import find_maxima_beside, leads_out_of_well
+from engine.systems.forms.exit_saddles import find_exit_lines, find_maxima_beside
 from engine.systems.formulas.formula_parser import parse_formula
 from engine.systems.potential import Potential
 from tests.peers.random_systems import random_well
+from tests.peers.symmetric_wells import VALLEYS, exchanged, random_symmetric_well
 
 # A ring-shaped valley around a hill, lowest at the origin. The highest point of the valley is a saddle, from which both sides
 # descend to the origin.
@@ -23,7 +24,8 @@ NARROW_VALLEY = "x^2/2 + y^2/2 - x^3/3 + 0.047*x*y^3 - 0.012*x^6 - 0.183*x^3*y^4
 def exits(potential: Potential) -> np.ndarray:
     """Return the saddles that lead out, of shape (n, 2)."""
     points = potential.critical_points
-    return points[leads_out_of_well(potential.form, points, potential.well.critical_indices)]
+    lines = find_exit_lines(potential.form, points, potential.well.critical_indices)
+    return points[np.unique(lines[:, 0].astype(int))]
 
 
 def test_a_saddle_with_the_origin_below_on_both_sides_is_no_exit() -> None:
@@ -72,3 +74,37 @@ def test_descents_that_need_an_implicit_method_from_the_start_end() -> None:
 def test_descents_whose_first_method_fails_end_without_a_warning() -> None:
     text = "½(x²+y²) − 1.295xy³ − 6x⁶y − 2.133xy² − 1.746x⁴y² + 4x³y³ − 1.67x⁵y⁴ + 0.957x²y + 3x⁵y⁶ − 0.184x² + 9y² + 0.35x⁴y⁵"
     assert len(exits(parse_formula(text))) == 3
+
+
+def test_lines_that_pass_ridges_on_a_line_of_symmetry_end_at_the_origin() -> None:
+    # DOP853, applied to x and log y, leads one line from each saddle to the origin and the other line to infinity. The first line
+    # comes as close as 1e-15 to ridges on y = 0.
+    farthest = [[21.004705446, 0.355237647], [-23.002791387, 0.342608490]]
+    saddles = parse_formula(VALLEYS).saddles
+    assert len(saddles) == 18
+    for x, y in farthest:
+        for image in ([x, y], [x, -y]):
+            assert np.hypot(*(saddles - image).T).min() < 1e-8
+
+
+@pytest.mark.parametrize("formula", [VALLEYS, exchanged(VALLEYS)], ids=["even in y", "even in x"])
+def test_a_line_over_each_exit_falls_from_the_saddle_to_the_origin_and_outward(formula: str) -> None:
+    potential = parse_formula(formula)
+    for saddle, line in zip(potential.saddles, potential.well.exit_lines, strict=True):
+        value = potential.value(*line.T)
+        top = int(np.argmax(value))
+        assert np.hypot(*line[0]) < 1e-3
+        np.testing.assert_allclose(line[top], saddle, atol=1e-12)
+        assert (np.diff(value[: top + 1]) > 0.0).all()
+        assert (np.diff(value[top:]) < 0.0).all()
+
+
+@pytest.mark.parametrize("seed", range(16))
+def test_exits_of_symmetric_wells_and_their_lines_are_exact_mirror_images(seed: int) -> None:
+    well = random_symmetric_well(seed).well
+    assert well.mirrors
+    lines = {tuple(saddle): line for saddle, line in zip(well.saddles.tolist(), well.exit_lines, strict=True)}
+    for signs in well.mirrors:
+        for saddle, line in lines.items():
+            # The image of a saddle on an axis is the saddle, and its line stays on the axis.
+            np.testing.assert_array_equal(lines[tuple((np.array(saddle) * signs).tolist())], line * signs)
