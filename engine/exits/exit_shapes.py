@@ -13,8 +13,8 @@ from numpy.polynomial import chebyshev
 from engine.exits.brake_orbits import Axes, saddle_axes
 from engine.foundations.root_finding import bisect
 from engine.integrator.kernels import exit_geometry as geometry
-from engine.systems.forms.closed_energy import ridge_bend
-from engine.systems.forms.mirror_images import Signs
+from engine.systems.landscape.closed_energy import ridge_bend
+from engine.systems.landscape.mirror_images import Signs
 from engine.systems.potential import Potential
 
 # Largest distance of a curve from the path that it follows, in units of the well.

@@ -13,7 +13,7 @@ from engine.exits.periodic_orbits import floquet_multipliers, monodromy_matrix
 from engine.foundations.arrays import read_only
 from engine.foundations.result import Result
 from engine.integrator.kernels import exit_geometry as geometry
-from engine.systems.forms.mirror_images import Signs
+from engine.systems.landscape.mirror_images import Signs
 from engine.systems.merged_channels import name_channels
 from engine.systems.potential import Potential
 from engine.systems.well_units import ENERGY, LENGTH, MOMENTUM, TIME, WellUnits

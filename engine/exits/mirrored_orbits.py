@@ -8,7 +8,7 @@ import numpy as np
 
 from engine.exits.exit_shapes import paths_meet
 from engine.exits.lyapunov_orbit import LyapunovOrbit
-from engine.systems.forms.mirror_images import MIRROR_X, Signs, find_images
+from engine.systems.landscape.mirror_images import MIRROR_X, Signs, find_images
 from engine.systems.potential import Potential
 
 Images = Mapping[Signs, np.ndarray]

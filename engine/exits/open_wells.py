@@ -1,6 +1,6 @@
 """Whether orbits can leave a well for infinity without passing an exit: at this energy its exits do not define who escapes.
 
-With the exits as barriers, the region of motion around the origin must be bounded (`engine.systems.forms.hill_component`). A
+With the exits as barriers, the region of motion around the origin must be bounded (`engine.systems.landscape.hill_component`). A
 potential can have a channel to infinity that no saddle closes: two wells below V(∞), or a bond that breaks.
 """
 
@@ -12,7 +12,7 @@ import numpy as np
 
 from engine.exits.lyapunov_orbit import LyapunovOrbit
 from engine.integrator.kernels import exit_geometry as geometry
-from engine.systems.forms.hill_component import Barrier
+from engine.systems.landscape.hill_component import Barrier
 from engine.systems.potential import Potential
 
 # Largest |s| of a barrier. The straight lines beyond the ends of an exit continue it through the forbidden region.

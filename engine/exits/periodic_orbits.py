@@ -18,7 +18,7 @@ import numpy as np
 from engine.exits.brake_orbits import Axes, saddle_axes
 from engine.exits.continuation import StepLimits, follow
 from engine.integrator.kernels.dense_output import advance_states, sample_path, trace_pieces, trace_steps, transition_matrices
-from engine.systems.forms.closed_energy import ridge_bend
+from engine.systems.landscape.closed_energy import ridge_bend
 from engine.systems.potential import Potential
 
 # Number of nodes: states of one period that are corrected together.

@@ -8,7 +8,7 @@ from itertools import groupby
 import numpy as np
 
 from engine.systems.forms.expression_form import Form
-from engine.systems.forms.mirror_images import Signs, find_images, mirrors_of
+from engine.systems.landscape.mirror_images import Signs, find_images, mirrors_of
 from engine.systems.outcomes import End
 
 

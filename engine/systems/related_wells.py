@@ -11,7 +11,7 @@ import numpy as np
 
 from engine.foundations.arrays import read_only
 from engine.foundations.validation import replace_unchecked
-from engine.systems.forms.exit_saddles import find_exit_lines, in_channel_order
+from engine.systems.landscape.exit_saddles import find_exit_lines, in_channel_order
 from engine.systems.merged_channels import ChannelMerger
 from engine.systems.well import Well
 from engine.systems.well_units import WellUnits
@@ -53,6 +53,11 @@ class ScaledWell(Well):
         return self.stated.outward_directions
 
     @cached_property
+    def exits_unknown(self) -> str:
+        """See `Well.exits_unknown`."""
+        return self.stated.exits_unknown
+
+    @cached_property
     def closed_energy(self) -> float:
         """See `Well.closed_energy`."""
         return self.stated.closed_energy / self.stated_units.energy
@@ -89,6 +94,11 @@ class ContinuedWell(Well):
     exit_saddles: np.ndarray
     maxima: np.ndarray
     saddle_indices: Sequence[Sequence[int]]
+
+    @cached_property
+    def exits_unknown(self) -> str:
+        """See `Well.exits_unknown`."""
+        return ""
 
     @cached_property
     def saddles(self) -> np.ndarray:

@@ -10,16 +10,17 @@ from typing import Any
 
 import numpy as np
 
-from engine.foundations.arrays import ReadOnlyArrays, read_only
+from engine.foundations.arrays import read_only
 from engine.integrator.bound_kernels import load_kernels
 from engine.integrator.source.recurrence import Structure, find_structure
 from engine.integrator.source.series import Setting
-from engine.systems.forms.closed_energy import component_search, find_closed_energy
-from engine.systems.forms.exit_saddles import find_exit_lines, find_maxima_beside, in_channel_order
 from engine.systems.forms.expression_form import Form
 from engine.systems.forms.form import DescentError, NotIsolatedError, UndecidedError, hessian_matrix
-from engine.systems.forms.hill_component import ComponentSearch
-from engine.systems.forms.mirror_images import (
+from engine.systems.forms.stored_points import stored_points
+from engine.systems.landscape.closed_energy import component_search, find_closed_energy
+from engine.systems.landscape.exit_saddles import find_exit_lines, find_maxima_beside, in_channel_order
+from engine.systems.landscape.hill_component import ComponentSearch
+from engine.systems.landscape.mirror_images import (
     MIRROR_X,
     MIRROR_Y,
     Signs,
@@ -27,25 +28,20 @@ from engine.systems.forms.mirror_images import (
     mirrors_of,
     without_rounding,
 )
-from engine.systems.forms.stored_points import stored_points
 from engine.systems.merged_channels import ChannelMerger, MergedExit, exit_numbers, merged_exits, name_exit
 from engine.systems.mirror_symmetry import image_fates, well_mirrors
 from engine.systems.outcomes import End, EscapeCircle, Exit, Outcome, outcomes_of
-from engine.systems.well_units import WellUnits, nearest_power_of_two
+from engine.systems.well_scales import WellScales
 
 EQUAL_ENERGY_TOLERANCE = 1e-12
 """Largest difference of the energies of saddles that count as equally high, in units of energy of the well."""
 
 # Interval between the samples of averages for a frequency of 1; near the escape energy, it is one integration step.
 _SAMPLE_INTERVAL = 1.0 / 3.0
-# Typical radius of orbits in units of the escape radius.
-_TYPICAL_RADIUS_SHARE = 0.1
-# Number of points on a circle of the typical radius.
-_CIRCLE_POINTS = 64
 
 
 @dataclass(frozen=True, eq=False)
-class Well(ReadOnlyArrays):
+class Well(WellScales):
     """The well, or the body, at the origin of a potential, with its exits.
 
     Lengths, energies and times are in the units of the potential.
@@ -283,96 +279,3 @@ class Well(ReadOnlyArrays):
     def mirror_numbers(self, energy: Any) -> np.ndarray:
         """Return `mirror_fates` as exit numbers at energies (…), of shape (…, outcomes + 1)."""
         return self.exit_numbers(energy)[..., self.mirror_fates]
-
-    @cached_property
-    def is_convex_at_origin(self) -> bool:
-        """Whether V curves upward in all directions at the origin."""
-        matrix = hessian_matrix(self.form, 0.0, 0.0)
-        return bool(np.isfinite(matrix).all() and np.linalg.eigvalsh(matrix)[0] > 0.0)
-
-    @property
-    def typical_radius(self) -> float:
-        """Half the distance of the nearest exit saddle, or a tenth of the escape radius; 0 without either."""
-        if self.escape_radius is not None:
-            return _TYPICAL_RADIUS_SHARE * self.escape_radius
-        return 0.5 * float(np.hypot(*self.saddles.T).min()) if self.channels else 0.0
-
-    @property
-    def _typical_circle(self) -> np.ndarray:
-        """Points on the circle of `typical_radius`, of shape (2, n)."""
-        angle = 2.0 * np.pi / _CIRCLE_POINTS * (0.5 + np.arange(_CIRCLE_POINTS))
-        return self.typical_radius * np.array([np.cos(angle), np.sin(angle)])
-
-    @cached_property
-    def fastest_frequency(self) -> float:
-        """The higher frequency ω of small oscillations in the well at the origin; NaN if there is none.
-
-        Without a well, this is the frequency of a circular orbit of `typical_radius`. The square of this frequency is the mean
-        slope of V divided by the radius.
-        """
-        return self._unit_mass_frequency / float(np.sqrt(self.mass))
-
-    @cached_property
-    def _unit_mass_frequency(self) -> float:
-        """The value of `fastest_frequency` with a mass of 1."""
-        if self.is_convex_at_origin or not self.typical_radius:
-            matrix = hessian_matrix(self.form, 0.0, 0.0)
-            if not np.isfinite(matrix).all():
-                return np.nan
-            # Without a well, the square root of a negative eigenvalue is NaN.
-            with np.errstate(invalid="ignore"):
-                return float(np.sqrt(np.linalg.eigvalsh(matrix)[-1]))
-        slope = np.hypot(*self.form.gradient(*self._typical_circle))
-        return float(np.sqrt(slope[np.isfinite(slope)].mean() / self.typical_radius))
-
-    @property
-    def exact_time_unit(self) -> float:
-        """The unit of time of the well before rounding: 1/ω of the fastest small oscillation; 1 without a frequency."""
-        frequency = self.fastest_frequency
-        return 1.0 / frequency if np.isfinite(frequency) and frequency > 0.0 else 1.0
-
-    @cached_property
-    def units(self) -> WellUnits:
-        """The units of the well; all are 1 for the three cases of Zotos (2014).
-
-        The unit of length is the distance of the nearest exit saddle; with an escape radius, a tenth of this radius; without
-        exits, the length of the form. With a mass of 1, the unit of time is 1/ω of the fastest small oscillation in the well, see
-        `fastest_frequency`. Both are rounded to powers of 2. The unit of mass is the mass.
-        """
-        frequency = self._unit_mass_frequency
-        time = 1.0 / nearest_power_of_two(frequency) if np.isfinite(frequency) and frequency > 0.0 else 1.0
-        return WellUnits(self._length_unit, time, self.mass)
-
-    @property
-    def _length_unit(self) -> float:
-        if self.escape_radius is not None:
-            return nearest_power_of_two(self.typical_radius)
-        if not self.channels:
-            return self.form.length
-        return nearest_power_of_two(float(np.hypot(*self.saddles.T).min()))
-
-    @property
-    def stated_units(self) -> WellUnits:
-        """Units in which error messages state energies and positions: those of the original potential, see `ScaledWell`."""
-        return WellUnits()
-
-    @cached_property
-    def bottom(self) -> float:
-        """V at the origin, the zero of `energy_at`.
-
-        Without a well, this is the mean of V on a circle of `typical_radius`.
-        """
-        if self.is_convex_at_origin or not self.typical_radius:
-            return float(self.form.value(0.0, 0.0))
-        value = self.form.value(*self._typical_circle)
-        return float(value[np.isfinite(value)].mean())
-
-    @property
-    def depth(self) -> float:
-        """The height of the escape energy above the bottom; in a well without exits, the unit of energy."""
-        has_exits = self.channels or self.escape_radius is not None
-        return self.escape_energy - self.bottom if has_exits else self.units.energy
-
-    def energy_at(self, multiple: float) -> float:
-        """Return the energy at a multiple of the depth of the well: 0 at the bottom, 1 at the escape energy."""
-        return self.bottom + multiple * self.depth

@@ -41,6 +41,7 @@ def _to_bytes(points: np.ndarray) -> bytes:
 def _versions() -> tuple[str, ...]:
     """Return hashes of the modules that find points, and versions of the libraries."""
     engine = Path(__file__).parents[2]
-    files = [*sorted((engine / "expressions").glob("*.py")), *sorted(Path(__file__).parent.glob("*.py"))]
+    packages = (engine / "expressions", engine / "systems" / "forms", engine / "systems" / "landscape")
+    files = [file for package in packages for file in sorted(package.glob("*.py"))]
     sources = (hashlib.sha256(file.read_bytes()).hexdigest() for file in files)
     return (*sources, *(metadata.version(package) for package in ("numpy", "scipy", "python-flint")))

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from engine.systems.forms.closed_energy import HIGHEST_TRIED
 from engine.systems.forms.form import DescentError, NotIsolatedError, UndecidedError
+from engine.systems.landscape.closed_energy import HIGHEST_TRIED
 from engine.systems.potential import Potential
 from engine.systems.review.classified_points import (
     CriticalPoint,

@@ -7,7 +7,7 @@ import pytest
 
 from engine import LyapunovOrbit, Potential, classify_orbits, find_lyapunov_orbits, parse_formula
 from engine.exits.lyapunov_orbits import UndefinedExitsError
-from engine.systems.forms.mirror_images import Signs, find_images
+from engine.systems.landscape.mirror_images import Signs, find_images
 from tests.peers.symmetric_wells import VALLEYS, exchanged, random_symmetric_well
 
 # Energies as multiples of the depth of the well.

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from engine.expressions.nodes import from_terms
-from engine.systems.forms.hill_component import Barrier, ComponentSearch, Extent
 from engine.systems.formulas.formula_parser import parse_formula
+from engine.systems.landscape.hill_component import Barrier, ComponentSearch, Extent
 
 # Formulas with the energy at which the region around the origin becomes unbounded.
 OPENING = [

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine.systems.forms.mirror_images import MIRROR_X, MIRROR_Y, find_images, make_symmetric, mirrors_of, without_rounding
 from engine.systems.formulas.formula_parser import parse_formula
+from engine.systems.landscape.mirror_images import MIRROR_X, MIRROR_Y, find_images, make_symmetric, mirrors_of, without_rounding
 
 # One point in each quadrant, each with an error of its own, and two points on the axes.
 POINTS = np.array([[1.0 + 1e-15, 2.0], [-1.0, 2.0 + 1e-15], [-1.0 - 1e-15, -2.0], [1.0, -2.0 - 1e-15], [3.0, 0.0], [-3.0, 0.0]])

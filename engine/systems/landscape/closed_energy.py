@@ -14,8 +14,8 @@ import numpy as np
 from engine.expressions.nodes import Expression, from_terms
 from engine.systems.forms.expression_form import Form
 from engine.systems.forms.form import hessian_matrix
-from engine.systems.forms.hill_component import Barrier, ComponentSearch, Extent
 from engine.systems.forms.polynomial_form import PolynomialForm
+from engine.systems.landscape.hill_component import Barrier, ComponentSearch, Extent
 
 HIGHEST_TRIED = 4.0**16
 """Largest height above the bottom at which a well without exits is tested, in units of energy."""

@@ -15,7 +15,7 @@ import numpy as np
 
 from engine.systems.forms.expression_form import Form
 from engine.systems.forms.form import DescentError, Flow
-from engine.systems.forms.mirror_images import Signs, find_images, mirrors_of
+from engine.systems.landscape.mirror_images import Signs, find_images, mirrors_of
 
 # Distance from the saddle at which a descent starts, in units of the distance to the nearest other critical point.
 _START_DISTANCE = 1e-3

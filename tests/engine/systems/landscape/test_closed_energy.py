@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine.systems.forms.closed_energy import HIGHEST_TRIED
 from engine.systems.formulas.formula_parser import parse_formula
 from engine.systems.known_potentials import POTENTIALS
+from engine.systems.landscape.closed_energy import HIGHEST_TRIED
 from engine.systems.potential import Potential
 
 # Intervals do not show that the logarithms of its bar are defined.

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine.systems.forms.exit_saddles import find_exit_lines, find_maxima_beside
 from engine.systems.formulas.formula_parser import parse_formula
+from engine.systems.landscape.exit_saddles import find_exit_lines, find_maxima_beside
 from engine.systems.potential import Potential
 from tests.peers.random_systems import random_well
 from tests.peers.symmetric_wells import VALLEYS, exchanged, random_symmetric_well

@@ -12,10 +12,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from engine.systems.forms.descents import Descents
 from engine.systems.forms.expression_form import Form
 from engine.systems.forms.form import NO_POINTS
-from engine.systems.forms.mirror_images import Signs, make_symmetric, without_rounding
+from engine.systems.landscape.descents import Descents
+from engine.systems.landscape.mirror_images import Signs, make_symmetric, without_rounding
 
 
 def find_exit_lines(form: Form, points: np.ndarray, indices: np.ndarray, poles: np.ndarray = NO_POINTS) -> np.ndarray:
