@@ -31,13 +31,23 @@ def arc(radius: float, first: float, last: float) -> np.ndarray:
         (arc(1.2, 20.0, 60.0), []),
         (arc(1.2, -20.0, 140.0), []),
         (arc(0.1, 0.0, 359.0) + np.array([[1.2], [0.0]]), []),
-        (np.array([np.full(101, 0.01), np.linspace(-1.0, 1.0, 101)]), []),
+        (np.array([np.zeros(101), np.linspace(-1.0, 1.0, 101)]), []),
     ],
-    ids=["across a channel", "across another", "between two", "across two", "out and back", "through the well"],
+    ids=["across a channel", "across another", "between two", "across two", "out and back", "through the origin"],
 )
 def test_a_path_closes_the_channel_whose_line_it_crosses_alone(path: np.ndarray, closed: list[int]) -> None:
     potential = CASES["II"].in_well_units
     assert [channel for channel in (1, 2, 3) if closes_channel(potential, 0.5, channel, path)] == closed
+
+
+def test_an_orbit_that_has_moved_from_its_saddle_into_the_well_is_taken_until_it_reaches_the_origin() -> None:
+    potential = parse_formula("½(0.5507x² + 0.7440y²) − 0.4614x²y² + 0.21704x³")
+    (orbit,) = find_lyapunov_orbits(potential, potential.well.energy_at(4.9))
+    saddle = potential.saddles[orbit.channel - 1]
+    assert 0.4 * saddle[0] < orbit.x.min() < orbit.x.max() < 0.25 * saddle[0] < 0.0
+    # At this energy, the orbit along the y axis has passed the origin.
+    with pytest.raises(ValueError, match=f"no Lyapunov orbit was found across channel {orbit.channel}"):
+        find_lyapunov_orbits(potential, potential.well.energy_at(10.0))
 
 
 def test_an_orbit_beyond_a_neighbouring_well_is_not_taken() -> None:
