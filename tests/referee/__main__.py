@@ -25,7 +25,7 @@ def main() -> int:
     parser.add_argument("--energies", type=int, default=1, help="energies of each formula")
     parser.add_argument("--seed", type=int, default=1, help="seed of the first formula")
     parser.add_argument("--jobs", type=int, default=1, help="processes")
-    parser.add_argument("--seconds", type=float, default=SECONDS, help="longest time for a formula")
+    parser.add_argument("--seconds", type=float, default=SECONDS, help="longest processor time for a formula")
     parser.add_argument("--checks", default=",".join(CHECKS), help=f"of {', '.join(CHECKS)}")
     parser.add_argument("--no-examples", action="store_true", help="random formulas only")
     parser.add_argument("--wrong", type=Path, default=Path("wrong.jsonl"), help="file of the wrong answers")

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import multiprocessing
-import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
 from typing import Any
 
+import psutil
+
 from tests.referee.formulas import EXAMPLES, Formula, random_formula
 from tests.referee.report import TOO_LONG, Report
 
-SECONDS = 240.0
-"""Longest time for a formula."""
+SECONDS = 120.0
+"""Longest processor time for a formula, in seconds, on which other programs have no influence."""
 
 
 @dataclass(frozen=True)
@@ -77,7 +78,7 @@ class _Worker:
         other.close()
 
     def begin(self, task: Task) -> None:
-        self.task, self.since = task, time.monotonic()
+        self.task, self.since = task, self._processor_time()
         self.connection.send(task)
 
     def answer(self, seconds: float) -> Report | None:
@@ -89,13 +90,17 @@ class _Worker:
             except EOFError:
                 report.add_wrong("process", "the process ended", formula=self.task.formula.text if self.task else "")
                 self._restart()
-        elif time.monotonic() - self.since > seconds:
+        elif self._processor_time() - self.since > seconds:
             report.add("time", TOO_LONG, self.task.formula.text if self.task else "")
             self._restart()
         else:
             return None
         self.task = None
         return report
+
+    def _processor_time(self) -> float:
+        times = psutil.Process(self.process.pid).cpu_times()
+        return times.user + times.system
 
     def _restart(self) -> None:
         self.stop()

@@ -11,7 +11,7 @@ import sympy
 
 from engine import FormulaError, find_lyapunov_orbits, review_potential
 from engine.results import PotentialReview
-from tests.referee.formulas import Formula, X, Y
+from tests.referee.formulas import REPEATS, Formula, X, Y
 from tests.referee.images import compare_outcomes, exit_images, image_of
 from tests.referee.report import REFUSED, UNDECIDED, Report
 from tests.referee.setting import Setting
@@ -70,7 +70,8 @@ SPELLINGS: dict[str, Spelling] = {
 def check_spellings(formula: Formula, review: PotentialReview, energies: list[float], seed: int, report: Report) -> None:
     """Compare the reviews of all spellings, and the fates of one spelling."""
     names = [name for name in SPELLINGS if name != "about its well" or review.refusal is None]
-    chosen = random.Random(seed).choice(names)
+    # Formulas of the same structure share the compiled functions of a spelling.
+    chosen = random.Random(f"spelling {seed // REPEATS}").choice(names)
     for name in names:
         spelling = SPELLINGS[name]
         try:
