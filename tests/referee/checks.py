@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import random
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 
@@ -55,51 +55,72 @@ def random_energies(review: PotentialReview, count: int, seed: int) -> list[floa
 def check_formula(formula: Formula, seed: int, energies: int = 1, checks: tuple[str, ...] = CHECKS) -> Report:
     """Compare what the engine says about a formula at its own energies, or at random ones."""
     report = Report()
+    for part in check_in_parts(formula, seed, energies, checks):
+        report.merge(part)
+    return report
+
+
+def check_in_parts(formula: Formula, seed: int, energies: int, checks: tuple[str, ...]) -> Iterator[Report]:
+    """Yield a report after each check."""
+    report = Report()
+    review = _review(formula, report)
+    if review is None:
+        yield report
+        return
+    if "openness" in checks:
+        check_closed(formula, review, seed, report)
+    yield report
+    chosen = list(formula.energies) or (random_energies(review, energies, seed) if review.refusal is None else [])
+    if formula.state is not None:
+        chosen.append(float(review.potential.energy(np.array(formula.state))))
+    if review.refusal is None:
+        yield from _check_accepted(Setting(formula, review.potential, review.escape_energy), chosen, seed, checks)
+    if "spellings" in checks:
+        report = Report()
+        check_spellings(formula, review, chosen, seed, report)
+        yield report
+
+
+def _review(formula: Formula, report: Report) -> PotentialReview | None:
+    """Return the review; None without one."""
     try:
         review = review_potential(formula.parse())
     except FormulaError as error:
         report.add("review", REFUSED, str(error))
-        return report
+        return None
     except Exception as error:
         report.add_wrong("review", "the review raises an error", formula=formula.text, error=repr(error))
-        return report
+        return None
     report.add("review", COMPARED if review.refusal is None else REFUSED, review.refusal or "")
-    if "openness" in checks:
-        check_closed(formula, review, seed, report)
-    chosen = list(formula.energies) or (random_energies(review, energies, seed) if review.refusal is None else [])
-    if formula.state is not None:
-        chosen.append(float(review.potential.energy(np.array(formula.state))))
-    if "spellings" in checks:
-        check_spellings(formula, review, chosen, seed, report)
-    if review.refusal is None:
-        _check_accepted(formula, review, chosen, seed, checks, report)
-    return report
+    return review
 
 
-def _check_accepted(
-    formula: Formula, review: PotentialReview, energies: list[float], seed: int, checks: tuple[str, ...], report: Report
-) -> None:
-    setting = Setting(formula, review.potential, review.escape_energy)
+def _check_accepted(setting: Setting, energies: list[float], seed: int, checks: tuple[str, ...]) -> Iterator[Report]:
     if "exits" in checks:
-        check_exits(review.potential, setting.system, formula.text, report)
-    below = review.potential.well.energy_at(random.Random(f"below {seed}").uniform(*_BELOW))
-    _check_at(setting.at(below), seed, tuple(name for name in checks if name in ("openness", "verdicts")), report)
+        report = Report()
+        check_exits(setting.potential, setting.system, setting.formula.text, report)
+        yield report
+    below = setting.potential.well.energy_at(random.Random(f"below {seed}").uniform(*_BELOW))
+    yield from _check_at(setting.at(below), seed, tuple(name for name in checks if name in ("openness", "verdicts")))
     for energy in energies:
-        _check_at(setting.at(energy), seed, checks, report)
+        yield from _check_at(setting.at(energy), seed, checks)
 
 
-def _check_at(setting: Setting, seed: int, checks: tuple[str, ...], report: Report) -> None:
+def _check_at(setting: Setting, seed: int, checks: tuple[str, ...]) -> Iterator[Report]:
+    report = Report()
     try:
         find_lyapunov_orbits(setting.potential, setting.energy)
+        report.add("energies", COMPARED)
     except ValueError as error:
         report.add("energies", REFUSED, str(error))
-        return
-    report.add("energies", COMPARED)
-    for name, check in OPEN_CHECKS.items():
-        if name in checks:
-            try:
-                check(setting, seed, report)
-            except UndecidedError as error:
-                report.add(name, UNDECIDED, str(error))
-            except ValueError as error:
-                report.add(name, REFUSED, str(error))
+        checks = ()
+    yield report
+    for name in [name for name in OPEN_CHECKS if name in checks]:
+        report = Report()
+        try:
+            OPEN_CHECKS[name](setting, seed, report)
+        except UndecidedError as error:
+            report.add(name, UNDECIDED, str(error))
+        except ValueError as error:
+            report.add(name, REFUSED, str(error))
+        yield report

@@ -143,10 +143,10 @@ class OwnOrbits:
                 return False
         return bool(times[1] < times[0] / _STEADY_SPEED)
 
-    def runs_away(self, start: np.ndarray, duration: float) -> bool:
-        """Whether an orbit passes `farthest` within a duration and leaves for ever."""
-        _, state = self.state_at(start, duration)
-        return bool(np.hypot(*state[:2]) > self.farthest and self.leaves(state))
+    def time_of_leaving(self, start: np.ndarray, duration: float) -> float:
+        """Return when an orbit is found beyond `farthest` within a duration, from where it leaves for ever; infinite if not."""
+        time, state = self.state_at(start, duration)
+        return time if np.hypot(*state[:2]) > self.farthest and self.leaves(state) else np.inf
 
     def growth(self, start: np.ndarray, times: np.ndarray) -> np.ndarray:
         """Return ln(|w(t)|/|w(0)|) of a deviation vector at times (n,); UndecidedError if the orbit leaves."""

@@ -27,13 +27,15 @@ class Task:
     energies: int
     checks: tuple[str, ...]
 
-    def run(self) -> Report:
-        from tests.referee.checks import check_formula
+    def run(self) -> Iterator[Report]:
+        """Yield a report after each check."""
+        # The parent process compiles nothing.
+        from tests.referee.checks import check_in_parts
 
-        report = check_formula(self.formula, self.seed, self.energies, self.checks)
-        for finding in report.wrong:
-            finding |= {"task": self.name, "seed": self.seed}
-        return report
+        for report in check_in_parts(self.formula, self.seed, self.energies, self.checks):
+            for finding in report.wrong:
+                finding |= {"task": self.name, "seed": self.seed}
+            yield report
 
 
 def example_tasks(checks: tuple[str, ...]) -> list[Task]:
@@ -78,25 +80,27 @@ class _Worker:
         other.close()
 
     def begin(self, task: Task) -> None:
-        self.task, self.since = task, self._processor_time()
+        self.task, self.since, self.report = task, self._processor_time(), Report()
         self.connection.send(task)
 
     def answer(self, seconds: float) -> Report | None:
         """Return the report of the task if it has ended or takes too long."""
-        report = Report()
+        text = self.task.formula.text if self.task else ""
         if self.connection.poll():
             try:
-                report = self.connection.recv()
+                if (part := self.connection.recv()) is not None:
+                    self.report.merge(part)
+                    return None
             except EOFError:
-                report.add_wrong("process", "the process ended", formula=self.task.formula.text if self.task else "")
+                self.report.add_wrong("process", "the process ended", formula=text)
                 self._restart()
         elif self._processor_time() - self.since > seconds:
-            report.add("time", TOO_LONG, self.task.formula.text if self.task else "")
+            self.report.add("time", TOO_LONG, text)
             self._restart()
         else:
             return None
         self.task = None
-        return report
+        return self.report
 
     def _processor_time(self) -> float:
         times = psutil.Process(self.process.pid).cpu_times()
@@ -113,16 +117,18 @@ class _Worker:
 
 
 def _serve(connection: Connection) -> None:
-    """Run the tasks that arrive, in a child process. An error of a check is kept as a wrong answer."""
+    """Run the tasks that arrive, in a child process, and send None after each. An error of a check is kept as a wrong answer."""
     while True:
         task: Task = connection.recv()
         try:
-            report = task.run()
+            for report in task.run():
+                connection.send(report)
         except Exception as error:
             report = Report()
             known: dict[str, Any] = {"task": task.name, "seed": task.seed, "formula": task.formula.text}
             report.add_wrong("process", f"{type(error).__name__} in a check", **known, error=str(error), trace=_trace(error))
-        connection.send(report)
+            connection.send(report)
+        connection.send(None)
 
 
 def _trace(error: BaseException) -> list[str]:
