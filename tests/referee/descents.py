@@ -1,0 +1,117 @@
+"""Decide with lines of steepest descent which saddles are exits, and whether each Lyapunov orbit crosses its own channel."""
+
+from __future__ import annotations
+
+from enum import Enum
+from functools import lru_cache
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from engine import Potential
+from tests.referee.own_system import OwnSystem
+from tests.referee.report import UNDECIDED, Report
+from tests.referee.setting import Setting
+
+CHECK = "exits"
+# Displacement of the beginning of a line along the unstable direction, and sideways, in units of length.
+_ALONG, _SIDEWAYS = 1e-4, 1e-6
+# Distance where a line has arrived, in distances of the nearest saddle, and where it has left, in those of the farthest.
+_NEAR, _FAR = 0.02, 20.0
+# Largest number of saddles that are tested, the nearest first.
+_MOST_SADDLES = 16
+
+
+class Way(Enum):
+    """Where a line of steepest descent leads."""
+
+    WELL = "the well"
+    ELSEWHERE = "elsewhere"
+    UNDECIDED = "undecided"
+
+
+Descent = tuple[Way, np.ndarray]
+
+
+def descend(system: OwnSystem, begin: np.ndarray, near: float, far: float) -> Descent:
+    """Return where a line of steepest descent leads, and its points, (n, 2)."""
+
+    def arrived(_s: float, place: np.ndarray) -> float:
+        return float(np.hypot(*place)) - near
+
+    def left(_s: float, place: np.ndarray) -> float:
+        return float(np.hypot(*place)) - far
+
+    def resting(_s: float, place: np.ndarray) -> float:
+        return float(np.hypot(*system.gradient(*place))) - 1e-3 * slope
+
+    slope = float(np.hypot(*system.gradient(*begin)))
+    arrived.terminal = left.terminal = resting.terminal = True  # type: ignore[attr-defined]
+
+    def direction(_s: float, place: np.ndarray) -> np.ndarray:
+        gradient = system.gradient(*place)
+        return -gradient / (np.hypot(*gradient) + slope)
+
+    try:
+        line = solve_ivp(
+            direction, (0.0, 1e4 * far), begin, "Radau", events=(arrived, left, resting), rtol=1e-8, atol=1e-9 * near
+        )
+    except ValueError:
+        # V is not finite at a point that was tried.
+        return Way.UNDECIDED, begin[None]
+    ways = [way for way, times in zip((Way.WELL, Way.ELSEWHERE, Way.ELSEWHERE), line.t_events, strict=True) if len(times)]
+    return (ways[0] if ways else Way.UNDECIDED), line.y.T
+
+
+@lru_cache(maxsize=256)
+def descend_steadily(system: OwnSystem, saddle: tuple[float, float], side: float, unit: float, far: float) -> Descent:
+    """Return where a line leads on one side of a saddle, undecided if a sideways displacement changes it, and its points."""
+    across, along = np.linalg.eigh(system.curvature(*saddle))[1].T[::-1]
+    begin = np.array(saddle) + side * _ALONG * unit * along
+    found = [descend(system, begin + shift * _SIDEWAYS * unit * across, _NEAR * unit, far) for shift in (1.0, -1.0)]
+    return (found[0][0] if found[0][0] is found[1][0] else Way.UNDECIDED), found[0][1]
+
+
+def check_exits(potential: Potential, system: OwnSystem, formula: str, report: Report) -> None:
+    """Compare the saddles that are exits."""
+    points = potential.critical_points[potential.well.critical_indices < 0.0]
+    points = points[np.argsort(np.hypot(*points.T))][:_MOST_SADDLES]
+    unit, far = float(np.hypot(*points.T).min()), _FAR * float(np.hypot(*points.T).max())
+    for place in points:
+        ways = {side: descend_steadily(system, tuple(place.tolist()), side, unit, far)[0] for side in (1.0, -1.0)}
+        if Way.UNDECIDED in ways.values():
+            report.add(CHECK, UNDECIDED, "a line of steepest descent changes with a shift")
+            continue
+        leads_out = set(ways.values()) == {Way.WELL, Way.ELSEWHERE}
+        is_exit = bool(np.any(np.hypot(*(potential.saddles - place).T) < 1e-9 * unit))
+        kind = "an exit is missing" if leads_out else "a saddle is not an exit"
+        report.judge(
+            CHECK, kind, leads_out == is_exit, formula=formula, saddle=place.tolist(), ways=[w.value for w in ways.values()]
+        )
+
+
+def check_channels(setting: Setting, report: Report) -> None:
+    """The line of steepest descent from a saddle to both sides crosses the exit over this saddle an odd number of times."""
+    exits, unit = setting.exits, float(np.hypot(*setting.potential.saddles.T).min())
+    for channel, path in zip(exits.channels, exits.paths, strict=True):
+        saddle = setting.potential.saddles[channel - 1]
+        lines = [
+            descend_steadily(setting.system, tuple(saddle.tolist()), side, unit, _FAR * setting.size) for side in (1.0, -1.0)
+        ]
+        if {way for way, _ in lines} != {Way.WELL, Way.ELSEWHERE}:
+            report.add(CHECK, UNDECIDED, "a line of steepest descent changes with a shift")
+            continue
+        line = np.concatenate([lines[0][1][::-1], saddle[None], lines[1][1]])
+        known = {"exit": channel, "saddle": saddle.tolist(), "rests": path[[0, -1]].tolist(), **setting.reproduction}
+        report.judge(CHECK, "a Lyapunov orbit does not cross its channel", count_meetings(line, path) % 2 == 1, **known)
+
+
+def count_meetings(first: np.ndarray, second: np.ndarray) -> int:
+    """Return the number of pairs of segments of two polylines (n, 2) that cross."""
+
+    def sides(line: np.ndarray, points: np.ndarray) -> np.ndarray:
+        along, apart = np.diff(line, axis=0)[:, None], points - line[:-1, None]
+        return along[..., 0] * apart[..., 1] > along[..., 1] * apart[..., 0]
+
+    left, right = sides(first, second), sides(second, first)
+    return int(np.count_nonzero((left[:, 1:] != left[:, :-1]) & (right[:, 1:] != right[:, :-1]).T))

@@ -1,0 +1,72 @@
+"""Compare fates and escape times of robust orbits with own integrations."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from engine import Fate, classify_orbits
+from tests.referee.own_orbits import UndecidedError
+from tests.referee.report import UNDECIDED, Report
+from tests.referee.setting import DURATION, STEADY, Setting
+
+CHECK = "fates"
+STARTS = 12
+# Rounding of escape times by the sampled exits, in units of time.
+_ROUNDING = 1e-5
+
+
+def check_fates(setting: Setting, seed: int, report: Report) -> None:
+    """Compare the fates of random starts, and of the start of an example."""
+    states = setting.random_starts(STARTS, seed)
+    if setting.is_start_of_example:
+        states = np.vstack([states, setting.formula.state])
+    if not len(states):
+        report.add(CHECK, UNDECIDED, "no start")
+        return
+    found = classify_orbits(setting.potential, setting.energy, states, t_max=DURATION * setting.time_unit)
+    for k, (start, other) in enumerate(zip(states, setting.shifted(states), strict=True)):
+        try:
+            _check_orbit(setting, start, other, int(found.fate[k]), float(found.escape_time[k]), report)
+        except UndecidedError as error:
+            report.add(CHECK, UNDECIDED, str(error))
+
+
+def _check_orbit(setting: Setting, start: np.ndarray, other: np.ndarray, fate: int, time: float, report: Report) -> None:
+    t_max, unit = DURATION * setting.time_unit, setting.time_unit
+    end, shifted = (setting.orbits.end_of(each, setting.exits, t_max) for each in (start, other))
+    change = abs(end.time - shifted.time)
+    if end.channel != shifted.channel or change > STEADY * unit or fate == Fate.FAILED:
+        report.add(CHECK, UNDECIDED, "unresolved" if fate == Fate.FAILED else "the fate changes with a shift of the start")
+        return
+    known = {"start": start.tolist(), "said": [fate, time], "own": [end.channel, end.time]} | setting.reproduction
+    report.judge(CHECK, "a fate differs", fate == end.channel, **known)
+    if fate != end.channel:
+        return
+    if fate > 0:
+        report.judge(CHECK, "an escape time differs", abs(time - end.time) <= change + _ROUNDING * unit, **known)
+        _check_beyond(setting, end.state, known, report)
+    elif np.hypot(*end.state[:2]) > setting.orbits.farthest:
+        report.judge(CHECK, "a bounded orbit runs away", not setting.orbits.leaves(end.state), **known)
+
+
+def _check_beyond(setting: Setting, state: np.ndarray, known: dict, report: Report) -> None:
+    """An orbit beyond an exit must not come back, unless it enters another well."""
+    if _has_other_wells(setting):
+        return
+    try:
+        later = setting.orbits.end_of(_beyond(setting, state), setting.exits, DURATION * setting.time_unit)
+    except UndecidedError:
+        # The orbit runs to infinity in a finite time.
+        return
+    report.judge(CHECK, "an escaped orbit comes back", not later.channel, **known, back=later.time)
+
+
+def _beyond(setting: Setting, state: np.ndarray) -> np.ndarray:
+    """Return the state a little later, so that the crossing is not found again."""
+    return setting.orbits.state_at(state, 1e-4 * setting.time_unit)[1]
+
+
+def _has_other_wells(setting: Setting) -> bool:
+    points = setting.potential.critical_points
+    vxx, _, vyy = setting.potential.hessian(*points.T)
+    return bool(np.count_nonzero((setting.potential.well.critical_indices > 0.0) & (vxx + vyy > 0.0)) > 1)

@@ -1,0 +1,132 @@
+"""Compare a formula with its other spellings: nested, expanded, with turned axes, in other units, about its well."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+import sympy
+
+from engine import FormulaError, find_lyapunov_orbits, review_potential
+from engine.results import PotentialReview
+from tests.referee.formulas import REPEATS, Formula, X, Y
+from tests.referee.images import compare_outcomes, exit_images, image_of
+from tests.referee.report import REFUSED, UNDECIDED, Report
+from tests.referee.setting import Setting
+
+CHECK = "spellings"
+STARTS = 30
+_FACTOR = sympy.Rational(17, 10)
+_SAME = np.eye(2)
+
+
+@dataclass(frozen=True)
+class Spelling:
+    """A formula written anew, the matrix that maps places, and the factor by which times are longer."""
+
+    spell: Callable[[sympy.Expr], sympy.Expr]
+    matrix: np.ndarray = None  # type: ignore[assignment]
+    time_factor: float = 1.0
+    at_well: bool = False
+
+    def apply(self, formula: Formula) -> Formula:
+        text = sympy.sstr(self.spell(formula.expression)).replace("**", "^")
+        place = (0.0, 0.0) if self.at_well and formula.well is None else formula.well
+        well = None if place is None else tuple((self._matrix @ np.array(place)).round(12).tolist())
+        return replace(formula, expression_text=text, well=well, state=None)
+
+    @property
+    def _matrix(self) -> np.ndarray:
+        return _SAME if self.matrix is None else self.matrix
+
+    def images(self, states: np.ndarray) -> np.ndarray:
+        """Return the images of states; momenta are turned but not scaled, because the energies are equal."""
+        images = image_of(states, self._matrix)
+        images[:, 2:] *= np.sqrt(abs(1.0 / np.linalg.det(self._matrix)))
+        return images
+
+
+def _nested(expression: sympy.Expr) -> sympy.Expr:
+    return sympy.horner(expression, X, Y) if expression.is_polynomial(X, Y) else sympy.factor(expression)
+
+
+def _exchanged(x: sympy.Expr, y: sympy.Expr) -> Callable[[sympy.Expr], sympy.Expr]:
+    return lambda expression: expression.subs({X: x, Y: y}, simultaneous=True)
+
+
+SPELLINGS: dict[str, Spelling] = {
+    "expanded": Spelling(sympy.expand),
+    "nested": Spelling(_nested),
+    "swapped axes": Spelling(_exchanged(Y, X), np.array([[0.0, 1.0], [1.0, 0.0]])),
+    "turned axes": Spelling(_exchanged(Y, -X), np.array([[0.0, -1.0], [1.0, 0.0]])),
+    "other units": Spelling(_exchanged(_FACTOR * X, _FACTOR * Y), _SAME / float(_FACTOR), 1.0 / float(_FACTOR)),
+    "about its well": Spelling(lambda expression: expression, at_well=True),
+}
+"""Spellings by name."""
+
+
+def check_spellings(formula: Formula, review: PotentialReview, energies: list[float], seed: int, report: Report) -> None:
+    """Compare the reviews of all spellings, and the fates of one spelling."""
+    names = [name for name in SPELLINGS if name != "about its well" or review.refusal is None]
+    # Formulas of the same structure share the compiled functions of a spelling.
+    chosen = random.Random(f"spelling {seed // REPEATS}").choice(names)
+    for name in names:
+        spelling = SPELLINGS[name]
+        try:
+            other_formula = spelling.apply(formula)
+            other = review_potential(other_formula.parse())
+        except FormulaError as error:
+            report.add(CHECK, REFUSED, f"{name}: {error}")
+            continue
+        except Exception as error:
+            known = {"spelling": name, "formula": formula.text, "spelled": other_formula.text, "error": repr(error)}
+            report.add_wrong(CHECK, "the review of a spelling raises an error", **known)
+            continue
+        if _check_reviews(review, other, name, formula, other_formula, report) and name == chosen and review.refusal is None:
+            for energy in energies:
+                settings = Setting(formula, review.potential, energy), Setting(other_formula, other.potential, energy)
+                _check_fates(*settings, spelling, name, seed, report)
+
+
+def _check_reviews(
+    review: PotentialReview, other: PotentialReview, name: str, formula: Formula, other_formula: Formula, report: Report
+) -> bool:
+    """Return whether two reviews agree."""
+    known = {"spelling": name, "formula": formula.text, "spelled": other_formula.text}
+    refusals = review.refusal, other.refusal
+    accepted = (refusals[0] is None) == (refusals[1] is None)
+    report.judge(CHECK, "one spelling is refused", accepted, **known, refusals=refusals)
+    if not accepted or review.refusal is not None:
+        return False
+    same = review.channels == other.channels
+    report.judge(CHECK, "the number of exits differs", same, **known, channels=[review.channels, other.channels])
+    depth = review.escape_energy - review.potential.well.bottom
+    heights = [each.escape_energy - each.potential.well.bottom for each in (review, other)]
+    alike = abs(heights[0] - heights[1]) <= 1e-9 * depth + 1e-14 * abs(review.escape_energy)
+    report.judge(CHECK, "the escape energy differs", alike, **known, heights=heights)
+    return same and alike
+
+
+def _check_fates(setting: Setting, other: Setting, spelling: Spelling, name: str, seed: int, report: Report) -> None:
+    refusals = []
+    for each in (setting, other):
+        try:
+            find_lyapunov_orbits(each.potential, each.energy)
+        except ValueError as error:
+            refusals.append(str(error))
+    if len(refusals) == 2:
+        report.add(CHECK, UNDECIDED, "exits refused in both spellings")
+        return
+    known = {"spelling": name, "spelled": other.formula.text, "refusals": refusals}
+    report.judge(CHECK, "the exits of one spelling are refused", not refusals, **known, **setting.reproduction)
+    if refusals:
+        return
+    states = setting.random_starts(STARTS, seed)
+    if len(states):
+        fates = exit_images(setting, spelling._matrix, other.potential, other.energy)
+        images = spelling.images(states)
+        compare_outcomes(
+            setting, other, states, images, fates, spelling.time_factor, CHECK, f"{name}: {other.formula.text}", report
+        )
