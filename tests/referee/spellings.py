@@ -102,9 +102,10 @@ def _check_reviews(
         return False
     same = review.channels == other.channels
     report.judge(CHECK, "the number of exits differs", same, **known, channels=[review.channels, other.channels])
-    depth = review.escape_energy - review.potential.well.bottom
-    heights = [each.escape_energy - each.potential.well.bottom for each in (review, other)]
-    alike = abs(heights[0] - heights[1]) <= 1e-9 * depth + 1e-14 * abs(review.escape_energy)
+    if not (review.channels and other.channels):
+        return same
+    heights = [each.potential.well.depth for each in (review, other)]
+    alike = abs(heights[0] - heights[1]) <= 1e-9 * heights[0] + 1e-14 * abs(review.escape_energy)
     report.judge(CHECK, "the escape energy differs", alike, **known, heights=heights)
     return same and alike
 
