@@ -133,9 +133,8 @@ def _find_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ..
         raise OrbitSearchError(f"the exits are not known: {well.exits_unknown}")
     if not potential.channels:
         limit = well.closed_energy * well.stated_units.energy
-        raise OrbitSearchError(
-            f"there is no exit, and the well is shown to be closed only up to h = {limit:.6g}; choose a lower energy"
-        )
+        shown = f"only up to h = {limit:.6g}; choose a lower energy" if math.isfinite(limit) else "at no energy"
+        raise OrbitSearchError(f"there is no exit, and the well is shown to be closed {shown}")
     if _is_open(potential, energy):
         raise OrbitSearchError("the region of motion leads to infinity beside the exits; choose a lower energy")
     return orbits

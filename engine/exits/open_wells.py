@@ -12,6 +12,7 @@ import numpy as np
 
 from engine.exits.lyapunov_orbit import LyapunovOrbit
 from engine.integrator.kernels import exit_geometry as geometry
+from engine.systems.forms.stored_points import stored_points
 from engine.systems.landscape.hill_component import Barrier
 from engine.systems.potential import Potential
 
@@ -21,7 +22,12 @@ _FARTHEST_POSITION = 1.25
 
 def leads_to_infinity(potential: Potential, energy: float, orbits: Sequence[LyapunovOrbit]) -> bool:
     """Return whether the region of motion is unbounded inside the exits over these orbits, in units of the well."""
-    return potential.well.component_search.is_open(energy, [_exit_barrier(orbit.curve) for orbit in orbits])
+    curves = [orbit.curve for orbit in orbits]
+
+    def find() -> np.ndarray:
+        return np.array(potential.well.component_search.is_open(energy, [_exit_barrier(curve) for curve in curves]))
+
+    return bool(stored_points("open_well", (potential.form, energy, [curve.tolist() for curve in curves]), find))
 
 
 def _exit_barrier(curve: np.ndarray) -> Barrier:

@@ -48,7 +48,10 @@ def check_display(system: System, review: PotentialReview) -> None:
     state.show_system(review_for_page(system))
     energies = state.energies
     assert energies.low < energies.first < energies.high
-    assert review.escape_energy < energies.first < review.highest_energy
+    if review.channels or review.potential.escape_radius is not None:
+        assert review.escape_energy < energies.first < review.highest_energy
+    else:
+        assert review.potential.well.bottom < energies.low < energies.high < review.closed_energy
     # The origin is forbidden only if a body elsewhere has the first energy.
     is_forbidden = state.potential.value(0.0, 0.0) > energies.first
     assert (state.orbit_job((0.0, 0.0)) is None) == is_forbidden

@@ -140,8 +140,8 @@ def review_potential(potential: Potential) -> PotentialReview:
     >>> review = review_potential(parse_formula("½(x² + y²) + xy² + 2x³"))
     >>> review.channels, round(review.escape_energy, 6), review.refusal
     (1, 0.00463, None)
-    >>> review_potential(parse_formula("½(x² + y²) − x³")).refusal
-    'V is ...'
+    >>> review_potential(parse_formula("½(x² + y²) + x + x⁴")).refusal[:41]
+    'There is no well at the origin: the force'
     """
     points, refusal = find_points_or_refusal(potential)
     return PotentialReview(

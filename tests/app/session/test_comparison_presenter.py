@@ -93,8 +93,8 @@ def test_a_view_of_other_axes_is_shown_but_not_compared(session: Session, frame:
 
 def test_a_view_of_a_refused_system_ends_the_comparison(session: Session) -> None:
     # The view is refused before there is a map with which it could be compared.
-    session.state.compared = View(System(TYPED, "x² + y²"), Plane.X_PX, 0.2)
-    session.wait_for_refusal("No saddle")
+    session.state.compared = View(System(TYPED, "x² − y²"), Plane.X_PX, 0.2)
+    session.wait_for_refusal("There is no well")
     assert session.state.compared is None
 
 
