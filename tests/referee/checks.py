@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -64,6 +65,10 @@ def check_in_parts(formula: Formula, seed: int, energies: int, checks: tuple[str
     """Yield a report after each check."""
     report = Report()
     review = _review(formula, report)
+    if review is not None and review.well is not None and formula.well is None:
+        # There is no well at the origin, but one elsewhere.
+        formula = replace(formula, well=review.well)
+        review = _review(formula, report)
     if review is None:
         yield report
         return

@@ -19,7 +19,7 @@ _ALONG, _SIDEWAYS = 1e-4, 1e-6
 # Distance where a line has arrived, in distances of the nearest saddle, and where it has left, in those of the farthest.
 _NEAR, _FAR = 0.02, 20.0
 # Largest number of saddles that are tested, the nearest first.
-_MOST_SADDLES = 16
+_MOST_SADDLES = 40
 
 
 class Way(Enum):
