@@ -177,6 +177,13 @@ EXAMPLES: Mapping[str, Formula] = {
     "Morse bond": Formula("0.5*x^2+200*(1-exp(-0.05*y))^2", energies=(312.5,), state=(0.1, 0.0, 0.0, 25.0)),
     "rational channel": Formula("0.5*x^2+0.5*y^2/(1+0.0001*y^2)", energies=(6000.0,)),
     "wells in an open channel": Formula("0.5*x^2-2/(1+(y-2)^2)-2/(1+(y+2)^2)", (0.0, 2.0), (0.2,), (0.1, 0.0, 0.0, 2.2)),
+    "turn beyond an exit": Formula(
+        "0.5*(1.2987*x^2+0.6412*y^2)+0.6056*x^3*y^3-0.8367*x^5*y^1",
+        state=(0.16503073210843036, 0.5481251595317982, 0.005591749495613022, -2.440416258234151),
+    ),
+    "periodic orbit through the bottom": Formula(
+        "0.5*(0.6984*x^2+1.0459*y^2)+0.9621*y^3-1.4327*x*y^3-1.4081*x^2*y^2", energies=(0.38933533872666604,)
+    ),
     "large constant": Formula("1e7+0.0001*(0.5*(x^2+y^2)+0.05*x^3-x^2*y^2)"),
     "meridional plane": Formula("0.5*log(x^2+y^2/0.81)+0.02/x^2", (0.2, 0.0)),
     "sum of exponentials": Formula("exp(6*x+7*y)+exp(6*x-7*y)+exp(-12*x)-3"),

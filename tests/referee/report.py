@@ -18,7 +18,8 @@ class Report:
     wrong: list[dict[str, Any]] = field(default_factory=list)
 
     def add(self, check: str, result: str, reason: str = "", number: int = 1) -> None:
-        self.counts[check, result, _without_numbers(reason)] += number
+        if number:
+            self.counts[check, result, _without_numbers(reason)] += number
 
     def add_wrong(self, check: str, kind: str, **reproduction: Any) -> None:
         self.counts[check, WRONG, kind] += 1

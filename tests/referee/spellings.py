@@ -49,7 +49,7 @@ class Spelling:
 
 
 def _nested(expression: sympy.Expr) -> sympy.Expr:
-    return sympy.horner(expression, X, Y) if expression.is_polynomial(X, Y) else sympy.factor(expression)
+    return sympy.horner(expression, X, Y) if expression.is_polynomial(X, Y) else sympy.together(expression)
 
 
 def _exchanged(x: sympy.Expr, y: sympy.Expr) -> Callable[[sympy.Expr], sympy.Expr]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import pytest
 
 from tests.referee.checks import check_formula
-from tests.referee.formulas import EXAMPLES, GRAMMARS, REPEATS, Formula, random_formula
+from tests.referee.formulas import EXAMPLES, REPEATS, Formula, random_formula
 from tests.referee.report import COMPARED, Report
 
 CHECKS_OF_EXAMPLES = {
@@ -19,12 +19,16 @@ CHECKS_OF_EXAMPLES = {
     "Morse bond": ("openness", "spellings"),
     "rational channel": ("openness", "spellings"),
     "wells in an open channel": ("openness",),
+    "turn beyond an exit": ("fates",),
+    "periodic orbit through the bottom": ("exits", "fates"),
     "large constant": ("spellings",),
     "meridional plane": ("openness",),
     "sum of exponentials": ("openness",),
     "flat axes": ("openness",),
     "closed well": ("openness", "spellings"),
 }
+# Structures of each grammar, with accepted formulas.
+STRUCTURES = (0, 1, 2)
 REVIEWED = 12
 
 
@@ -42,10 +46,10 @@ def test_answers_on_an_example_are_right(name: str) -> None:
 
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")
-@pytest.mark.parametrize("k", range(len(GRAMMARS)), ids=list(GRAMMARS))
-def test_fates_on_random_formulas_are_right(k: int) -> None:
+@pytest.mark.parametrize("structure", STRUCTURES)
+def test_fates_on_random_formulas_are_right(structure: int) -> None:
     report = Report()
-    for seed in range(REPEATS * k, REPEATS * (k + 1)):
+    for seed in range(REPEATS * structure, REPEATS * (structure + 1)):
         report.merge(check_formula(random_formula(seed), seed, checks=("fates", "images", "openness")))
     assert not report.wrong
     assert compared(report) > 50
@@ -61,10 +65,9 @@ def test_a_narrow_valley_has_equal_reviews_in_all_spellings() -> None:
 
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")
-@pytest.mark.parametrize("check", ["spellings", "exits"])
-def test_reviews_of_random_formulas_are_right(check: str) -> None:
+def test_reviews_of_random_formulas_in_other_spellings_are_equal() -> None:
     report = Report()
     for seed in range(0, REPEATS * REVIEWED, REPEATS):
-        report.merge(check_formula(random_formula(seed), seed, energies=0, checks=(check,)))
+        report.merge(check_formula(random_formula(seed), seed, energies=0, checks=("spellings",)))
     assert not report.wrong
-    assert compared(report) > 30
+    assert compared(report) > 100
