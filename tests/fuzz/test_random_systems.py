@@ -54,8 +54,8 @@ def check_well(seed: int) -> tuple[list[Comparison], list[str]]:
     potential, scaling = random_well(seed, HIGHEST_DEGREE), random_scaling(seed)
     usual, review = review_potential(potential), review_potential(scaling.potential(potential))
     assert (review.refusal is None, review.channels) == (usual.refusal is None, usual.channels)
-    if review.refusal is not None:
-        return [], [review.refusal]
+    if review.refusal is not None or not review.channels:
+        return [], [review.describe()]
     assert review.escape_energy == pytest.approx(scaling.energy * usual.escape_energy, rel=1e-9)
     comparisons, refusals = [], []
     for energy in random_energies(potential, seed):
@@ -98,7 +98,7 @@ def open_well(number: int) -> tuple[int, Potential]:
     for seed in itertools.count(first):
         text, values = random_formula(seed)
         potential = parse_formula(text, parameters=values)
-        if review_potential(potential).refusal is None:
+        if review_potential(potential).refusal is None and potential.channels:
             return seed, potential
     raise AssertionError
 
@@ -135,7 +135,7 @@ def accepted_system(number: int) -> tuple[int, Potential, float, np.ndarray]:
             starts = sample_starts(potential, energy, STARTS, seed=seed)
         except ValueError:
             continue
-        if review_potential(potential).refusal is None:
+        if review_potential(potential).refusal is None and potential.channels:
             return seed, potential, energy, starts
     raise AssertionError
 

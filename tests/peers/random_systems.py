@@ -79,8 +79,8 @@ def random_system(seed: int) -> tuple[Potential, float]:
     if seed % AT_REST:
         well = well.in_rotating_frame(float(random.uniform(-FASTEST, FASTEST) * slowest))
     review = review_potential(well)
-    if review.refusal is not None:
-        raise ValueError(review.refusal)
+    if review.refusal is not None or not review.channels:
+        raise ValueError(review.describe())
     energy = well.well.energy_at(float(random.uniform(*FACTORS)))
     energy = min(energy, well.escape_energy + 0.5 * (review.highest_energy - well.escape_energy))
     size = well.units.length

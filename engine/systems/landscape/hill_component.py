@@ -176,9 +176,10 @@ class ComponentSearch:
             if not (is_reached & cells.are_at_edge).any():
                 return Extent.BOUNDED
             is_below = cells.high <= energy
-            # The parts of cells that barriers cut are left out.
-            is_below_node = np.append(is_below, np.zeros(2 * len(barriers), bool))
-            if (_spread_from_origin(cells, pairs[is_below_node[pairs].all(axis=1)]) & is_below & cells.are_at_edge).any():
+            # Cells on both sides of a barrier are left out.
+            is_beside = is_below & (cells.sides != 0).all(axis=1)
+            is_below_node = np.append(is_beside, np.zeros(2 * len(barriers), bool))
+            if (_spread_from_origin(cells, pairs[is_below_node[pairs].all(axis=1)]) & is_beside & cells.are_at_edge).any():
                 return Extent.UNBOUNDED
             # A cell at the end of a barrier lies on both sides, and the barrier does not cut it in two.
             is_at_end = (cells.sides == 0).any(axis=1) & (cells.barrier < 0)
