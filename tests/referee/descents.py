@@ -6,7 +6,7 @@ from enum import Enum
 from functools import lru_cache
 
 import numpy as np
-from scipy.integrate import solve_ivp
+from scipy.integrate import cumulative_trapezoid, solve_ivp
 
 from engine import Potential
 from tests.referee.own_system import OwnSystem
@@ -18,6 +18,8 @@ CHECK = "exits"
 _ALONG, _SIDEWAYS = 1e-4, 1e-6
 # Distance where a line has arrived, in distances of the nearest saddle, and where it has left, in those of the farthest.
 _NEAR, _FAR = 0.02, 20.0
+# ln of the factors by which lines come closer, and part again, if rounding decides where they lead.
+_CLOSER, _APART = 12.0, 12.0
 # Largest number of saddles that are tested, the nearest first.
 _MOST_SADDLES = 40
 
@@ -60,7 +62,24 @@ def descend(system: OwnSystem, begin: np.ndarray, near: float, far: float) -> De
         # V is not finite at a point that was tried.
         return Way.UNDECIDED, begin[None]
     ways = [way for way, times in zip((Way.WELL, Way.ELSEWHERE, Way.ELSEWHERE), line.t_events, strict=True) if len(times)]
+    if ways == [Way.ELSEWHERE] and _is_led_by_rounding(system, line.t, line.y, slope):
+        return Way.UNDECIDED, line.y.T
     return (ways[0] if ways else Way.UNDECIDED), line.y.T
+
+
+def _is_led_by_rounding(system: OwnSystem, s: np.ndarray, places: np.ndarray, slope: float) -> bool:
+    """Whether neighbouring lines come closer than the tolerance in a valley, and part again beyond it on a ridge.
+
+    A line that leads to the well nevertheless is certain, because its exact distance from the ridge is still smaller.
+    """
+    gradient = system.gradient(*places)
+    length = np.hypot(*gradient)
+    nx, ny = -gradient[1] / length, gradient[0] / length
+    (vxx, vxy), (_, vyy) = system.curvature(*places)
+    rate = -(nx * nx * vxx + 2.0 * nx * ny * vxy + ny * ny * vyy) / (length + slope)
+    logarithm = cumulative_trapezoid(rate, s, initial=0.0)
+    closest = np.minimum.accumulate(logarithm)
+    return bool(np.any((closest < -_CLOSER) & (logarithm - closest > _APART)))
 
 
 @lru_cache(maxsize=256)
