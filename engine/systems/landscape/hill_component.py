@@ -95,6 +95,8 @@ class _Cells:
         (n,) bounds of V on the cells.
     barrier
         (n,) the barrier that cuts the cell in two, from 0; −1 for none.
+    is_at_end
+        (n,) whether the cell lies on both sides of a barrier that may not cut it in two, such as a cell at its end.
     sides
         (n, barriers) −1 on the inner side of a barrier, 1 on the outer side, 0 if the cell is on both sides.
     """
@@ -104,6 +106,7 @@ class _Cells:
     low: np.ndarray
     high: np.ndarray
     barrier: np.ndarray
+    is_at_end: np.ndarray
     sides: np.ndarray
 
     def take(self, selection: np.ndarray) -> _Cells:
@@ -176,15 +179,13 @@ class ComponentSearch:
             if not (is_reached & cells.are_at_edge).any():
                 return Extent.BOUNDED
             is_below = cells.high <= energy
-            # Cells on both sides of a barrier are left out.
-            is_beside = is_below & (cells.sides != 0).all(axis=1)
-            is_below_node = np.append(is_beside, np.zeros(2 * len(barriers), bool))
-            if (_spread_from_origin(cells, pairs[is_below_node[pairs].all(axis=1)]) & is_beside & cells.are_at_edge).any():
+            # Cells that contain points of barriers are left out.
+            is_free = is_below & (cells.barrier < 0) & ~cells.is_at_end
+            is_free_node = np.append(is_free, np.zeros(2 * len(barriers), bool))
+            if (_spread_from_origin(cells, pairs[is_free_node[pairs].all(axis=1)]) & is_free & cells.are_at_edge).any():
                 return Extent.UNBOUNDED
-            # A cell at the end of a barrier lies on both sides, and the barrier does not cut it in two.
-            is_at_end = (cells.sides == 0).any(axis=1) & (cells.barrier < 0)
             is_due = cells.level + lag * self._log_distance(cells) < most_divisions
-            is_divided = is_reached & (~is_below | is_at_end) & is_due
+            is_divided = is_reached & (~is_below | cells.is_at_end) & is_due
             level, index = cells.quarters(is_divided)
             examined += len(level)
             if examined > most_cells:
@@ -202,15 +203,18 @@ class ComponentSearch:
         is_kept = ~(low > energy)
         level, index, first, last, low, high = (each[is_kept] for each in (level, index, first, last, low, high))
         x, y = _samples(first, last)
-        sides, is_cut = np.ones((len(level), len(barriers)), int), np.zeros((len(level), len(barriers)), bool)
+        sides = np.ones((len(level), len(barriers)), int)
+        is_cut, is_beyond = (np.zeros((len(level), len(barriers)), bool) for _ in range(2))
         for k, barrier in enumerate(barriers):
             distance, along = barrier.position(x, y)
             is_inner, is_outer = (distance < 0.0).all(axis=1), (distance > 0.0).all(axis=1)
             sides[:, k] = np.where(is_inner, -1, is_outer)
-            is_cut[:, k] = ~is_inner & ~is_outer & (np.abs(along) <= 1.0).all(axis=1)
+            is_cut[:, k] = (sides[:, k] == 0) & (np.abs(along) <= 1.0).all(axis=1)
+            is_beyond[:, k] = (along > 1.0).all(axis=1) | (along < -1.0).all(axis=1)
         # A cell that two barriers cut counts as cut by none, so that it connects both sides until it is divided.
         barrier_of = np.where(is_cut.sum(axis=1) == 1, is_cut.argmax(axis=1) if barriers else 0, -1)
-        return _Cells(level, index, low, high, barrier_of, sides)
+        is_at_end = (barrier_of < 0) & ((sides == 0) & ~is_beyond).any(axis=1)
+        return _Cells(level, index, low, high, barrier_of, is_at_end, sides)
 
     def _edges(self, level: np.ndarray, index: np.ndarray) -> np.ndarray:
         """Return the lower edges (n, 2) of cells. Neighbours of any size have the same edge to the bit."""

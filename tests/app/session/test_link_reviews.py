@@ -33,10 +33,11 @@ from tests.app.session.opened_page import on_loop, opened_page, tell_ready, wait
 CIRCULAR = {"case": TYPED, "V": "r^2/2 - r^4 + r^6 - r^8 + r^10 - 1.0183r^12"}
 LEGAL = {"case": TYPED, "V": "½(x² + y²) − 0.83x²y²"}
 WITH_FUNCTIONS = {"case": TYPED, "V": "½(x² + y²) − a x²y exp(−0.017 y²)"}
-# Functions that compute slow quantities of a potential, or read them from the disk.
-SLOW = [parse_formula, review_system, find_critical_points, stored_points, find_exit_lines, find_maxima_beside]
-# Functions that derive other formulas, texts, and structures and outlines of code from a formula. Jobs call `find_outline`.
-DERIVING = [derivative, substitute, equations, potential_formula, find_structure, find_outline]
+# Functions that compute slow quantities of a potential.
+SLOW = [parse_formula, review_system, find_critical_points, find_exit_lines, find_maxima_beside]
+# Functions that derive other formulas, texts, and structures and outlines of code from a formula, or read its points from the
+# disk. Jobs call `find_outline` for their kernels, and `stored_points` for the extent of the region of motion.
+DERIVING = [derivative, substitute, equations, potential_formula, find_structure, find_outline, stored_points]
 STARTED, TOOL = sys.monitoring.events.PY_START, 4
 
 
