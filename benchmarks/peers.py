@@ -19,7 +19,8 @@ from scipy.integrate import solve_ivp
 from scipy.integrate._ivp import dop853_coefficients as dop853
 
 from engine import CASES, MapSpec, Plane, Potential, compute_map, start_states
-from engine.exits.exit_rows import exit_curves, exit_gates
+from engine.exits.exit_rows import exit_curves
+from engine.exits.exit_shapes import exit_gates
 from engine.integrator.kernels.events import crossed_exit
 from tests.peers import taylor_heyoka
 from tests.peers.exit_lines import exit_lines

@@ -16,7 +16,8 @@ from concurrent.futures import ProcessPoolExecutor
 import numpy as np
 
 from engine import CASES, Plane, start_states
-from engine.exits.exit_rows import closed_exits, exit_gates
+from engine.exits.exit_rows import closed_exits
+from engine.exits.exit_shapes import exit_gates
 from engine.foundations.cache_files import CACHE_VARIABLE
 from engine.integrator.bound_kernels import load_kernels
 from engine.integrator.kernels import propagate

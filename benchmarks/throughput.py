@@ -21,7 +21,8 @@ import heyoka as hy
 import numpy as np
 
 from engine import POTENTIALS, Potential, classify_orbits, sample_starts
-from engine.exits.exit_rows import closed_exits, exit_gates
+from engine.exits.exit_rows import closed_exits
+from engine.exits.exit_shapes import exit_gates
 from engine.integrator.kernels import propagate
 from engine.integrator.kernels.events import NOT_COMPUTED
 from engine.integrator.source.recurrence import TOLERANCE

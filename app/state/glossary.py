@@ -36,8 +36,8 @@ GLOSSARY: Mapping[str, str] = MappingProxyType(
         ),
         "limiting curve": "The edge of the allowed starts of a plane: there the momentum that the energy decides is zero.",
         "Lyapunov orbit": (
-            "The unstable periodic orbit over a saddle of the potential, which marks the exit. An orbit that crosses it outward "
-            "never returns; in a rotating frame, some orbits do."
+            "The unstable periodic orbit over a saddle of the potential, which marks the exit. In the cases of the paper, an "
+            "orbit that crosses it outward never returns. Elsewhere some orbits may; the flux says how many."
         ),
         "Jacobi integral": (
             "The energy in a frame that rotates: half the square of the velocity, plus the effective potential Φ, which contains "

@@ -1,4 +1,4 @@
-"""List the Lyapunov orbit of each open exit: its period, its turning points, and the flux through the exit.
+"""List the Lyapunov orbit of each open exit: its period, its turning points, the flux, and how much of it comes back.
 
 Examples:
 
@@ -72,21 +72,23 @@ def _print(
         sentence = f"No Lyapunov orbits: {reason if math.isfinite(escape_energy) else 'there are no exits'}."
         print_result(as_json, answer | {"orbits": []}, sentence, files=files)
         return
-    exit_fluxes = [None] * len(orbits) if flux is None else flux.flux.tolist()
+    fluxes = [(None, None)] * len(orbits) if flux is None else list(zip(flux.flux.tolist(), flux.returning.tolist(), strict=True))
     descriptions = [
-        {"channel": orbit.channel, "name": orbit.name, "period": orbit.period, "flux": exit_flux, "ends": _ends(orbit)}
-        for orbit, exit_flux in zip(orbits, exit_fluxes, strict=True)
+        {"channel": orbit.channel, "name": orbit.name, "period": orbit.period}
+        | {"flux": exit_flux, "returning": returning, "ends": _ends(orbit)}
+        for orbit, (exit_flux, returning) in zip(orbits, fluxes, strict=True)
     ]
     rows = [
         (
-            *(orbit.name, f"{orbit.period:.12g}", "" if exit_flux is None else f"{exit_flux:.9g}"),
+            *(orbit.name, f"{orbit.period:.12g}"),
+            *("" if exit_flux is None else f"{exit_flux:.9g}", "" if returning is None else f"{100.0 * returning:.3g} %"),
             *(f"({x:.12f}, {y:.12f})" for x, y in _ends(orbit)),
         )
-        for orbit, exit_flux in zip(orbits, exit_fluxes, strict=True)
+        for orbit, (exit_flux, returning) in zip(orbits, fluxes, strict=True)
     ]
     # In a rotating frame, orbits have no turning points: the start and the point half a period later are printed instead.
     point_names = ("turning point (x, y)",) * 2 if flux is not None else ("point (x, y)", "half a period later")
-    table = Table(("channel", "period", "flux", *point_names), rows)
+    table = Table(("channel", "period", "flux", "comes back", *point_names), rows)
     answer["orbits"] = descriptions
     sentences: list[str] = []
     if flux is not None:

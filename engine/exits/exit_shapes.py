@@ -16,6 +16,7 @@ from engine.integrator.kernels import exit_geometry as geometry
 from engine.systems.landscape.closed_energy import ridge_bend
 from engine.systems.landscape.mirror_images import Signs
 from engine.systems.potential import Potential
+from engine.systems.well_units import nearest_power_of_two
 
 # Largest distance of a curve from the path that it follows, in units of the well.
 _LARGEST_FIT_ERROR = 1e-9
@@ -43,6 +44,8 @@ _LINE_POINTS = 41
 _LARGEST_WALL_STEP = 0.25
 # Largest distance between ends of two orbits that count as the same end, in units of the well.
 _END_TOLERANCE = 1e-6
+# Distance of a gate from the exit, in units of the distance of the saddle from the origin, rounded to a power of 2.
+_GATE_MARGIN = 1e-3
 # Columns that a reflection of x or y multiplies by its sign.
 _X_COLUMNS = [geometry.ORIGIN_X, geometry.OUTWARD_X, geometry.BEARING_X]
 _Y_COLUMNS = [geometry.ORIGIN_Y, geometry.OUTWARD_Y, geometry.BEARING_Y]
@@ -124,6 +127,16 @@ def mirrored_curve(curve: np.ndarray, signs: Signs) -> np.ndarray:
     return mirrored
 
 
+def reversed_curve(curve: np.ndarray) -> np.ndarray:
+    """Return the row of the same curve across a channel with its inner and outer sides exchanged."""
+    # u, q and s change their signs.
+    reversed_row = curve.copy()
+    reversed_row[[geometry.OUTWARD_X, geometry.OUTWARD_Y, geometry.MIDDLE]] *= -1.0
+    reversed_row[[geometry.SLOPE_LOW, geometry.SLOPE_HIGH]] = curve[[geometry.SLOPE_HIGH, geometry.SLOPE_LOW]]
+    reversed_row[geometry.COEFFICIENTS :: 2] *= -1.0
+    return reversed_row
+
+
 def find_reach(potential: Potential, energy: float, curve: np.ndarray) -> float:
     """Return the largest |s| at which a crossing counts.
 
@@ -140,6 +153,35 @@ def find_reach(potential: Potential, energy: float, curve: np.ndarray) -> float:
         is_inside = potential.value(*axes.points(u, q)) <= energy
         reach = min(reach, 1.0 + 0.5 * beyond[is_inside].min(initial=np.inf))
     return float(reach)
+
+
+def exit_gates(curves: np.ndarray) -> np.ndarray:
+    """Return the gates of exits (…, outcomes, columns), of shape (outcomes, 3). No orbit ends before it passes a gate.
+
+    A gate is cheap to test. For a channel, it is the line a x + b y = c slightly inside the exits at all energies; for a circle,
+    it is the centre and the radius.
+    """
+    outcomes, columns = curves.shape[-2:]
+    rows = curves.reshape(math.prod(curves.shape[:-2]), outcomes, columns)
+    gates = np.ascontiguousarray(rows[0][:, [geometry.ORIGIN_X, geometry.ORIGIN_Y, geometry.HALF_WIDTH]])
+    is_line = rows[0, :, geometry.SHAPE] <= geometry.LINE
+    gates[is_line] = _lines_inside(rows[:, is_line])
+    return gates
+
+
+def _lines_inside(rows: np.ndarray) -> np.ndarray:
+    """Return lines across channels, slightly inside their exits (energies, channels, columns), of shape (channels, 3)."""
+    # The array axes of u, q, x and y are energies, channels and points.
+    s = np.linspace(-1.0, 1.0, 201)
+    u = chebyshev.chebval(s, np.moveaxis(rows[..., geometry.COEFFICIENTS :], -1, 0))
+    q = rows[..., geometry.MIDDLE, None] + rows[..., geometry.HALF_WIDTH, None] * s
+    origin_x, origin_y, outward_x, outward_y = np.moveaxis(rows[..., geometry.ORIGIN_X : geometry.OUTWARD_Y + 1, None], 2, 0)
+    x, y = origin_x + u * outward_x - q * outward_y, origin_y + u * outward_y + q * outward_x
+    normals = rows[0, :, geometry.OUTWARD_X : geometry.OUTWARD_Y + 1]
+    innermost = (normals[:, :1] * x + normals[:, 1:] * y).min(axis=(0, -1))
+    saddles = rows[0, :, geometry.ORIGIN_X : geometry.ORIGIN_Y + 1]
+    lengths = np.array([nearest_power_of_two(distance) for distance in np.hypot(*saddles.T).tolist()])
+    return np.column_stack([normals, innermost - _GATE_MARGIN * lengths])
 
 
 def line_points(curve: np.ndarray) -> np.ndarray:

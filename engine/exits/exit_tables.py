@@ -14,8 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.exits.brake_orbits import chord_axes
-from engine.exits.exit_rows import exit_gates
-from engine.exits.exit_shapes import curve_along, find_reach
+from engine.exits.exit_shapes import curve_along, exit_gates, find_reach
 from engine.exits.lyapunov_orbit import LyapunovOrbit
 from engine.exits.lyapunov_orbits import find_orbits_in_well_units
 from engine.foundations.arrays import ReadOnlyArrays

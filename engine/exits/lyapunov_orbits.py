@@ -14,6 +14,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from engine.exits.beyond_exits import leads_to_infinity, returning_share
 from engine.exits.brake_orbits import (
     BrakeOrbit,
     chord_axes,
@@ -24,10 +25,9 @@ from engine.exits.brake_orbits import (
 )
 from engine.exits.exit_shapes import curve_along, find_reach, line_across, paths_meet
 from engine.exits.lyapunov_orbit import LyapunovOrbit
-from engine.exits.merged_orbits import axes_between, find_merged_orbits, has_returns
+from engine.exits.merged_orbits import axes_between, find_merged_orbits
 from engine.exits.mirrored_orbits import Images, OrbitSearchError, find_with_images, image_exits, meets_image
 from engine.exits.necks import closes_channel
-from engine.exits.open_wells import leads_to_infinity
 from engine.exits.periodic_orbits import find_orbit_in_rotating_frame
 from engine.foundations.validation import checked_number, checks_types
 from engine.integrator.kernels import exit_geometry as geometry
@@ -38,6 +38,9 @@ from engine.systems.potential import Potential
 # height on, in units of the well.
 _HEIGHT_BASES = (4.0, 2.0)
 _LEAST_HEIGHT = 1.0 / 16.0
+
+# Time for which orbits are followed beyond the exit of several channels, in units of the well.
+_MERGED_FOLLOWED_TIME = 30.0
 
 # Reasons why an exit of several channels is not defined, by rank. Of the reasons of all orbits found, the highest is reported.
 _NO_ORBIT, _SHARP_BEND, _RETURNS = range(3)
@@ -148,18 +151,19 @@ def _is_open(potential: Potential, energy: float) -> bool:
     height = energy - potential.escape_energy
     for base in _HEIGHT_BASES if height > 0.0 else ():
         higher = max(_LEAST_HEIGHT, base ** math.ceil(math.log(height, base)))
-        try:
-            if higher > height and not _is_open_at(potential, potential.escape_energy + higher):
-                return False
-        except OrbitSearchError:
-            continue
-    return _is_open_at(potential, energy)
+        if higher > height and _exits_close_well(potential, potential.escape_energy + higher):
+            return False
+    return not _exits_close_well(potential, energy)
 
 
 @functools.lru_cache(maxsize=1024)
-def _is_open_at(potential: Potential, energy: float) -> bool:
-    """Apply `_is_open` without recourse to another energy."""
-    return leads_to_infinity(potential, energy, _find_all_orbits(potential, energy))
+def _exits_close_well(potential: Potential, energy: float) -> bool:
+    """Return whether the exits are defined at an energy, and the region of motion is bounded inside them."""
+    try:
+        orbits = _find_all_orbits(potential, energy)
+    except OrbitSearchError:
+        return False
+    return not leads_to_infinity(potential, energy, orbits)
 
 
 @functools.lru_cache(maxsize=1024)
@@ -225,8 +229,8 @@ def _find_merged(potential: Potential, energy: float, exits: Mapping[int, Merged
         if curve is None:
             reason = max(reason, _SHARP_BEND)
             continue
-        lyapunov_orbit = _exit_over(potential, energy, merged.channels[0], orbit, curve)
-        if not has_returns(potential, energy, orbit, lyapunov_orbit.curve):
+        lyapunov_orbit = _exit_over(potential, energy, channel, orbit, curve)
+        if not returning_share(potential, energy, {channel: curve}, channel, _MERGED_FOLLOWED_TIME):
             return lyapunov_orbit
         reason = _RETURNS
     raise OrbitSearchError(f"{_describe_merged_exit(potential, merged)}, and {_REASONS[reason]}")

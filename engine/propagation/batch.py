@@ -9,7 +9,7 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from engine.exits.exit_rows import exit_gates
+from engine.exits.exit_shapes import exit_gates
 from engine.exits.interior import find_outside_starts
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, run_parts
 from engine.integrator.kernels.propagate import NO_TRACE, VECTOR, Exits, Orbits, fill_vectors

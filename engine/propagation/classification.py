@@ -8,7 +8,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from engine.exits.exit_rows import exit_curves, exit_gates
+from engine.exits.exit_rows import exit_curves
+from engine.exits.exit_shapes import exit_gates
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.validation import checked_number, checked_states, checks_types
 from engine.integrator.kernels.dense_output import trace_orbit

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from engine.exits.exit_rows import exit_gates
+from engine.exits.exit_shapes import exit_gates
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.integrator.source.recurrence import ROWS, TIME_ROW, TOLERANCE
 from engine.propagation.tiles import map_tiles

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from engine.exits.exit_rows import exit_gates
+from engine.exits.exit_shapes import exit_gates
 from engine.exits.exit_tables import ExitTable, tabulate_exits
 from engine.exits.interior import find_inner_radius, tabulate_polynomial
 from engine.integrator.jit.code_outlines import find_outline

@@ -1,4 +1,4 @@
-"""Flux through the exits of a well and phase-space volume inside. If motion inside is mixed, they give the decay rate."""
+"""Flux through the exits of a well, and phase-space volume inside. If motion inside is mixed, they give the decay rate."""
 
 from __future__ import annotations
 
@@ -9,8 +9,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from engine.exits.beyond_exits import returning_share
 from engine.exits.interior import find_outside_channels
-from engine.exits.lyapunov_orbits import find_lyapunov_orbits
+from engine.exits.lyapunov_orbits import find_lyapunov_orbits, find_orbits_in_well_units
 from engine.foundations.result import Chart, RecordedResult
 from engine.foundations.root_finding import bisect
 from engine.foundations.validation import checked_number, checks_types
@@ -22,6 +23,8 @@ from engine.systems.potential import Potential
 _ROWS = 513
 # Number of points in a row.
 _COLUMNS = 256
+# Time for which orbits are followed beyond the exits, in units of the well.
+_FOLLOWED_TIME = 100.0
 # Number of halvings of the distance between a point inside and the next point outside.
 _HALVINGS = 40
 
@@ -38,8 +41,13 @@ class EscapeFlux(RecordedResult):
         (n,) numbers of the open exits.
     flux
         (n,) phase-space volume that leaves through each exit per unit of time, measured by δ(H − h) dx dy dpx dpy.
+    returning
+        (n,) share of the flux through each exit that comes back through any exit within the `followed_time`, from 288 orbits for
+        each exit; 0 to 1.
     area, area_error
         Area of the interior in (x, y), and its estimated error.
+    followed_time
+        Time for which orbits are followed beyond the exits: 100 units of the well.
     mass
         m.
     """
@@ -47,8 +55,10 @@ class EscapeFlux(RecordedResult):
     energy: float
     channels: np.ndarray
     flux: np.ndarray
+    returning: np.ndarray
     area: float
     area_error: float = field(repr=False)
+    followed_time: float = field(repr=False)
     mass: float = field(default=1.0, repr=False)
     held_as: ClassVar = {"channels": "channel"}
     chart: ClassVar = Chart(
@@ -56,18 +66,19 @@ class EscapeFlux(RecordedResult):
     )
 
     def numbers(self) -> dict[str, Any]:
-        """Return the energy, the volume, the total flux, and the decay rate and mean passage time of mixed motion."""
+        """Return the energy, volume, flux and the share that comes back, and decay rate and passage time of mixed motion."""
         return {
             "energy": self.energy,
             "volume": self.volume,
             "total_flux": self.total,
+            "returning_share": self.returning_share,
             "decay_rate": self.decay_rate,
             "mean_passage_time": self.mean_passage_time,
         }
 
     def columns(self) -> Mapping[str, np.ndarray]:
-        """Return channel, flux and share of the flux of each open exit."""
-        return {"channel": self.channels, "flux": self.flux, "share": self.shares}
+        """Return channel, flux, share of the flux, and share of this flux that comes back, of each open exit."""
+        return {"channel": self.channels, "flux": self.flux, "share": self.shares, "returning": self.returning}
 
     @property
     def volume(self) -> float:
@@ -83,6 +94,11 @@ class EscapeFlux(RecordedResult):
     def shares(self) -> np.ndarray:
         """(n,) share of each exit in the flux; also in the escapes, if the exits of orbits are independent of their starts."""
         return self.flux / self.total if self.flux.size else self.flux
+
+    @property
+    def returning_share(self) -> float:
+        """Share of the flux through all exits that comes back, see `returning`."""
+        return float(self.shares @ self.returning)
 
     @property
     def decay_rate(self) -> float:
@@ -101,10 +117,12 @@ class EscapeFlux(RecordedResult):
         """Return the decay rate and the mean passage time in one sentence."""
         if not self.flux.size:
             return f"All exits are closed at h = {self.energy:.6g}."
-        return (
+        rate = (
             f"Flux {self.total:.4g} over volume {self.volume:.4g}: decay rate {self.decay_rate:.4g}, mean passage time "
             f"{self.mean_passage_time:.4g}, if motion inside is mixed."
         )
+        share = f"{100.0 * self.returning_share:.3g} %" if self.returning.any() else "None"
+        return f"{rate} {share} of the flux comes back within t = {self.followed_time:.4g} (288 orbits through each exit)."
 
 
 @checks_types(potential=Potential)
@@ -150,7 +168,16 @@ def compute_flux(potential: Potential, energy: float) -> EscapeFlux:
     area, error = _interior_area(potential, h)
     channels = np.array([orbit.channel for orbit in orbits], np.int64)
     made_by = potential.describe_run(energy=h)
-    return EscapeFlux(h, channels, np.array(actions), area, error, potential.mass, made_by=made_by)
+    followed_time = _FOLLOWED_TIME * potential.units.time
+    returning = _returning_shares(potential, h)
+    return EscapeFlux(h, channels, np.array(actions), returning, area, error, followed_time, potential.mass, made_by=made_by)
+
+
+def _returning_shares(potential: Potential, h: float) -> np.ndarray:
+    """Return the share of the flux through each exit that comes back, (exits,)."""
+    well, energy = potential.in_well_units, h / potential.units.energy
+    curves = {orbit.channel: orbit.curve for orbit in find_orbits_in_well_units(well, energy)}
+    return np.array([returning_share(well, energy, curves, channel, _FOLLOWED_TIME) for channel in curves])
 
 
 def _interior_area(potential: Potential, h: float) -> tuple[float, float]:

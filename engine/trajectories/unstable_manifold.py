@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from engine.exits.exit_rows import exit_curves, exit_gates
+from engine.exits.exit_rows import exit_curves
+from engine.exits.exit_shapes import exit_gates
 from engine.exits.lyapunov_orbit import LyapunovOrbit
 from engine.exits.periodic_orbits import monodromy_matrix
 from engine.foundations.arrays import read_only

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from engine import Fate, classify_orbits
+from engine import Fate, classify_orbits, compute_flux
 from tests.referee.own_orbits import UndecidedError
 from tests.referee.report import UNDECIDED, Report
 from tests.referee.setting import DURATION, STEADY, Setting
@@ -44,29 +44,27 @@ def _check_orbit(setting: Setting, start: np.ndarray, other: np.ndarray, fate: i
         return
     if fate > 0:
         report.judge(CHECK, "an escape time differs", abs(time - end.time) <= change + _ROUNDING * unit, **known)
-        _check_beyond(setting, end.state, known, report)
+        _check_beyond(setting, end.channel, end.state, known, report)
     elif np.hypot(*end.state[:2]) > setting.orbits.farthest:
         report.judge(CHECK, "a bounded orbit runs away", not setting.orbits.leaves(end.state), **known)
 
 
-def _check_beyond(setting: Setting, state: np.ndarray, known: dict, report: Report) -> None:
-    """An orbit beyond an exit must not come back, unless it enters another well."""
-    if _has_other_wells(setting):
-        return
+def _check_beyond(setting: Setting, channel: int, state: np.ndarray, known: dict, report: Report) -> None:
+    """Compare whether an orbit comes back with the share of the flux through its exit that does."""
+    flux = compute_flux(setting.potential, setting.energy)
+    share = float(flux.returning[flux.channels == channel][0])
     try:
-        later = setting.orbits.end_of(_beyond(setting, state), setting.exits, DURATION * setting.time_unit)
+        later = setting.orbits.end_of(_beyond(setting, state), setting.exits, flux.followed_time)
     except UndecidedError:
         # The orbit runs to infinity in a finite time.
+        later = None
+    comes_back = later is not None and later.channel > 0
+    if comes_back and not share:
+        report.add(CHECK, UNDECIDED, "an orbit comes back, but none of those sampled for the flux")
         return
-    report.judge(CHECK, "an escaped orbit comes back", not later.channel, **known, back=later.time)
+    report.judge(CHECK, "an orbit does not come back", comes_back or share < 1.0, **known, share=share)
 
 
 def _beyond(setting: Setting, state: np.ndarray) -> np.ndarray:
     """Return the state a little later, so that the crossing is not found again."""
     return setting.orbits.state_at(state, 1e-4 * setting.time_unit)[1]
-
-
-def _has_other_wells(setting: Setting) -> bool:
-    points = setting.potential.critical_points
-    vxx, _, vyy = setting.potential.hessian(*points.T)
-    return bool(np.count_nonzero((setting.potential.well.critical_indices > 0.0) & (vxx + vyy > 0.0)) > 1)

@@ -7,7 +7,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from engine import LyapunovOrbit, Potential, find_lyapunov_orbits
-from engine.exits.exit_rows import exit_curves, exit_gates
+from engine.exits.exit_rows import exit_curves
+from engine.exits.exit_shapes import exit_gates
 from engine.integrator.kernels.exit_geometry import exit_distance
 from engine.systems.known_potentials import POTENTIALS
 from tests.peers.dop853 import equations

@@ -13,14 +13,11 @@ from engine import (
     classify_orbits,
     compute_map,
     find_lyapunov_orbits,
-    parse_formula,
 )
-from engine.exits.brake_orbits import BrakeOrbit
 from engine.exits.exit_rows import exit_curves
 from engine.exits.interior import find_outside_channels
-from engine.exits.merged_orbits import has_returns
 from engine.integrator.kernels.events import crossed_exit
-from engine.integrator.kernels.exit_geometry import CURVE_COLUMNS, HALF_WIDTH, ORIGIN_X, OUTWARD_X, REACH, exit_distance
+from engine.integrator.kernels.exit_geometry import exit_distance
 from engine.systems.known_potentials import POTENTIALS
 from tests.peers.dop853 import equations
 from tests.peers.random_systems import HIGHEST_DEGREE, random_well
@@ -89,17 +86,6 @@ def test_orbits_that_have_crossed_do_not_come_back() -> None:
         x, y = path.y[:2]
         assert path.status == 1
         assert not any(crossed_exit(x[i + 1], y[i + 1], x[i], y[i], exits, no_gates) for i in range(x.size - 1))
-
-
-def test_an_orbit_that_comes_back_into_the_well_returns() -> None:
-    # Left of x = −0.5, the energy of the motion along x is above the saddle at x = 1. So orbits that leave to the left at
-    # x = −0.6 are thrown back by the wall, pass x = −0.6 inward, and leave the well on the right.
-    potential, energy, place = parse_formula("½x² − x³/3 + ½y²"), 0.5, -0.6
-    across = np.sqrt(2.0 * (energy - float(potential.value(place, 0.0))))
-    path = np.array([np.full(101, place), -across * np.cos(np.linspace(0.0, np.pi, 101))])[:, ::-1]
-    line = np.zeros(CURVE_COLUMNS)
-    line[[ORIGIN_X, OUTWARD_X, HALF_WIDTH, REACH]] = place, -1.0, across, across
-    assert has_returns(potential, energy, BrakeOrbit(1.0, path), line)
 
 
 def test_most_orbits_of_the_inner_well_leave_as_just_below_the_maximum() -> None:

@@ -8,7 +8,17 @@ import numpy as np
 import pytest
 from scipy import integrate
 
-from engine import CASES, POTENTIALS, Plane, Potential, classify_orbits, compute_flux, find_lyapunov_orbits, sample_starts
+from engine import (
+    CASES,
+    POTENTIALS,
+    Plane,
+    Potential,
+    classify_orbits,
+    compute_flux,
+    find_lyapunov_orbits,
+    parse_formula,
+    sample_starts,
+)
 from engine.exits.interior import find_outside_channels
 from engine.slices.default_window import default_window
 
@@ -68,3 +78,34 @@ def test_flux_and_volume_follow_the_units() -> None:
     one, other = compute_flux(CASES["II"], 0.25), compute_flux(scaled, 0.25 * energy)
     np.testing.assert_allclose(other.flux, one.flux * length * math.sqrt(energy), rtol=1e-9)
     assert other.volume == pytest.approx(one.volume * length**2, rel=1e-6)
+
+
+def test_the_share_of_the_flux_that_comes_back_is_that_of_orbits_below_a_second_barrier() -> None:
+    # The motion along x and along y is separable. Along x, barriers of 19/30 and 9/10 follow each other, so the orbits between
+    # both come back. The flux is proportional to the phase-space area of the motion along y.
+    potential, h = parse_formula("½y² + 3x² − 11/3 x³ + 3/2 x⁴ − x⁵/5"), 1.2
+    found = compute_flux(potential, h)
+    expected = 1.0 - (h - 9 / 10) / (h - 19 / 30)
+    assert found.returning == pytest.approx([expected], abs=0.03)
+    assert f"{100.0 * found.returning_share:.3g} % of the flux comes back" in found.describe()
+
+
+@pytest.mark.parametrize("energy", [0.11, 0.15, 0.19])
+def test_all_flux_into_closed_wells_comes_back(energy: float) -> None:
+    potential = parse_formula("½r² + 0.5226(x³ − 3xy²) + 0.0727r⁴")
+    assert compute_flux(potential, energy).returning.tolist() == [1.0, 1.0, 1.0]
+
+
+@each_system
+def test_no_flux_through_the_exits_of_the_paper_comes_back(potential: Potential, energy: float) -> None:
+    found = compute_flux(potential, energy)
+    assert not found.returning.any()
+    assert "None of the flux comes back" in found.describe()
+
+
+def test_some_flux_comes_back_from_a_bent_channel() -> None:
+    # An independent integration of an orbit that turns beyond exit 4: tests/referee, "turn beyond an exit".
+    potential = parse_formula("½(1.2987x² + 0.6412y²) + 0.6056x³y³ − 0.8367x⁵y")
+    returning = dict(zip((1, 2, 3, 4), compute_flux(potential, 3.0922300851203053).returning, strict=True))
+    assert returning[1] == returning[3] == 0.0
+    assert 0.01 < returning[2] == returning[4] < 0.05

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from engine import CASES, Plane, Potential, parse_formula, start_states
-from engine.exits.exit_rows import exit_curves, exit_gates
+from engine.exits.exit_rows import exit_curves
+from engine.exits.exit_shapes import exit_gates
 from engine.integrator.jit.webassembly import webassembly_module
 from engine.integrator.kernels.propagate import VECTOR, Exits
 from engine.integrator.portable_kernels import kernel_module

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from engine import CASES, Plane, Potential, start_states
-from engine.exits.exit_rows import exit_curves, exit_gates
+from engine.exits.exit_rows import exit_curves
+from engine.exits.exit_shapes import exit_gates
 from engine.integrator.bound_kernels import load_kernels
 from engine.integrator.kernels.propagate import NO_TRACE, Exits, Orbits
 from engine.integrator.source.recurrence import LANES, ROWS, TOLERANCE
