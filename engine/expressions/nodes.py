@@ -141,7 +141,10 @@ def linear_combination(parts: Iterable[tuple[float, Expression]]) -> Expression:
 
 
 def multiply(*factors: Expression) -> Expression:
-    """Return the product of expressions. Sums are not expanded; powers of the same base are joined."""
+    """Return the product of expressions. Powers of the same base and exponentials of different arguments are joined.
+
+    Sums are not expanded, except if this removes an exponential: (exp(x) + y) exp(−x) is 1 + y exp(−x), which does not overflow.
+    """
     coefficient = 1.0
     exponents: dict[Expression, float] = {}
     for factor in factors:
@@ -152,16 +155,48 @@ def multiply(*factors: Expression) -> Expression:
                 exponents[base] = exponents.get(base, 0.0) + exponent
     if not coefficient:
         return number(0.0)
+    exponents = {base: n for base, n in exponents.items() if n}
+    if rewritten := _with_fewer_exponentials(exponents):
+        return multiply(number(coefficient), *rewritten)
     # The sum of exponents can be an integer, so that the coefficient of the base leaves the power: √(−x) √(−x) is −x.
-    scaled_bases = [base for base, n in exponents.items() if n and n == int(n) and _split_coefficient(base)[1] is not base]
+    scaled_bases = [base for base, n in exponents.items() if n == int(n) and _split_coefficient(base)[1] is not base]
     if scaled_bases:
         powers = [power(base, exponents.pop(base)) for base in scaled_bases]
-        return multiply(number(coefficient), *(Product(((base, n),)) for base, n in exponents.items() if n), *powers)
-    remaining = tuple(sorted(((base, n) for base, n in exponents.items() if n), key=lambda factor: factor[0].key))
+        return multiply(number(coefficient), *_powers(exponents.items()), *powers)
+    remaining = tuple(sorted(exponents.items(), key=lambda factor: factor[0].key))
     if not remaining:
         return number(coefficient)
     product = remaining[0][0] if len(remaining) == 1 and remaining[0][1] == 1.0 else Product(remaining)
     return linear_combination([(coefficient, product)])
+
+
+def _with_fewer_exponentials(factors: Mapping[Expression, float]) -> list[Expression]:
+    """Return factors equal to Π b^a with exponentials joined, or one multiplied into a sum with its inverse; empty if none."""
+    arguments = [argument for factor in factors.items() if (argument := _argument(factor)) is not None]
+    others = [factor for factor in factors.items() if _argument(factor) is None]
+    if len(arguments) > 1:
+        return [apply_function("exp", linear_combination((1.0, each) for each in arguments)), *_powers(others)]
+    for argument in arguments:
+        for k, (base, exponent) in enumerate(others):
+            if isinstance(base, Sum) and _contains_exponential(base, linear_combination([(-1.0 / exponent, argument)])):
+                scale = apply_function("exp", linear_combination([(1.0 / exponent, argument)]))
+                return [power(expand(scale, base), exponent), *_powers(others[:k] + others[k + 1 :])]
+    return []
+
+
+def _argument(factor: tuple[Expression, float]) -> Expression | None:
+    """Return the expression a f of a factor exp(f)^a; None for other factors."""
+    base, exponent = factor
+    return linear_combination([(exponent, base.argument)]) if isinstance(base, Function) and base.name == "exp" else None
+
+
+def _contains_exponential(total: Sum, argument: Expression) -> bool:
+    """Return whether exp(argument) is a factor of a term of a sum."""
+    return any(_argument(factor) == argument for part, _ in total.terms for factor in factors_of(part))
+
+
+def _powers(factors: Iterable[tuple[Expression, float]]) -> list[Expression]:
+    return [Product((factor,)) for factor in factors]
 
 
 def expand(factor: Expression, total: Expression) -> Expression:

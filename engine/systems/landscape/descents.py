@@ -140,7 +140,11 @@ class Descents:
         while self._steps_left > fewest_steps_left and solver.status == "running":
             self._steps_left -= 1
             previous_place, previous_value = solver.y, value
-            solver.step()
+            try:
+                solver.step()
+            except ValueError:
+                # The slope of V is not a finite number at a place that Radau tries.
+                break
             if solver.status == "failed":
                 break
             places.append(solver.y)

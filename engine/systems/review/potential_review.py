@@ -167,11 +167,11 @@ def _remarks(potential: Potential, points: tuple[CriticalPoint, ...]) -> tuple[s
     if potential.escape_radius is not None:
         return tuple(remarks)
     energies, closed_energy = potential.well.saddle_energies, potential.well.closed_energy
+    exits_unknown = potential.well.exits_unknown
     if not potential.channels:
-        remarks.append(
-            f"No saddle leads out of the well at the origin. The well is shown to be closed up to h = {closed_energy:.6g}, so no "
-            "orbit escapes up to this energy."
-        )
+        exits = f"The exits are not known: {exits_unknown}" if exits_unknown else "No saddle leads out of the well at the origin."
+        closed = f"The well is shown to be closed up to h = {closed_energy:.6g}, so no orbit escapes up to this energy."
+        remarks.append(f"{exits} {closed}")
     elif closed_energy < potential.escape_energy:
         limit = f"only up to h = {closed_energy:.6g}" if np.isfinite(closed_energy) else "at no energy"
         remarks.append(f"Below its lowest saddle, the well is probably closed, but this is shown {limit}.")
@@ -180,7 +180,7 @@ def _remarks(potential: Potential, points: tuple[CriticalPoint, ...]) -> tuple[s
         listed = ", ".join(f"{k + 1} above {energies[k]:.6g}" for k in order)
         remarks.append(f"The exits open at different energies: {listed}.")
     other_saddles = sum(point.kind is PointKind.SADDLE and not point.channel for point in points)
-    if other_saddles:
+    if other_saddles and not exits_unknown:
         remarks.append(f"Saddles that do not lead out of the well at the origin and are therefore not exits: {other_saddles}.")
     other_wells = [point for point in points if point.kind is PointKind.MINIMUM and (point.x or point.y)]
     if other_wells:

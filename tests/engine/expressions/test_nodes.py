@@ -25,6 +25,7 @@ def plus(*parts: Expression) -> Expression:
 SQUARE = plus(power(X, 2.0), power(Y, 2.0))
 MINUS_X = linear_combination([(-1.0, X)])
 WAVE = apply_function("sin", multiply(X, Y))
+GROWING, FALLING = apply_function("exp", X), apply_function("exp", MINUS_X)
 
 
 @pytest.mark.parametrize(
@@ -42,6 +43,11 @@ WAVE = apply_function("sin", multiply(X, Y))
         (apply_function("exp", number(0.0)), number(1.0)),
         (multiply(number(0.0), WAVE), number(0.0)),
         (power(WAVE, 0.0), number(1.0)),
+        (multiply(GROWING, apply_function("exp", plus(Y, MINUS_X))), apply_function("exp", Y)),
+        (multiply(GROWING, power(GROWING, -1.0), WAVE), WAVE),
+        (multiply(plus(GROWING, Y), FALLING), plus(number(1.0), multiply(Y, FALLING))),
+        (multiply(power(plus(GROWING, Y), 2.0), power(FALLING, 2.0)), power(plus(number(1.0), multiply(Y, FALLING)), 2.0)),
+        (multiply(power(plus(GROWING, Y), -1.0), GROWING), power(plus(number(1.0), multiply(Y, FALLING)), -1.0)),
     ],
 )
 def test_equal_formulas_are_equal_and_have_equal_hashes(one: Expression, other: Expression) -> None:

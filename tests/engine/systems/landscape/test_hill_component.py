@@ -52,6 +52,7 @@ def test_the_answer_does_not_depend_on_the_spelling() -> None:
     pairs = [
         ("x² + y² + (x − y)⁴", "x² + y² + x⁴ − 4x³y + 6x²y² − 4xy³ + y⁴"),
         ("(1 − exp(−y))² + x²", "x² + 1 − 2exp(−y) + exp(−2y)"),
+        ("(1 − exp(−y))² + x²", "(x² exp(2y) + (exp(y) − 1)²) exp(−2y)"),
     ]
     for one, other in pairs:
         for energy in (0.5, 0.9, 1.1, 2.0):

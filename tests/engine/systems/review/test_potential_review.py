@@ -70,6 +70,11 @@ def test_wells_without_exits_are_accepted_with_energies_at_which_they_are_closed
     assert review.energies.high < review.closed_energy
 
 
+def test_exits_that_are_not_known_are_not_said_to_be_missing() -> None:
+    remark = review_potential(parse_formula("exp(6x + 7y) + exp(6x − 7y) + exp(−12x) − 3")).remarks[0]
+    assert remark.startswith("The exits are not known: Whether all critical points")
+
+
 @pytest.mark.parametrize(
     ("formula", "well"),
     [
