@@ -28,7 +28,7 @@ class Quantity(Enum):
     LARGEST_SHARE_ENERGY = "h of the largest share of channel"
     IN_BASINS = "starts inside basins"
     WADA = "boundary starts next to all basins"
-    EXPONENT = "uncertainty exponent"
+    EXPONENT = "fat-fractal exponent (computed: uncertainty exponent)"
     TIME_ORDERS = "orders of magnitude from escape times near exits to those near islands"
 
 

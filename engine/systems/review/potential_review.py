@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from functools import cached_property, lru_cache
@@ -12,6 +13,7 @@ import numpy as np
 from engine.foundations.result import Result
 from engine.foundations.validation import checks_types
 from engine.systems.catalogue.entry import EnergyRange
+from engine.systems.forms.polynomial_form import PolynomialForm
 from engine.systems.formulas.formula_writer import write_formula
 from engine.systems.merged_channels import name_channels
 from engine.systems.potential import Potential
@@ -25,6 +27,8 @@ from engine.systems.well import EQUAL_ENERGY_TOLERANCE
 _CACHE_SIZE = 256
 # Remark on moved axes.
 _SHIFT_REMARK = "x and y count from the well at ({:.6g}, {:.6g}) of the formula."
+# Distance within which a line of steepest descent ends at a minimum, in units of the distance of the minimum from the origin.
+_SAME_PLACE = 1e-2
 
 
 @dataclass(frozen=True, repr=False)
@@ -182,10 +186,10 @@ def _remarks(potential: Potential, points: tuple[CriticalPoint, ...]) -> tuple[s
     other_saddles = sum(point.kind is PointKind.SADDLE and not point.channel for point in points)
     if other_saddles and not exits_unknown:
         remarks.append(f"Saddles that do not lead out of the well at the origin and are therefore not exits: {other_saddles}.")
-    other_wells = [point for point in points if point.kind is PointKind.MINIMUM and (point.x or point.y)]
-    if other_wells:
-        places = ", ".join(f"({point.x:.6g}, {point.y:.6g})" for point in other_wells)
-        remarks.append(f"There are other wells, at {places}: an orbit that enters one counts as escaped but may return.")
+    wells_beyond = _wells_beyond_exits(potential, points)
+    if wells_beyond:
+        places = ", ".join(f"({point.x:.6g}, {point.y:.6g})" for point in wells_beyond)
+        remarks.append(f"Exits lead into other wells, at {places}: an orbit that enters one counts as escaped but may return.")
     if potential.well.channel_mergers:
         lowest = potential.well.channel_mergers[0]
         merged = name_channels(lowest.channels)
@@ -194,7 +198,31 @@ def _remarks(potential: Potential, points: tuple[CriticalPoint, ...]) -> tuple[s
         remarks.append("V is not even in y: y = 0 is not a symmetry axis, and an orbit may stay on one side of it.")
     if potential.form.has_constant:
         remarks.append("The constant term has no effect on the orbits, but all energies include it.")
+    degrees = _degrees_above_two(potential)
+    if len(degrees) == 1 and not potential.rotation:
+        remarks.append(
+            f"All terms beyond the quadratic ones have degree {degrees.pop()}: ε, and a common factor of ω1 and ω2, only change "
+            "the units of length, time and energy."
+        )
     return tuple(remarks)
+
+
+def _degrees_above_two(potential: Potential) -> set[int]:
+    """Return the degrees above 2 of the terms of a polynomial; empty for other potentials."""
+    terms = potential.form.terms if isinstance(potential.form, PolynomialForm) else ()
+    return {i + j for i, j, _ in terms if i + j > 2}
+
+
+def _wells_beyond_exits(potential: Potential, points: tuple[CriticalPoint, ...]) -> list[CriticalPoint]:
+    """Return the minima where lines of steepest descent over the exit saddles end."""
+    well = potential.well
+    ends = [line[-1] for line in (() if well.exits_unknown else well.exit_lines)]
+    others = [point for point in points if point.kind is PointKind.MINIMUM and (point.x or point.y)]
+    return [
+        point
+        for point in others
+        if any(math.dist((point.x, point.y), end) < _SAME_PLACE * math.hypot(point.x, point.y) for end in ends)
+    ]
 
 
 def review_system(system: System) -> SystemReview:

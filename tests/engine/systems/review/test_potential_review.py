@@ -76,6 +76,34 @@ def test_exits_that_are_not_known_are_not_said_to_be_missing() -> None:
 
 
 @pytest.mark.parametrize(
+    ("formula", "wells"),
+    [
+        ("½x² − 2/(1 + (y − 2)²) − 2/(1 + (y + 2)²); well (0, 2)", "(0, -3.97204)"),
+        # Four of twelve wells are next to that at the origin.
+        ("sin(x)² + sin(y)²", "(0, -3.14159), (-3.14159, 0), (3.14159, 0), (0, 3.14159)"),
+        # The mirror image of the well is behind the wall x = 0.
+        ("½log(x² + y²/0.81) + 0.02/x² − 0.05y⁴; well (0.2, 0)", ""),
+    ],
+)
+def test_only_wells_into_which_exits_lead_are_named(formula: str, wells: str) -> None:
+    remarks = " ".join(review_potential(parse_formula(formula)).remarks)
+    expected = f"Exits lead into other wells, at {wells}: an orbit that enters one counts as escaped but may return."
+    assert (expected in remarks) == bool(wells)
+    assert ("other wells" in remarks) == bool(wells)
+
+
+@pytest.mark.parametrize(
+    ("name", "is_said"), [("I", True), ("III", True), ("C8", True), ("Barbanis", True), ("Copenhagen", False)]
+)
+def test_parameters_that_only_change_the_units_are_named(name: str, is_said: bool) -> None:
+    assert ("only change the units" in " ".join(review_potential(POTENTIALS[name]).remarks)) == is_said
+
+
+def test_parameters_that_change_the_pictures_are_not_said_to_change_the_units() -> None:
+    assert "only change the units" not in " ".join(review_potential(parse_formula("½(x² + y²) − xy² + 0.1x⁴")).remarks)
+
+
+@pytest.mark.parametrize(
     ("formula", "well"),
     [
         ("((x−1)² + y²)/2 − (x−1)y²", (1.0, 0.0)),
