@@ -1,8 +1,8 @@
-"""Parts of an expression whose zeros are its singularities."""
+"""Parts of an expression whose zeros are its singularities, or zeros of its slope."""
 
 from __future__ import annotations
 
-from engine.expressions.nodes import Coordinate, Expression, Function, Product, Sum, as_terms
+from engine.expressions.nodes import Coordinate, Expression, Function, Product, Sum, as_sum, as_terms, factors_of
 from engine.expressions.polynomials import degree
 
 
@@ -22,6 +22,12 @@ def _bases(expression: Expression) -> list[Expression]:
             singular = [base for base, exponent in factors if exponent < 0.0 or exponent != int(exponent)]
             return [*singular, *(inner for base, _ in factors for inner in _bases(base))]
     return []
+
+
+def repeated_factors(expression: Expression) -> tuple[Expression, ...]:
+    """Return bases of powers above 1 that are factors of an expression less its constant. Where a base is 0, the slope is 0."""
+    terms = as_sum(expression).terms
+    return tuple(base for base, exponent in factors_of(terms[0][0]) if exponent > 1.0) if len(terms) == 1 else ()
 
 
 def has_central_part(expression: Expression) -> bool:

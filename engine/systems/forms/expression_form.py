@@ -15,7 +15,7 @@ from engine.expressions.graph import make_graph
 from engine.expressions.nodes import Expression, Sum, X, Y, as_terms, from_terms, linear_combination, multiply, number, power
 from engine.expressions.parity import EVEN, parity
 from engine.expressions.polynomials import Terms
-from engine.expressions.singularities import singular_bases
+from engine.expressions.singularities import repeated_factors, singular_bases
 from engine.expressions.text import write_expression
 from engine.foundations.arrays import read_only
 from engine.systems.forms.form import NO_POINTS, Flow, NotIsolatedError, UndecidedError
@@ -136,10 +136,17 @@ class ExpressionForm:
     @cached_property
     def _search_result(self) -> np.ndarray | NotIsolatedError | UndecidedError:
         """The critical points, or the error of the search, which takes seconds."""
+        if any(self._changes_sign(base) for base in repeated_factors(self.expression)):
+            return NotIsolatedError()
         try:
             return find_stationary_points(Derivatives.of(self.expression))
         except (NotIsolatedError, UndecidedError) as error:
             return error
+
+    def _changes_sign(self, base: Expression) -> bool:
+        """Return whether an expression has values of both signs at the points of the circles."""
+        values = self._evaluate(_RADII * np.cos(_ANGLES), _RADII * np.sin(_ANGLES), base)[0]
+        return bool(np.any(values < 0.0) and np.any(values > 0.0))
 
     def descent_flow(self, length: float, sign: float) -> Flow:
         """Return the flow −sign ∇V with limited speed.

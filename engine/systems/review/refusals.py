@@ -46,7 +46,8 @@ def find_points_or_refusal(potential: Potential) -> tuple[tuple[CriticalPoint, .
     except NotIsolatedError:
         return (), None if _is_closed_well(potential) else (
             "The force vanishes along a curve instead of at isolated points, as in an infinite valley or a circular potential, "
-            "so the well at the origin is not bounded by isolated saddles. Add terms that make V vary along this curve."
+            "so the well at the origin is not bounded by isolated saddles. Add terms that make V vary along this curve, or an "
+            "escape radius, such as “; escape 10” after the formula."
         )
     refusals = (check(potential, points) for check in (_well_refusal, _degenerate_refusal, _exits_refusal))
     return points, next(filter(None, refusals), None)

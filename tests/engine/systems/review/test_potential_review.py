@@ -22,6 +22,8 @@ from tests.channel_family import channel_family
         ("x² + y⁴", "a degenerate point there"),
         ("x + r²", "linear terms"),
         ("½x² + ½y²/(1 + y²) + ½y² exp(−(y + 2)²)", "The well is open below its lowest saddle"),
+        ("1 + x²y² exp(−r²)", "The force vanishes along a curve"),
+        ("x² exp(−y) sin(1 + x)²", "The force vanishes along a curve"),
     ],
 )
 def test_invalid_potentials_are_refused_with_the_reason(formula: str, reason: str) -> None:
