@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Hashable, Iterable, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from itertools import groupby
 from typing import Any, ClassVar, Self
@@ -111,6 +111,20 @@ class End(Kind):
         """Match a clause of this kind, and return the match with its parameters; None for other clauses."""
         return re.match(rf"\s*(?:{'|'.join((cls.word, *cls.spellings))}){cls.clause}", clause)
 
+    @classmethod
+    def make(cls, **parameters: Any) -> list[Self]:
+        """Return the ends that a clause with these parameters describes."""
+        return [cls(**parameters)]
+
+    @property
+    def place(self) -> tuple[float, float]:
+        """A point that belongs to the end: its centre."""
+        return self.x, self.y
+
+    def image(self, signs: tuple[float, float]) -> Hashable:
+        """Return a key of the mirror image of the end in its kind, given the factors of x and y."""
+        return self.key, signs[0] * self.x, signs[1] * self.y, self.radius
+
     @property
     def text(self) -> str:
         """The clause of the end, with all digits of the numbers."""
@@ -207,7 +221,7 @@ class EscapeCircle(End):
         return self
 
     @classmethod
-    def write(cls, ends: Sequence[End]) -> float:
+    def write(cls, ends: Sequence[End]) -> Any:
         """Return the radius; 0 if there is no circle."""
         return ends[0].radius if ends else 0.0
 
@@ -219,11 +233,6 @@ class EscapeCircle(End):
 
 KINDS: dict[str, type[Kind]] = {kind.key: kind for kind in (Exit, Centre, EscapeCircle)}
 """The kinds by their keys, in the order of fates."""
-
-
-def end_kinds() -> list[type[End]]:
-    """Return the kinds of ends besides the exits, in the order of fates."""
-    return [kind for kind in KINDS.values() if issubclass(kind, End)]
 
 
 @dataclass(frozen=True)

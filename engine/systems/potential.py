@@ -20,9 +20,10 @@ from engine.foundations.validation import LONGEST_TIME, check_type, checked_betw
 from engine.integrator.source.polynomial_recurrence import Terms
 from engine.integrator.source.recurrence import TOLERANCE
 from engine.integrator.source.series import ORDER
+from engine.systems.escape_arcs import end_kinds
 from engine.systems.forms.expression_form import Form, as_form
 from engine.systems.motion import MASS_RANGE, Motion
-from engine.systems.outcomes import KINDS, Centre, End, EscapeCircle, Outcome, end_kinds
+from engine.systems.outcomes import KINDS, Centre, End, EscapeCircle, Outcome
 from engine.systems.related_wells import SEARCHED, ContinuedWell, Lineage, scaled_to_well
 from engine.systems.well import Well
 from engine.systems.well_units import WellUnits
@@ -289,7 +290,7 @@ class Potential(Motion):
             "terms": self.form.text,
             "rotation": self.rotation,
             "mass": self.mass,
-            **{kind.attribute: kind.write([end for end in self.ends if isinstance(end, kind)]) for kind in end_kinds()},
+            **{kind.attribute: kind.write([end for end in self.ends if type(end) is kind]) for kind in end_kinds()},
             "origin": json.dumps(self.origin),
             **({"exit_names": json.dumps(self.exit_names)} if self.exit_names else {}),
             **super().provenance(),

@@ -28,8 +28,8 @@ from engine.systems.landscape.mirror_images import (
     mirrors_of,
     without_rounding,
 )
+from engine.systems.landscape.mirror_symmetry import image_fates, well_mirrors
 from engine.systems.merged_channels import ChannelMerger, MergedExit, exit_numbers, merged_exits, name_exit
-from engine.systems.mirror_symmetry import image_fates, well_mirrors
 from engine.systems.outcomes import End, EscapeCircle, Exit, Outcome, outcomes_of
 from engine.systems.well_scales import WellScales
 

@@ -13,7 +13,7 @@ import numpy as np
 from engine.integrator.jit.decorator import kernel, subroutine
 from engine.integrator.jit.function_pointers import call_jets, call_step
 from engine.integrator.kernels.events import crossed_exit, find_exit_time, find_zero, passed_exit, series_slope, series_value
-from engine.integrator.kernels.exit_geometry import ends_inside
+from engine.integrator.kernels.exit_geometry import ends_inside, reached_exit
 from engine.integrator.kernels.propagate import fill_vectors
 from engine.integrator.source.recurrence import LANES, ROWS, SIZE_ROW, TIME_ROW
 from engine.integrator.source.series import ORDER
@@ -189,11 +189,13 @@ def _keep_step(now, new, flags, x_jet, y_jet, i, beyond, gates, curves, ensemble
     channel = crossed_exit(now[0, i], now[1, i], new[0, i], new[1, i], curves, gates)
     if channel == 0 and flags & NEAR != 0:
         channel = passed_exit(x_jet, y_jet, i, size, curves)
-    ensemble.leaving[orbit] = channel
     if channel > 0:
-        ensemble.escape_time[orbit] = now[TIME_ROW, i] + find_exit_time(x_jet, y_jet, i, size, curves[channel - 1])
+        tau = find_exit_time(x_jet, y_jet, i, size, curves[channel - 1])
+        channel = reached_exit(series_value(x_jet, i, tau), series_value(y_jet, i, tau), channel, curves)
+        ensemble.escape_time[orbit] = now[TIME_ROW, i] + tau
         follow_time = 0.0 if ends_inside(curves[channel - 1]) else beyond
         ensemble.last_time[orbit] = ensemble.escape_time[orbit] + follow_time
+    ensemble.leaving[orbit] = channel
     if now[1, i] < 0.0 and new[1, i] >= 0.0:
         tau = find_zero(y_jet, i, 0.0, size)
         ensemble.section[0, orbit] = series_value(x_jet, i, tau)

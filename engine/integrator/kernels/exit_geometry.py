@@ -2,7 +2,8 @@
 
 An exit is a place where orbits end: a curve or line across a channel, the edge of a disc around a body, or the escape circle. It
 is a row of numbers, which has an origin and a half width for all shapes. The origin of a disc is its centre, and the half width
-of a disc or of the escape circle is the radius.
+of a disc or of the escape circle is the radius. The escape circle can be divided into arcs, each an exit: its BEARING is the
+direction of its middle, and its REACH is the cosine of half its angle.
 
 In a well that does not rotate, an exit is the path of a Lyapunov orbit. The coordinates are u outward and q across, 90°
 counterclockwise from u; u is measured from the saddle along its unstable direction, or from the chord of the orbit, normal
@@ -22,8 +23,8 @@ from engine.integrator.jit.decorator import kernel, subroutine
 ORIGIN_X, ORIGIN_Y, OUTWARD_X, OUTWARD_Y, BEARING_X, BEARING_Y, REACH, SHAPE = range(8)
 MIDDLE, HALF_WIDTH, SLOPE_LOW, SLOPE_HIGH, COEFFICIENTS = range(8, 13)
 
-# Values of the column SHAPE, in this order: orbits cannot return from shapes below LINE, and shapes from DISC on are circles.
-CLOSED, CURVE, LINE, DISC, CIRCLE = range(5)
+# Values of the column SHAPE, in this order: hidden returns are searched from LINE on, and shapes from DISC on are circles.
+CLOSED, CURVE, LINE, DISC, CIRCLE, ARC = range(6)
 
 # Degree of the polynomial f, a sum of Chebyshev polynomials.
 CURVE_DEGREE = 40
@@ -35,7 +36,7 @@ GATE_COLUMN, REACH_COLUMN, AXES_COLUMN, MIDDLE_COLUMN = 0, 1, 2, 6
 
 @subroutine
 def is_circle(curve):
-    """Return whether an exit is a circle: the edge of a disc or the escape circle."""
+    """Return whether an exit is a circle, or an arc of one: the edge of a disc or the escape circle."""
     return curve[SHAPE] >= DISC
 
 
@@ -49,6 +50,20 @@ def is_open_channel(curve):
 def ends_inside(curve):
     """Return whether orbits end on the inner side of an exit, as at a disc."""
     return curve[SHAPE] == DISC
+
+
+@subroutine
+def reached_exit(x, y, number, curves):
+    """Return the number of the exit that an orbit reaches at a point: for an arc, the arc of the circle around the point."""
+    if curves[number - 1, SHAPE] != ARC:
+        return number
+    radius = np.sqrt(x * x + y * y)
+    nearest, largest = number, -np.inf
+    for k in range(curves.shape[0]):
+        excess = (x * curves[k, BEARING_X] + y * curves[k, BEARING_Y]) / radius - curves[k, REACH]
+        if curves[k, SHAPE] == ARC and excess > largest:
+            nearest, largest = k + 1, excess
+    return nearest
 
 
 @subroutine
@@ -143,8 +158,11 @@ def _interpolate_exit(nodes, rows, sigma, shape, exit_curve, gate):
 def exit_point(exit_curve, s):
     """Return x and y of the point of an exit at s, from −1 to 1; on a circle, this range is a full turn."""
     if is_circle(exit_curve):
-        x = exit_curve[ORIGIN_X] + exit_curve[HALF_WIDTH] * np.cos(np.pi * s)
-        y = exit_curve[ORIGIN_Y] + exit_curve[HALF_WIDTH] * np.sin(np.pi * s)
+        angle = np.pi * s
+        if exit_curve[SHAPE] == ARC:
+            angle = np.arctan2(exit_curve[BEARING_Y], exit_curve[BEARING_X]) + np.arccos(exit_curve[REACH]) * s
+        x = exit_curve[ORIGIN_X] + exit_curve[HALF_WIDTH] * np.cos(angle)
+        y = exit_curve[ORIGIN_Y] + exit_curve[HALF_WIDTH] * np.sin(angle)
     else:
         u = exit_height(s, exit_curve)
         q = exit_curve[MIDDLE] + exit_curve[HALF_WIDTH] * s

@@ -25,6 +25,7 @@ from engine.integrator.kernels.exit_geometry import (
     is_circle,
     is_open_channel,
     position_across,
+    reached_exit,
 )
 
 # All lengths and energies are in units of the well.
@@ -220,7 +221,7 @@ def _find_circle(x, y, curves):
     number = 0
     for k in range(curves.shape[0]):
         if is_circle(curves[k]) and exit_distance(x, y, curves[k]) > 0.0 and (number == 0 or ends_inside(curves[k])):
-            number = k + 1
+            number = reached_exit(x, y, k + 1, curves)
     return number
 
 

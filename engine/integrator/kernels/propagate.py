@@ -26,7 +26,7 @@ from engine.integrator.kernels.events import (
     series_slope,
     series_value,
 )
-from engine.integrator.kernels.exit_geometry import CLOSED, SHAPE
+from engine.integrator.kernels.exit_geometry import CLOSED, SHAPE, reached_exit
 from engine.integrator.source.recurrence import LANES, REMAINDER_ROW, ROWS, SIZE_ROW, TIME_ROW
 from engine.integrator.source.series import ORDER
 from engine.integrator.source.step_flags import GATE, HIDDEN, NEAR, OVERSHOOT
@@ -310,5 +310,6 @@ def _locate_events(jets, coefficients, buffer, n, horizon, exits, orbits):
         orbits.state[orbit, 2] = series_slope(x_jet, i, tau)
         orbits.state[orbit, 3] = series_slope(y_jet, i, tau)
         orbits.remainder[orbit] = 0.0
+        channel = reached_exit(orbits.state[orbit, 0], orbits.state[orbit, 1], channel, curves)
         # Only rounding errors can carry an orbit at rest on the saddle of a closed channel over this saddle.
         orbits.fate[orbit] = BOUNDED if curves[channel - 1, SHAPE] == CLOSED else channel

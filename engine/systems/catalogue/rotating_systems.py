@@ -90,5 +90,15 @@ ROTATING_ENTRIES = (
         ("k", ROTATION),
         EnergyRange(-1.5, 1.0, (), 0.02),
     ),
+    CatalogueEntry(
+        "Four hills",
+        "Four hills",
+        "x² y² exp(−x² − y²); escape 6 exits 4",
+        "Chaotic scattering off four hills of height exp(−2) = 0.135, at rest: escape beyond r = 6 near one of four directions.",
+        "S. Bleher, E. Ott & C. Grebogi, Physical Review Letters 63, 919 (1989); this project chose the radius",
+        {ROTATION: 0.0},
+        (ROTATION,),
+        EnergyRange(0.005, 0.2, (), 0.05),
+    ),
 )
 """The entries, in the order of the catalogue."""

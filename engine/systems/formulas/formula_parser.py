@@ -20,6 +20,7 @@ from engine.expressions.nodes import Expression
 from engine.expressions.polynomials import Powers
 from engine.expressions.text import monomial
 from engine.foundations.validation import checked_between, checks_types
+from engine.systems.escape_arcs import end_kinds
 from engine.systems.forms.expression_form import Form, as_form
 from engine.systems.forms.polynomial_form import COEFFICIENT_RANGE, MOST_TERMS
 from engine.systems.formulas.formula_grammar import Parser
@@ -27,7 +28,6 @@ from engine.systems.formulas.formula_tokens import FormulaError, tokenize
 from engine.systems.formulas.formula_values import FormulaValue, constant_of
 from engine.systems.formulas.formula_writer import by_degree, write_form
 from engine.systems.formulas.outcome_clauses import Clauses, Part, split_clauses
-from engine.systems.outcomes import end_kinds
 from engine.systems.potential import Potential
 
 LONGEST_TEXT = 500
@@ -108,7 +108,7 @@ def parse_formula(text: str, name: str | None = None, parameters: Mapping[str, f
     values = _exact_values(_letters_of(clauses), parameters or {})
     form = _make_form(Parser(clauses.formula, values).parse())
     evaluate_number = partial(_evaluate_number, values=values)
-    ends = [clause.evaluate(evaluate_number) for clause in clauses.ends]
+    ends = [end for clause in clauses.ends for end in clause.evaluate(evaluate_number)]
     potential = Potential(name or write_form(form), form, ends=ends, mass=clauses.find_mass(evaluate_number))
     if clauses.well is not None:
         place = tuple(map(evaluate_number, clauses.well))

@@ -13,9 +13,10 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
+from engine.systems.escape_arcs import end_kinds
 from engine.systems.formulas.formula_tokens import FormulaError
 from engine.systems.motion import MASS_RANGE
-from engine.systems.outcomes import End, end_kinds
+from engine.systems.outcomes import End
 
 SEPARATOR = ";"
 """The character between the formula and the clauses."""
@@ -40,12 +41,12 @@ class EndClause(NamedTuple):
     numbers: Mapping[str, Part]
     name: str
 
-    def evaluate(self, value_of: Callable[[Part], float]) -> End:
-        """Return the end; FormulaError for a number that is out of range."""
+    def evaluate(self, value_of: Callable[[Part], float]) -> list[End]:
+        """Return the ends; FormulaError for a number that is out of range."""
         named: dict[str, Any] = {"name": self.name} if self.name else {}
         parameters = named | {key: value_of(part) for key, part in self.numbers.items()}
         try:
-            return self.kind(**parameters)
+            return list(self.kind.make(**parameters))
         except ValueError as error:
             raise FormulaError(self.numbers["radius"].position, str(error)) from None
 
@@ -99,11 +100,10 @@ def split_clauses(text: str) -> Clauses:
             others = "one well (x, y), one masses (m, m), and once exits NAME, NAME"
             raise FormulaError(position, f"{clause.strip()!r} is not understood; allowed are {allowed}, {others}")
         position += len(clause) + 1
-    for kind, count in Counter(end.kind for end in ends).items():
-        if count > kind.most_clauses:
-            raise FormulaError(
-                len(formula), f"the formula has {count} clauses of {kind.word!r}; at most {kind.most_clauses} can be given"
-            )
+    for word, count in Counter(end.kind.word for end in ends).items():
+        most = next(end.kind.most_clauses for end in ends if end.kind.word == word)
+        if count > most:
+            raise FormulaError(len(formula), f"the formula has {count} clauses of {word!r}; at most {most} can be given")
     return Clauses(formula, tuple(ends), pairs.get(_WELL), pairs.get(_MASSES), tuple(exits))
 
 
@@ -112,7 +112,8 @@ def _end_clause(clause: str, position: int) -> EndClause | None:
     for kind in end_kinds():
         if match := kind.match(clause):
             texts = match.groupdict()
-            return EndClause(kind, {key: _part(match, key, position) for key in texts if key != "name"}, texts.get("name", ""))
+            numbers = [key for key, text in texts.items() if key != "name" and text is not None]
+            return EndClause(kind, {key: _part(match, key, position) for key in numbers}, texts.get("name", ""))
     return None
 
 
@@ -125,4 +126,4 @@ def write_clauses(ends: Iterable[End], exits: Sequence[str], mass: float) -> str
     """Return the clauses as text, with all digits of numbers."""
     names = [f"exits {', '.join(exits)}"] if exits else []
     masses = [] if mass == 1.0 else [f"masses ({mass!r}, {mass!r})"]
-    return "".join(f"{SEPARATOR} {clause}" for clause in (*(end.text for end in ends), *names, *masses))
+    return "".join(f"{SEPARATOR} {clause}" for clause in (*(end.text for end in ends), *names, *masses) if clause)

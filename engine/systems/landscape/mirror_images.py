@@ -13,6 +13,9 @@ if TYPE_CHECKING:
 Signs = tuple[float, float]
 """The factors of x and y in a reflection."""
 
+IDENTITY: Signs = (1.0, 1.0)
+"""No reflection."""
+
 MIRROR_X: Signs = (-1.0, 1.0)
 """The reflection x → −x."""
 

@@ -8,23 +8,22 @@ from itertools import groupby
 import numpy as np
 
 from engine.systems.forms.expression_form import Form
-from engine.systems.landscape.mirror_images import Signs, find_images, mirrors_of
+from engine.systems.landscape.mirror_images import IDENTITY, Signs, find_images, mirrors_of
 from engine.systems.outcomes import End
 
 
 def well_mirrors(form: Form, rotation: float, ends: Sequence[End]) -> tuple[Signs, ...]:
     """Return the reflections that map V and the ends onto themselves, in a frame at rest."""
-    circles = {(end.key, end.x, end.y, end.radius) for end in ends}
 
     def maps_ends(signs: Signs) -> bool:
-        return circles == {(key, signs[0] * x, signs[1] * y, radius) for key, x, y, radius in circles}
+        return {end.image(signs) for end in ends} == {end.image(IDENTITY) for end in ends}
 
     return () if rotation else tuple(signs for signs in mirrors_of(form) if maps_ends(signs))
 
 
 def image_fates(saddles: np.ndarray, ends: Sequence[End], signs: Signs) -> np.ndarray:
     """Return the fate onto which a reflection maps each fate, int8, of shape (outcomes + 1,). Entry 0 is 0."""
-    ends_by_kind = [np.array([(end.x, end.y) for end in group]) for _, group in groupby(ends, type)]
+    ends_by_kind = [np.array([end.place for end in group]) for _, group in groupby(ends, type)]
     images = [np.arange(1)]
     for points in (saddles, *ends_by_kind):
         # The fates of a kind follow those of the previous kinds.
