@@ -12,7 +12,7 @@ import numpy as np
 
 from engine.foundations.validation import checked_between
 from engine.foundations.wording import format_number
-from engine.integrator.kernels.exit_geometry import ARC, BEARING_X, BEARING_Y, REACH, SHAPE
+from engine.integrator.kernels.exit_geometry import ARC, BEARING_X, BEARING_Y, COEFFICIENTS, MIDDLE, REACH, SHAPE
 from engine.systems.outcomes import KINDS, End, EscapeCircle, Exit, Outcome
 
 MOST_ARCS = 8
@@ -84,8 +84,12 @@ class EscapeArc(EscapeCircle):
     @property
     def place(self) -> tuple[float, float]:
         """See `End.place`: the middle of the arc."""
-        angle = math.radians(0.5 * sum(self._ends))
-        return self.radius * math.cos(angle), self.radius * math.sin(angle)
+        return self.radius * math.cos(self._middle), self.radius * math.sin(self._middle)
+
+    @property
+    def _middle(self) -> float:
+        """The direction of the middle of the arc in radians."""
+        return math.radians(0.5 * sum(self._ends))
 
     @property
     def _ends(self) -> tuple[float, float]:
@@ -101,9 +105,9 @@ class EscapeArc(EscapeCircle):
     @property
     def row(self) -> np.ndarray:
         """See `End.row`."""
-        row = super().row
-        x, y = self.place
-        row[[SHAPE, BEARING_X, BEARING_Y, REACH]] = ARC, x / self.radius, y / self.radius, math.cos(math.pi / self.exits)
+        row, half = super().row, math.pi / self.exits
+        row[[SHAPE, MIDDLE, COEFFICIENTS]] = ARC, self._middle, half
+        row[[BEARING_X, BEARING_Y, REACH]] = math.cos(self._middle), math.sin(self._middle), math.cos(half)
         return row
 
     def contains(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:

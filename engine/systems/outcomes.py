@@ -17,7 +17,16 @@ import numpy as np
 
 from engine.foundations.validation import check_type, checked_between, checked_number, replace_unchecked
 from engine.foundations.wording import format_number
-from engine.integrator.kernels.exit_geometry import CIRCLE, CURVE_COLUMNS, DISC, HALF_WIDTH, ORIGIN_X, ORIGIN_Y, SHAPE
+from engine.integrator.kernels.exit_geometry import (
+    CIRCLE,
+    COEFFICIENTS,
+    CURVE_COLUMNS,
+    DISC,
+    HALF_WIDTH,
+    ORIGIN_X,
+    ORIGIN_Y,
+    SHAPE,
+)
 
 SMALLEST_RADIUS = 1e-6
 """Smallest radius of a centre or of escape, dimensionless. In a smaller disc, steps near a singularity would not change t."""
@@ -150,7 +159,7 @@ class End(Kind):
         """The circle as a row of the table of exits in `engine.integrator.kernels.exit_geometry`."""
         row = np.zeros(CURVE_COLUMNS)
         shape = DISC if self.side < 0 else CIRCLE
-        row[[ORIGIN_X, ORIGIN_Y, HALF_WIDTH, SHAPE]] = self.x, self.y, self.radius, shape
+        row[[ORIGIN_X, ORIGIN_Y, HALF_WIDTH, SHAPE, COEFFICIENTS]] = self.x, self.y, self.radius, shape, np.pi
         return row
 
     def scaled(self, factor: float) -> Self:

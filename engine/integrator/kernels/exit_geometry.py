@@ -2,8 +2,9 @@
 
 An exit is a place where orbits end: a curve or line across a channel, the edge of a disc around a body, or the escape circle. It
 is a row of numbers, which has an origin and a half width for all shapes. The origin of a disc is its centre, and the half width
-of a disc or of the escape circle is the radius. The escape circle can be divided into arcs, each an exit: its BEARING is the
-direction of its middle, and its REACH is the cosine of half its angle.
+of a disc or of the escape circle is the radius; MIDDLE is 0, and the first coefficient is π. The escape circle can be divided
+into arcs, each an exit: MIDDLE is the angle of its middle and the first coefficient half its angle, in radians, BEARING is the
+direction of its middle, and REACH is the cosine of half its angle.
 
 In a well that does not rotate, an exit is the path of a Lyapunov orbit. The coordinates are u outward and q across, 90°
 counterclockwise from u; u is measured from the saddle along its unstable direction, or from the chord of the orbit, normal
@@ -156,11 +157,9 @@ def _interpolate_exit(nodes, rows, sigma, shape, exit_curve, gate):
 
 @subroutine
 def exit_point(exit_curve, s):
-    """Return x and y of the point of an exit at s, from −1 to 1; on a circle, this range is a full turn."""
+    """Return x and y of the point of an exit at s, from −1 to 1; on a circle, this range is a full turn or the arc."""
     if is_circle(exit_curve):
-        angle = np.pi * s
-        if exit_curve[SHAPE] == ARC:
-            angle = np.arctan2(exit_curve[BEARING_Y], exit_curve[BEARING_X]) + np.arccos(exit_curve[REACH]) * s
+        angle = exit_curve[MIDDLE] + exit_curve[COEFFICIENTS] * s
         x = exit_curve[ORIGIN_X] + exit_curve[HALF_WIDTH] * np.cos(angle)
         y = exit_curve[ORIGIN_Y] + exit_curve[HALF_WIDTH] * np.sin(angle)
     else:
