@@ -76,6 +76,7 @@ EXAMPLES = {
     "exits in a rotating frame, backward in time": Example(CASES["I"].in_rotating_frame(0.2), 0.15, 0.8, is_backward=True),
     # Most orbits are still inside.
     "well, backward in time": Example(ROTATING_WELL, 0.25, 1.2, is_backward=True, horizon=2.0),
+    "arcs of an escape circle": Example(POTENTIALS["Four hills"], 0.05, 4.0),
     "two bodies, backward in time": Example(COPENHAGEN, -1.3, 3.0, is_backward=True),
 }
 # Systems whose kernels only these tests need.
