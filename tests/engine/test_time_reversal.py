@@ -22,6 +22,7 @@ ENERGIES = {
     "Barred galaxy": -3200.0,
     "Logarithmic bar": -0.485,
     "Two Yukawa centres": -0.4,
+    "Four hills": 0.05,
 }
 # Systems whose kernels take long to compile.
 MARKS = {
@@ -31,6 +32,8 @@ MARKS = {
 }
 DURATION, STARTS = 10.0, 200
 REFLECTED, TURNED = np.array([1.0, -1.0, -1.0, 1.0]), -np.ones(4)
+# Images of the fates under a reflection in the x axis, where they change.
+REFLECTED_FATES = {"Four hills": np.array([0, 1, 4, 3, 2])}
 # Images of the fates 1, 2, 3 under a rotation by π.
 TURNED_FATES = np.array([0, 2, 1, 3])
 
@@ -48,7 +51,8 @@ def test_orbits_backward_are_reflected_orbits_forward(name: str) -> None:
     backward = classify_orbits(potential.reversed_in_time, energy, starts * [1.0, 1.0, -1.0, -1.0], t_max)
     forward = classify_orbits(potential, energy, starts * REFLECTED, t_max)
     assert np.count_nonzero(forward.fate) > 0
-    np.testing.assert_array_equal(backward.fate, forward.fate)
+    images = REFLECTED_FATES.get(name, np.arange(len(potential.outcomes) + 1))
+    np.testing.assert_array_equal(backward.fate, images[forward.fate])
     np.testing.assert_allclose(backward.escape_time, forward.escape_time, rtol=1e-6, atol=1e-12)
 
 
