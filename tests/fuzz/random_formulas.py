@@ -100,7 +100,17 @@ def _with_bodies(choice: random.Random) -> Link:
     terms = "".join(f"−{_number(choice)}/√((x−({x}))²+(y−({y}))²)" for x, y in places[:4])
     radii = (choice.choice(["0.001", "0.1", "1e-300", "−1", "2"]) for _ in places)
     bodies = "".join(f"; centre B{n} ({x}, {y}) {radius}" for n, ((x, y), radius) in enumerate(zip(places, radii, strict=True)))
-    escape = choice.choice(["", "; escape 10", "; escape 1e9", "; escape 0"])
+    escape = choice.choice(
+        [
+            "",
+            "; escape 10",
+            "; escape 1e9",
+            "; escape 0",
+            "; escape 10 exits 4",
+            "; escape 9 exits 2.5",
+            "; escape 9 exits 3 from 1e9",
+        ]
+    )
     return {"V": f"{terms}{bodies}{escape}"[:LONGEST_TEXT], "rotation": choice.choice(["0", "1", "0.3", "1e9", "-2"])}
 
 
