@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import asyncio
+import socket
 from asyncio import Future
+from contextlib import suppress
 from typing import Any
 
 from tornado.concurrent import chain_future
-from tornado.iostream import IOStream
+from tornado.iostream import IOStream, UnsatisfiableReadError
+
+_HEADERS_TOO_LARGE = b"HTTP/1.1 431 Request Header Fields Too Large\r\nConnection: close\r\nContent-Length: 0\r\n\r\n"
+# Number of reads that empty the connection after this answer.
+_MOST_READS = 16
 
 
 class BatchedStream(IOStream):
@@ -42,10 +48,24 @@ class BatchedStream(IOStream):
         self._results.append(result)
         return result
 
-    def close(self, *args: Any, **kwargs: Any) -> None:
-        """Send what is written, and close the connection; see `IOStream.close`."""
+    def close(self, exc_info: Any = False) -> None:
+        """Send what is written, and close the connection; see `IOStream.close`.
+
+        Tornado closes a connection without an answer if its headers are too long. They are answered here, because a proxy would
+        take the end of the connection for a failure of the server.
+        """
+        if isinstance(exc_info, UnsatisfiableReadError):
+            self._refuse_headers()
         self._end_batch()
-        super().close(*args, **kwargs)
+        super().close(exc_info)
+
+    def _refuse_headers(self) -> None:
+        with suppress(OSError):
+            self.socket.send(_HEADERS_TOO_LARGE)
+            self.socket.shutdown(socket.SHUT_WR)
+            # If data were left unread, the system would discard the answer.
+            for _ in range(_MOST_READS):
+                self.socket.recv(self.read_chunk_size)
 
     def _end_batch(self) -> None:
         """Send the data that were written after the first data of the iteration."""

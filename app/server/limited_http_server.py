@@ -27,8 +27,9 @@ LIMITS: Mapping[str, int] = {
     "body_timeout": 10,
     # The page uploads nothing.
     "max_body_size": 64 * 1024,
-    # The request of a WebSocket contains cookies, the link, and a token that can be longer than the link.
-    "max_header_size": 4 * LONGEST_LINK,
+    # The request of a WebSocket contains cookies, the link, and a token that can be longer than the link. `deploy/nginx.conf`
+    # passes headers of up to 65 kB.
+    "max_header_size": 10 * LONGEST_LINK,
 }
 """Options of the HTTP server, in seconds and bytes."""
 

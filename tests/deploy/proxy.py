@@ -109,8 +109,8 @@ def _configured(proxy: Proxy, folder: Path, backends: tuple[int, int]) -> str:
         "/etc/ssl/explorer/fullchain.pem": str(folder / "certificate.pem"),
         "/etc/ssl/explorer/privkey.pem": str(folder / "key.pem"),
         "/etc/nginx/explorer.htpasswd": str(folder / "passwords"),
-        "server 127.0.0.1:5006;": f"server 127.0.0.1:{backends[0]};",
-        "server 127.0.0.1:5007;": f"server 127.0.0.1:{backends[1]};",
+        "server 127.0.0.1:5006 ": f"server 127.0.0.1:{backends[0]} ",
+        "server 127.0.0.1:5007 ": f"server 127.0.0.1:{backends[1]} ",
     }
     for old, new in replacements.items():
         assert old in text, f"deploy/nginx.conf has no {old!r} any more"
