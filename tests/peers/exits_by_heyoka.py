@@ -5,6 +5,7 @@ All numbers are in the units of the potential. The lines are those of `find_lyap
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -14,6 +15,7 @@ import numpy as np
 
 from engine import Potential, classify_orbits, find_lyapunov_orbits
 from engine.integrator.kernels import exit_geometry as geometry
+from engine.systems.escape_arcs import EscapeArc
 from tests.peers.taylor_heyoka import START_TIME, coordinates, equations
 
 TOLERANCES = (1e-18, 1e-16)
@@ -32,11 +34,10 @@ class Ends(NamedTuple):
 
 @dataclass(frozen=True)
 class Exit:
-    """An exit: a function of heyoka's x and y that rises through 0 where orbits leave, and a test whether points count."""
+    """A function of heyoka's x and y that rises through 0 where orbits leave, and the fate at a point, 0 if it does not count."""
 
-    fate: int
     height: Any
-    counts: Callable[[float, float], bool]
+    fate_at: Callable[[float, float], int]
 
 
 def exits_of(potential: Potential, energy: float) -> list[Exit]:
@@ -45,11 +46,20 @@ def exits_of(potential: Potential, energy: float) -> list[Exit]:
     for fate, centre in enumerate(potential.centres, potential.channels + 1):
         # The division by the radius gives the functions of all exits the same scale.
         height = 1.0 - ((x - centre.x) ** 2.0 + (y - centre.y) ** 2.0) * (1.0 / centre.radius**2)
-        exits.append(Exit(fate, height, lambda _x, _y: True))
+        exits.append(Exit(height, lambda _x, _y, fate=fate: fate))
     if potential.escape_radius is not None:
         height = (x**2.0 + y**2.0) * (1.0 / potential.escape_radius**2) - 1.0
-        exits.append(Exit(len(potential.outcomes), height, lambda _x, _y: True))
+        exits.append(Exit(height, _fate_on_circle(potential)))
     return exits
+
+
+def _fate_on_circle(potential: Potential) -> Callable[[float, float], int]:
+    """Return the fate at a point of the escape circle, which may be divided into arcs."""
+    arcs = [end for end in potential.ends if isinstance(end, EscapeArc)]
+    if not arcs:
+        return lambda _x, _y: len(potential.outcomes)
+    first_fate, width = len(potential.outcomes) - len(arcs) + 1, 360.0 / len(arcs)
+    return lambda x, y: first_fate + int((math.degrees(math.atan2(y, x)) - arcs[0].begin) % 360.0 // width)
 
 
 def _line(channel: int, curve: np.ndarray, x: Any, y: Any) -> Exit:
@@ -63,7 +73,11 @@ def _line(channel: int, curve: np.ndarray, x: Any, y: Any) -> Exit:
     constant, linear, square = curve[geometry.COEFFICIENTS : geometry.COEFFICIENTS + 3]
     s = (ox * (y - place[1]) - oy * (x - place[0]) - middle) * (1.0 / curve[geometry.HALF_WIDTH])
     height = ox * (x - place[0]) + oy * (y - place[1]) - (constant - square) - linear * s - 2.0 * square * s * s
-    return Exit(channel, height, lambda x, y: bool(abs(ox * (y - place[1]) - oy * (x - place[0]) - middle) <= reach))
+
+    def fate_at(x: float, y: float) -> int:
+        return channel if abs(ox * (y - place[1]) - oy * (x - place[0]) - middle) <= reach else 0
+
+    return Exit(height, fate_at)
 
 
 class Peer:
@@ -83,10 +97,8 @@ class Peer:
 
     def _left(self, each: Exit) -> Callable[[Any, int], bool]:
         def callback(integrator: Any, _sign: int) -> bool:
-            if not each.counts(*integrator.state[:2]):
-                return True
-            self.fate = each.fate
-            return False
+            self.fate = each.fate_at(*integrator.state[:2])
+            return self.fate == 0
 
         return callback
 
