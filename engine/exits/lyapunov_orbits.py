@@ -130,7 +130,8 @@ def _find_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ..
     """Return the orbits of a potential in units of its well, if orbits cannot leave for infinity without passing them."""
     orbits = _find_all_orbits(potential, energy)
     well = potential.well
-    if well.escape_radius is not None or energy <= min(well.closed_energy, well.escape_energy):
+    # Above the escape energy, the energy up to which the well is closed need not be found.
+    if well.escape_radius is not None or (energy <= well.escape_energy and energy <= well.closed_energy):
         return orbits
     if well.exits_unknown:
         raise OrbitSearchError(f"the exits are not known: {well.exits_unknown}")
@@ -146,10 +147,11 @@ def _find_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ..
 def _is_open(potential: Potential, energy: float) -> bool:
     """Return whether orbits can leave for infinity without passing the exits at an energy.
 
-    A higher energy serves all lower ones. Therefore a few energies are examined first, if the exits are defined there.
+    A higher energy serves all lower ones. Therefore a few energies are examined first, if the exits are defined there. Each
+    potential along a parameter has one energy only.
     """
     height = energy - potential.escape_energy
-    for base in _HEIGHT_BASES if height > 0.0 else ():
+    for base in _HEIGHT_BASES if height > 0.0 and not potential.lineage.family else ():
         higher = max(_LEAST_HEIGHT, base ** math.ceil(math.log(height, base)))
         if higher > height and _exits_close_well(potential, potential.escape_energy + higher):
             return False
