@@ -27,6 +27,10 @@ from engine.systems.potential import Potential
 _FARTHEST_POSITION = 1.25
 # Numbers of positions along an exit, and of directions there, from which orbits leave.
 _POSITIONS, _DIRECTIONS = 24, 12
+
+LEAVING_ORBITS = _POSITIONS * _DIRECTIONS
+"""Number of orbits that leave through an exit in `returning_share`."""
+
 # Difference of s by which the direction of an exit is computed.
 _S_DIFFERENCE = 1e-6
 # Largest mean number of steps of an orbit beyond an exit. Orbits that reach infinity in a finite time take ever smaller steps.
@@ -57,9 +61,10 @@ def _exit_barrier(curve: np.ndarray) -> Barrier:
 
 
 def returning_share(potential: Potential, energy: float, curves: Mapping[int, np.ndarray], channel: int, t_max: float) -> float:
-    """Return the share of the flux through an exit that comes back through any exit within `t_max`, from 288 orbits.
+    """Return the share of the flux through an exit that comes back through any exit within `t_max`.
 
-    By time reversal, an orbit that comes back is an orbit that leaves the outside through an exit with exchanged sides.
+    `LEAVING_ORBITS` orbits are followed. By time reversal, an orbit that comes back is an orbit that leaves the outside through
+    an exit with exchanged sides.
 
     Parameters
     ----------

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from engine.exits.beyond_exits import returning_share
+from engine.exits.beyond_exits import LEAVING_ORBITS, returning_share
 from engine.exits.interior import find_outside_channels
 from engine.exits.lyapunov_orbits import find_lyapunov_orbits, find_orbits_in_well_units
 from engine.foundations.result import Chart, RecordedResult
@@ -42,8 +42,8 @@ class EscapeFlux(RecordedResult):
     flux
         (n,) phase-space volume that leaves through each exit per unit of time, measured by δ(H − h) dx dy dpx dpy.
     returning
-        (n,) share of the flux through each exit that comes back through any exit within the `followed_time`, from 288 orbits for
-        each exit; 0 to 1.
+        (n,) share of the flux through each exit that comes back through any exit within the `followed_time`, from a sample of
+        orbits; 0 to 1.
     area, area_error
         Area of the interior in (x, y), and its estimated error.
     followed_time
@@ -122,7 +122,8 @@ class EscapeFlux(RecordedResult):
             f"{self.mean_passage_time:.4g}, if motion inside is mixed."
         )
         share = f"{100.0 * self.returning_share:.3g} %" if self.returning.any() else "None"
-        return f"{rate} {share} of the flux comes back within t = {self.followed_time:.4g} (288 orbits through each exit)."
+        orbits = f"{LEAVING_ORBITS} orbits through each exit"
+        return f"{rate} {share} of the flux comes back within t = {self.followed_time:.4g} ({orbits})."
 
 
 @checks_types(potential=Potential)
