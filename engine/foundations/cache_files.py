@@ -10,6 +10,7 @@ from __future__ import annotations
 import contextlib
 import functools
 import hashlib
+import itertools
 import logging
 import os
 import stat
@@ -30,7 +31,10 @@ LARGEST_SIZE = 256 * 2**20
 """Largest total size of the files, in bytes; the kernels of one potential take about 0.2 MB."""
 
 MOST_FILES = 4096
-"""Largest number of files; each write lists all files, which takes 0.01 s."""
+"""Largest number of files, to within `WRITES_PER_DELETION` for each process that writes."""
+
+WRITES_PER_DELETION = 64
+"""Number of written files after which a process lists all files and deletes the least recently used ones, in 0.01 to 0.05 s."""
 
 # Suffix of the names of incomplete files.
 _INCOMPLETE_SUFFIX = ".part"
@@ -38,6 +42,9 @@ _INCOMPLETE_SUFFIX = ".part"
 _HASH_BYTES = hashlib.sha256().digest_size
 # User number of the superuser, whose files are trusted.
 _SUPERUSER = 0
+
+# Numbers of the files that this process writes.
+_write_numbers = itertools.count()
 
 log = logging.getLogger(__name__)
 
@@ -102,8 +109,8 @@ def read_or_make(path: Path, kind: str, make: Callable[[], bytes]) -> bytes:
     return content
 
 
-def write_cached(path: Path, payload: bytes, *, largest_size: int = LARGEST_SIZE, most_files: int = MOST_FILES) -> None:
-    """Write a file, and delete the least recently used files beyond the limits; log a warning if writing fails."""
+def write_cached(path: Path, payload: bytes) -> None:
+    """Write a file, and delete the least recently used files from time to time; log a warning if writing fails."""
     folder = path.parent
     try:
         # Only this user can access the folder.
@@ -111,7 +118,8 @@ def write_cached(path: Path, payload: bytes, *, largest_size: int = LARGEST_SIZE
         folder.mkdir(mode=stat.S_IRWXU, exist_ok=True)
         if _is_private_folder(folder):
             _write_atomically(path, hashlib.sha256(payload).digest() + payload)
-            _delete_least_recently_used(folder, largest_size, most_files)
+            if next(_write_numbers) % WRITES_PER_DELETION == 0:
+                delete_least_recently_used(folder)
     except OSError as error:
         _warn_once(f"compiled kernels cannot be stored in {folder} and are compiled at every start: {error.strerror}")
 
@@ -120,6 +128,24 @@ def delete_cached(name: str) -> None:
     """Delete the files whose names start with `name` and a dot."""
     for path in cache_folder().glob(f"{name}.*{SUFFIX}"):
         path.unlink(missing_ok=True)
+
+
+def delete_least_recently_used(folder: Path, *, largest_size: int = LARGEST_SIZE, most_files: int = MOST_FILES) -> None:
+    """Delete the least recently used files, also incomplete files of killed processes, until the limits are met."""
+    files = []
+    with os.scandir(folder) as entries:
+        for entry in entries:
+            # Another process may have deleted the file.
+            with contextlib.suppress(FileNotFoundError):
+                if entry.name.endswith((SUFFIX, _INCOMPLETE_SUFFIX)):
+                    status = entry.stat()
+                    files.append((status.st_atime_ns, status.st_size, entry.path))
+    file_count, total_size = len(files), sum(size for _, size, _ in files)
+    for _, size, path in sorted(files):
+        if file_count <= most_files and total_size <= largest_size:
+            break
+        Path(path).unlink(missing_ok=True)
+        file_count, total_size = file_count - 1, total_size - size
 
 
 def _is_private_folder(folder: Path) -> bool:
@@ -148,24 +174,6 @@ def _mark_used(path: Path) -> None:
     """Set the access time to now, because many file systems do not update it when a file is read."""
     with contextlib.suppress(OSError):
         os.utime(path, ns=(time.time_ns(), path.stat().st_mtime_ns))
-
-
-def _delete_least_recently_used(folder: Path, largest_size: int, most_files: int) -> None:
-    """Delete the least recently used files, also incomplete files of killed processes, until the limits are met."""
-    files = []
-    with os.scandir(folder) as entries:
-        for entry in entries:
-            # Another process may have deleted the file.
-            with contextlib.suppress(FileNotFoundError):
-                if entry.name.endswith((SUFFIX, _INCOMPLETE_SUFFIX)):
-                    status = entry.stat()
-                    files.append((status.st_atime_ns, status.st_size, entry.path))
-    file_count, total_size = len(files), sum(size for _, size, _ in files)
-    for _, size, path in sorted(files):
-        if file_count <= most_files and total_size <= largest_size:
-            break
-        Path(path).unlink(missing_ok=True)
-        file_count, total_size = file_count - 1, total_size - size
 
 
 def _write_atomically(path: Path, content: bytes) -> None:

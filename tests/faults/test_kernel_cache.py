@@ -221,15 +221,26 @@ def test_the_least_recently_used_files_are_deleted(folder: Path) -> None:
     killed = folder / "killed.part"
     killed.write_bytes(bytes(1000))
     os.utime(killed, ns=(0, 0))
-    cache_files.write_cached(new, bytes(1000), largest_size=2500)
+    cache_files.write_cached(new, bytes(1000))
+    cache_files.delete_least_recently_used(folder, largest_size=2500)
     assert {*folder.iterdir()} == {kept, new}
 
 
 def test_the_number_of_files_is_limited(folder: Path) -> None:
     for n, name in enumerate("abc"):
-        cache_files.write_cached(folder / f"{name}{SUFFIX}", b"", most_files=2)
+        cache_files.write_cached(folder / f"{name}{SUFFIX}", b"")
         os.utime(folder / f"{name}{SUFFIX}", ns=(n, n))
+    cache_files.delete_least_recently_used(folder, most_files=2)
     assert {path.stem for path in folder.iterdir()} == {"b", "c"}
+
+
+def test_a_process_that_writes_many_files_meets_the_limit(folder: Path) -> None:
+    cache_files.write_cached(folder / f"first{SUFFIX}", b"")
+    for n in range(cache_files.MOST_FILES):
+        (folder / f"old{n}{SUFFIX}").touch()
+    for n in range(cache_files.WRITES_PER_DELETION):
+        cache_files.write_cached(folder / f"new{n}{SUFFIX}", b"")
+    assert len([*folder.iterdir()]) < cache_files.MOST_FILES + cache_files.WRITES_PER_DELETION
 
 
 def test_a_change_anywhere_in_the_package_gives_another_file(

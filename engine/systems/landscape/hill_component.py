@@ -36,7 +36,9 @@ _MOST_DIVISIONS = 20
 # openings are near it.
 _LAG = 0.7
 # Index shifts of the eight neighbours of a cell.
-_NEIGHBOURS = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if i or j]
+_NEIGHBOURS = np.array([(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if i or j])
+# Steps that put a 0 after each bit of an index below 2^32: shifts, and masks of the bits that remain.
+_BIT_GAPS = [(2**k, (2**64 - 1) // (2**2**k + 1)) for k in (4, 3, 2, 1, 0)]
 # Sample points of a cell, from 0 to 1 along its sides.
 _SAMPLES = np.stack(np.meshgrid(*[np.linspace(0.0, 1.0, 3)] * 2), axis=-1).reshape(-1, 2)
 
@@ -96,7 +98,7 @@ class _Cells:
     barrier
         (n,) the barrier that cuts the cell in two, from 0; −1 for none.
     is_at_end
-        (n,) whether the cell lies on both sides of a barrier that may not cut it in two, such as a cell at its end.
+        (n,) whether the cell lies on both sides of a barrier, but does not count as cut in two, such as a cell at its end.
     sides
         (n, barriers) −1 on the inner side of a barrier, 1 on the outer side, 0 if the cell is on both sides.
     """
@@ -123,11 +125,6 @@ class _Cells:
     @property
     def size(self) -> int:
         return len(self.level)
-
-    @property
-    def are_at_origin(self) -> np.ndarray:
-        half = (_COARSEST // 2) << self.level[:, None]
-        return ((self.index == half) | (self.index == half - 1)).all(axis=1)
 
     @property
     def are_at_edge(self) -> np.ndarray:
@@ -174,7 +171,8 @@ class ComponentSearch:
         cells = self._make_cells(np.zeros(len(whole_plane), int), whole_plane, energy, barriers, bounds)
         examined = len(whole_plane)
         for most_divisions in range(1, _MOST_DIVISIONS + 1):
-            pairs = _connections(cells)
+            neighbours = _neighbours(cells)
+            pairs = _connections(cells, *neighbours)
             is_reached = _spread_from_origin(cells, pairs)
             if not (is_reached & cells.are_at_edge).any():
                 return Extent.BOUNDED
@@ -185,7 +183,8 @@ class ComponentSearch:
             if (_spread_from_origin(cells, pairs[is_free_node[pairs].all(axis=1)]) & is_free & cells.are_at_edge).any():
                 return Extent.UNBOUNDED
             is_due = cells.level + lag * self._log_distance(cells) < most_divisions
-            is_divided = is_reached & (~is_below | cells.is_at_end) & is_due
+            joins_sides = cells.is_at_end | _are_beside_other_barriers(cells, *neighbours)
+            is_divided = is_reached & (~is_below | joins_sides) & is_due
             level, index = cells.quarters(is_divided)
             examined += len(level)
             if examined > most_cells:
@@ -211,8 +210,10 @@ class ComponentSearch:
             sides[:, k] = np.where(is_inner, -1, is_outer)
             is_cut[:, k] = (sides[:, k] == 0) & (np.abs(along) <= 1.0).all(axis=1)
             is_beyond[:, k] = (along > 1.0).all(axis=1) | (along < -1.0).all(axis=1)
-        # A cell that two barriers cut counts as cut by none, so that it connects both sides until it is divided.
-        barrier_of = np.where(is_cut.sum(axis=1) == 1, is_cut.argmax(axis=1) if barriers else 0, -1)
+        # A cell that two barriers cut counts as cut by none, so that it connects both sides until it is divided. The same holds
+        # for cells at the origin, where the component begins.
+        is_in_two_parts = (is_cut.sum(axis=1) == 1) & ~_are_at_origin(level, index)
+        barrier_of = np.where(is_in_two_parts, is_cut.argmax(axis=1) if barriers else 0, -1)
         is_at_end = (barrier_of < 0) & ((sides == 0) & ~is_beyond).any(axis=1)
         return _Cells(level, index, low, high, barrier_of, is_at_end, sides)
 
@@ -249,6 +250,12 @@ def _samples(first: np.ndarray, last: np.ndarray) -> np.ndarray:
     return np.moveaxis(first[:, None] + _SAMPLES * (last - first)[:, None], -1, 0)
 
 
+def _are_at_origin(level: np.ndarray, index: np.ndarray) -> np.ndarray:
+    """Return which cells (n,) touch the origin."""
+    half = (_COARSEST // 2) << level[:, None]
+    return ((index == half) | (index == half - 1)).all(axis=1)
+
+
 def _spread_from_origin(cells: _Cells, pairs: np.ndarray) -> np.ndarray:
     """Return which cells (n,) hang together with those at the origin by pairs of connected nodes, see `_connections`."""
     from scipy.sparse import coo_array
@@ -257,19 +264,18 @@ def _spread_from_origin(cells: _Cells, pairs: np.ndarray) -> np.ndarray:
     nodes = cells.size + 2 * cells.sides.shape[1]
     count, labels = connected_components(coo_array((np.ones(len(pairs), bool), pairs.T), shape=(nodes, nodes)), directed=False)
     is_reached_label = np.zeros(count, bool)
-    is_reached_label[labels[: cells.size][cells.are_at_origin]] = True
+    is_reached_label[labels[: cells.size][_are_at_origin(cells.level, cells.index)]] = True
     is_reached = is_reached_label[labels]
     # A cut cell counts as reached if one of its parts is.
     part = cells.size + 2 * cells.barrier
     return np.where(cells.barrier >= 0, is_reached[part] | is_reached[np.minimum(part + 1, nodes - 1)], is_reached[: cells.size])
 
 
-def _connections(cells: _Cells) -> np.ndarray:
-    """Return pairs (m, 2) of connected nodes: cells, or parts of cells that a barrier cuts in two.
+def _connections(cells: _Cells, first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """Return pairs (m, 2) of connected nodes: cells, or parts of cells that a barrier cuts in two, given the cells that touch.
 
     Behind the cells, each barrier has two nodes: the parts of its cells on its inner side, and those on its outer side.
     """
-    first, second = _neighbours(cells)
     is_cut_first, is_cut_second = cells.barrier[first] >= 0, cells.barrier[second] >= 0
     pairs = [np.column_stack([first, second])[~is_cut_first & ~is_cut_second]]
     for cut, other in ((first[is_cut_first], second[is_cut_first]), (second[is_cut_second], first[is_cut_second])):
@@ -286,26 +292,37 @@ def _connections(cells: _Cells) -> np.ndarray:
     return np.concatenate(pairs)
 
 
+def _are_beside_other_barriers(cells: _Cells, first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """Return which cells (n,) are cut by a barrier and touch a cell that another barrier cuts.
+
+    Such cells connect both sides of both barriers until they are divided.
+    """
+    barriers = cells.barrier[first], cells.barrier[second]
+    is_pair = (barriers[0] >= 0) & (barriers[1] >= 0) & (barriers[0] != barriers[1])
+    are_beside = np.zeros(cells.size, bool)
+    are_beside[first[is_pair]] = are_beside[second[is_pair]] = True
+    return are_beside
+
+
 def _neighbours(cells: _Cells) -> tuple[np.ndarray, np.ndarray]:
     """Return the indices of cells that touch, at an edge or a corner, each pair with the smaller cell first."""
-    numbers = np.arange(cells.size)
-    keys = cells.index[:, 0] * (_COARSEST << cells.level) + cells.index[:, 1]
-    of_level = {}
-    for level in np.unique(cells.level).tolist():
-        members = numbers[cells.level == level]
-        of_level[level] = members[np.argsort(keys[members])]
-    pairs = [np.empty((0, 2), int)]
-    for shift in _NEIGHBOURS:
-        for level, members in of_level.items():
-            searched, index = members, cells.index[members] + shift
-            for coarser in sorted((each for each in of_level if each <= level), reverse=True):
-                candidates = of_level[coarser]
-                parent = index >> (level - coarser)
-                wanted = parent[:, 0] * (_COARSEST << coarser) + parent[:, 1]
-                place = np.minimum(np.searchsorted(keys[candidates], wanted), len(candidates) - 1)
-                is_inside = ((parent >= 0) & (parent < _COARSEST << coarser)).all(axis=1)
-                is_found = is_inside & (keys[candidates[place]] == wanted)
-                pairs.append(np.column_stack([searched[is_found], candidates[place[is_found]]]))
-                searched, index = searched[~is_found], index[~is_found]
-    first, second = np.concatenate(pairs).T
-    return first, second
+    places = _places(cells.level, cells.index)
+    order = np.argsort(places)
+    beside = cells.index[:, None] + _NEIGHBOURS
+    is_inside = ((beside >= 0) & (beside < _COARSEST << cells.level[:, None, None])).all(axis=2)
+    first = np.nonzero(is_inside)[0]
+    wanted = _places(cells.level[first], beside[is_inside])
+    # The only cell that can contain the place beside the first cell.
+    second = order[np.maximum(np.searchsorted(places[order], wanted, side="right") - 1, 0)]
+    divisions = 2 * (_MOST_DIVISIONS - cells.level[second])
+    is_found = (cells.level[second] <= cells.level[first]) & (wanted >> divisions == places[second] >> divisions)
+    return first[is_found], second[is_found]
+
+
+def _places(level: np.ndarray, index: np.ndarray) -> np.ndarray:
+    """Return the places (n,) of cells in the Z-order, in which all parts of a cell follow each other."""
+    places = index << (_MOST_DIVISIONS - level)[:, None]
+    # The bits of both indices alternate.
+    for shift, mask in _BIT_GAPS:
+        places = (places | places << shift) & mask
+    return places[:, 0] | places[:, 1] << 1

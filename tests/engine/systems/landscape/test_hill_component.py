@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+
 import numpy as np
 import pytest
 
@@ -59,15 +62,35 @@ def test_the_answer_does_not_depend_on_the_spelling() -> None:
             assert search_for(one).is_open(energy) == search_for(other).is_open(energy)
 
 
-def test_a_barrier_across_an_opening_bounds_the_region() -> None:
-    # Above 1/8, the region of case I leads to infinity through two gaps, at y = ±√½.
-    search = search_for("½(x² + y²) − xy²")
+@pytest.fixture
+def gaps() -> list[Callable[[float], Barrier]]:
+    """Return barriers of any half length across the gaps of case I at y = ±√½, through which it leads to infinity above 1/8."""
     saddles = np.array([[0.5, np.sqrt(0.5)], [0.5, -np.sqrt(0.5)]])
     outward = np.array([[np.sqrt(1 / 3), np.sqrt(2 / 3)], [np.sqrt(1 / 3), -np.sqrt(2 / 3)]])
-    barriers = [Barrier.parabola(saddle, direction, 0.0, 0.5) for saddle, direction in zip(saddles, outward, strict=True)]
-    assert search.examine(0.14, barriers) is Extent.BOUNDED
-    assert search.examine(0.14, barriers[:1]) is Extent.UNBOUNDED
-    assert search.examine(0.14, [Barrier.parabola(saddles[0], outward[0], 0.0, 0.02), barriers[1]]) is Extent.UNBOUNDED
+    return [partial(Barrier.parabola, saddle, direction, 0.0) for saddle, direction in zip(saddles, outward, strict=True)]
+
+
+def test_a_barrier_across_an_opening_bounds_the_region(gaps: list[Callable[[float], Barrier]]) -> None:
+    search = search_for("½(x² + y²) − xy²")
+    upper, lower = gaps
+    assert search.examine(0.14, [upper(0.5), lower(0.5)]) is Extent.BOUNDED
+    assert search.examine(0.14, [upper(0.5)]) is Extent.UNBOUNDED
+    assert search.examine(0.14, [upper(0.02), lower(0.5)]) is Extent.UNBOUNDED
+
+
+def test_barriers_that_pass_the_same_cells_bound_the_region(gaps: list[Callable[[float], Barrier]]) -> None:
+    # At high energies, both barriers pass large cells near the origin, on which V never exceeds h. V is 0.85 at one end of a
+    # barrier of half length 1, and 0.97 at the end of one of half length 1.1.
+    search = search_for("½(x² + y²) − xy²")
+    assert search.examine(0.9, [gap(1.1) for gap in gaps]) is Extent.BOUNDED
+    assert search.examine(0.9, [gap(1.0) for gap in gaps]) is Extent.UNBOUNDED
+
+
+def test_barriers_on_both_sides_of_the_origin_do_not_hide_an_opening() -> None:
+    # The region leads to infinity along y, between the barriers x = ±0.3.
+    search = ComponentSearch(from_terms({(2, 0): 0.5}), 1.0)
+    barriers = [Barrier.parabola(np.array([0.3 * k, 0.0]), np.array([k, 0.0]), 0.0, 3.0) for k in (1.0, -1.0)]
+    assert search.examine(2.0, barriers) is Extent.UNBOUNDED
 
 
 def test_a_region_without_points_is_bounded() -> None:
