@@ -20,7 +20,7 @@ from engine.integrator.kernels.events import NOT_COMPUTED
 from engine.integrator.kernels.propagate import NO_TRACE, Exits, Orbits
 from engine.integrator.source.recurrence import LANES, TOLERANCE
 from engine.systems.forms.stored_points import stored_points
-from engine.systems.landscape.hill_component import Barrier
+from engine.systems.landscape.hill_component import Barrier, Extent
 from engine.systems.potential import Potential
 
 # Largest |s| of a barrier. The straight lines beyond the ends of an exit continue it through the forbidden region.
@@ -37,14 +37,19 @@ _S_DIFFERENCE = 1e-6
 _MOST_STEPS = 300
 
 
-def leads_to_infinity(potential: Potential, energy: float, orbits: Sequence[LyapunovOrbit]) -> bool:
-    """Return whether the region of motion is unbounded inside the exits over these orbits, in units of the well."""
+def find_extent(potential: Potential, energy: float, orbits: Sequence[LyapunovOrbit]) -> Extent:
+    """Return the extent of the region of motion inside the exits over these orbits, in units of the well.
+
+    Where the proof is undecided, samples of V decide.
+    """
     curves = [orbit.curve for orbit in orbits]
 
     def find() -> np.ndarray:
-        return np.array(potential.well.component_search.is_open(energy, [_exit_barrier(curve) for curve in curves]))
+        search, barriers = potential.well.component_search, [_exit_barrier(curve) for curve in curves]
+        extent = search.examine(energy, barriers)
+        return np.array((search.sample(energy, barriers) if extent is Extent.UNDECIDED else extent).value)
 
-    return bool(stored_points("open_well", (potential.form, energy, [curve.tolist() for curve in curves]), find))
+    return Extent(str(stored_points("extent", (potential.form, energy, [curve.tolist() for curve in curves]), find)))
 
 
 def _exit_barrier(curve: np.ndarray) -> Barrier:

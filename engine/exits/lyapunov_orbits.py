@@ -14,7 +14,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from engine.exits.beyond_exits import leads_to_infinity, returning_share
+from engine.exits.beyond_exits import find_extent, returning_share
 from engine.exits.brake_orbits import (
     BrakeOrbit,
     chord_axes,
@@ -31,6 +31,7 @@ from engine.exits.necks import closes_channel
 from engine.exits.periodic_orbits import find_orbit_in_rotating_frame
 from engine.foundations.validation import checked_number, checks_types
 from engine.integrator.kernels import exit_geometry as geometry
+from engine.systems.landscape.hill_component import Extent
 from engine.systems.merged_channels import MergedExit
 from engine.systems.potential import Potential
 
@@ -139,13 +140,12 @@ def _find_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ..
         limit = well.closed_energy * well.stated_units.energy
         shown = f"only up to h = {limit:.6g}; choose a lower energy" if math.isfinite(limit) else "at no energy"
         raise OrbitSearchError(f"there is no exit, and the well is shown to be closed {shown}")
-    if _is_open(potential, energy):
-        raise OrbitSearchError("the region of motion leads to infinity beside the exits; choose a lower energy")
+    _check_closed(potential, energy)
     return orbits
 
 
-def _is_open(potential: Potential, energy: float) -> bool:
-    """Return whether orbits can leave for infinity without passing the exits at an energy.
+def _check_closed(potential: Potential, energy: float) -> None:
+    """Raise OrbitSearchError unless it is shown that orbits cannot leave for infinity without passing the exits at an energy.
 
     A higher energy serves all lower ones. Therefore a few energies are examined first, if the exits are defined there. Each
     potential along a parameter has one energy only.
@@ -153,19 +153,25 @@ def _is_open(potential: Potential, energy: float) -> bool:
     height = energy - potential.escape_energy
     for base in _HEIGHT_BASES if height > 0.0 and not potential.lineage.family else ():
         higher = max(_LEAST_HEIGHT, base ** math.ceil(math.log(height, base)))
-        if higher > height and _exits_close_well(potential, potential.escape_energy + higher):
-            return False
-    return not _exits_close_well(potential, energy)
+        if higher > height and _find_extent(potential, potential.escape_energy + higher) is Extent.BOUNDED:
+            return
+    extent = _find_extent(potential, energy)
+    if extent is Extent.UNBOUNDED:
+        raise OrbitSearchError("the region of motion leads to infinity beside the exits; choose a lower energy")
+    if extent is Extent.UNDECIDED:
+        raise OrbitSearchError(
+            "it is not decided whether the region of motion leads to infinity beside the exits; choose another energy"
+        )
 
 
 @functools.lru_cache(maxsize=1024)
-def _exits_close_well(potential: Potential, energy: float) -> bool:
-    """Return whether the exits are defined at an energy, and the region of motion is bounded inside them."""
+def _find_extent(potential: Potential, energy: float) -> Extent:
+    """Return the extent of the region of motion inside the exits at an energy; undecided if the exits are not defined."""
     try:
         orbits = _find_all_orbits(potential, energy)
     except OrbitSearchError:
-        return False
-    return not leads_to_infinity(potential, energy, orbits)
+        return Extent.UNDECIDED
+    return find_extent(potential, energy, orbits)
 
 
 @functools.lru_cache(maxsize=1024)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import heyoka as hy
 import numpy as np
@@ -30,15 +31,29 @@ class Exits:
         crossings = [(int(np.argmax(hits)), channel) for channel, hits in self._hits(path) if hits.any()]
         return min(crossings, default=(0, 0))
 
+    @cached_property
+    def _boxes(self) -> tuple[np.ndarray, np.ndarray]:
+        """The lower and the upper corners (exits, 2) of boxes around the paths."""
+        return np.array([line.min(axis=0) for line in self.paths]), np.array([line.max(axis=0) for line in self.paths])
+
     def _hits(self, path: np.ndarray):
-        for channel, line in zip(self.channels, self.paths, strict=True):
-            if np.any(line.max(axis=0) < path.min(axis=0)) or np.any(path.max(axis=0) < line.min(axis=0)):
-                continue
-            along, apart = np.diff(line, axis=0)[:, None], path - line[:-1, None]
-            left = along[..., 0] * apart[..., 1] > along[..., 1] * apart[..., 0]
-            along, apart = np.diff(path, axis=0)[:, None], line - path[:-1, None]
-            below = along[..., 0] * apart[..., 1] > along[..., 1] * apart[..., 0]
-            yield channel, ((left[:, 1:] != left[:, :-1]) & (below[:, 1:] != below[:, :-1]).T).any(axis=0)
+        if not self.paths:
+            return
+        low, high = path.min(axis=0), path.max(axis=0)
+        for k in np.flatnonzero(((self._boxes[0] <= high) & (self._boxes[1] >= low)).all(axis=1)):
+            line = self.paths[k]
+            near = ((np.minimum(line[:-1], line[1:]) <= high) & (np.maximum(line[:-1], line[1:]) >= low)).all(axis=1)
+            starts, ends = line[:-1][near], line[1:][near]
+            passes_line = np.diff(_are_left(path[None], starts[:, None], ends[:, None]), axis=1)
+            first, last = path[:-1], path[1:]
+            passes_path = _are_left(starts[:, None], first, last) != _are_left(ends[:, None], first, last)
+            yield self.channels[k], (passes_line & passes_path).any(axis=0)
+
+
+def _are_left(points: np.ndarray, starts: np.ndarray, ends: np.ndarray) -> np.ndarray:
+    """Return whether points lie on the left of segments; the last axis has the coordinates."""
+    along, apart = ends - starts, points - starts
+    return along[..., 0] * apart[..., 1] > along[..., 1] * apart[..., 0]
 
 
 @dataclass(frozen=True)

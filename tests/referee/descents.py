@@ -62,9 +62,15 @@ def descend(system: OwnSystem, begin: np.ndarray, near: float, far: float) -> De
         # V is not finite at a point that was tried.
         return Way.UNDECIDED, begin[None]
     ways = [way for way, times in zip((Way.WELL, Way.ELSEWHERE, Way.ELSEWHERE), line.t_events, strict=True) if len(times)]
-    if ways == [Way.ELSEWHERE] and _is_led_by_rounding(system, line.t, line.y, slope):
+    is_flat = len(line.t_events[2]) and not _is_near_critical_point(system, line.y[:, -1], near)
+    if ways == [Way.ELSEWHERE] and (is_flat or _is_led_by_rounding(system, line.t, line.y, slope)):
         return Way.UNDECIDED, line.y.T
     return (ways[0] if ways else Way.UNDECIDED), line.y.T
+
+
+def _is_near_critical_point(system: OwnSystem, place: np.ndarray, near: float) -> bool:
+    """Whether a step of Newton's method from a place is short. In a flat valley, the slope is small and the step is not."""
+    return bool(np.hypot(*np.linalg.lstsq(system.curvature(*place), system.gradient(*place))[0]) < near)
 
 
 def _is_led_by_rounding(system: OwnSystem, s: np.ndarray, places: np.ndarray, slope: float) -> bool:
@@ -95,6 +101,8 @@ def check_exits(potential: Potential, system: OwnSystem, formula: str, report: R
     """Compare the saddles that are exits."""
     points = potential.critical_points[potential.well.critical_indices < 0.0]
     points = points[np.argsort(np.hypot(*points.T))][:_MOST_SADDLES]
+    if not len(points):
+        return
     unit, far = float(np.hypot(*points.T).min()), _FAR * float(np.hypot(*points.T).max())
     for place in points:
         ways = {side: descend_steadily(system, tuple(place.tolist()), side, unit, far)[0] for side in (1.0, -1.0)}

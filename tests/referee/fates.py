@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from engine import Fate, classify_orbits, compute_flux
+from engine import Fate, classify_orbits
 from tests.referee.own_orbits import UndecidedError
 from tests.referee.report import UNDECIDED, Report
 from tests.referee.setting import DURATION, STEADY, Setting
@@ -51,7 +51,7 @@ def _check_orbit(setting: Setting, start: np.ndarray, other: np.ndarray, fate: i
 
 def _check_beyond(setting: Setting, channel: int, state: np.ndarray, known: dict, report: Report) -> None:
     """Compare whether an orbit comes back with the share of the flux through its exit that does."""
-    flux = compute_flux(setting.potential, setting.energy)
+    flux = setting.flux
     share = float(flux.returning[flux.channels == channel][0])
     try:
         later = setting.orbits.end_of(_beyond(setting, state), setting.exits, flux.followed_time)

@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from engine import Potential, classify_orbits, find_lyapunov_orbits
+from engine import Potential, classify_orbits, compute_flux, find_lyapunov_orbits
+from engine.results import EscapeFlux
 from tests.peers.sampled_paths import Exits
 from tests.referee.formulas import Formula
 from tests.referee.own_orbits import OwnOrbits, UndecidedError
@@ -16,6 +17,8 @@ from tests.referee.own_system import OwnSystem
 
 # Shift of a start in units of length, and largest change of the escape time, in units of time, of a robust orbit.
 SHIFT, STEADY = 1e-9, 1e-4
+# Largest kinetic energy of a start, in units of energy. Above, rounding changes the energy of a state.
+_MOST_KINETIC = 1e5
 # Time of integration in units of time.
 DURATION = 60.0
 # Distance of the farthest exit, or units of length without an exit, after which an orbit is far away.
@@ -79,6 +82,11 @@ class Setting:
             paths.append(path[:, :2])
         return Exits(channels, paths)
 
+    @cached_property
+    def flux(self) -> EscapeFlux:
+        """What the engine says of the flux through its exits."""
+        return compute_flux(self.potential, self.energy)
+
     def random_starts(self, count: int, seed: int, *, within: float = np.inf) -> np.ndarray:
         """Return starts of this energy that are seen from the origin, before any wall or exit, of shape (n, 4)."""
         random, exits = np.random.default_rng(seed), self.exits
@@ -92,7 +100,7 @@ class Setting:
             segment, channel = exits.first_crossed(ray[:length])
             place = (part if channel or length < len(ray) else part * self.size / reach) * ray[segment if channel else length - 1]
             kinetic = self.energy - float(self.system.value(*place))
-            if kinetic > 0.0:
+            if 0.0 < kinetic < _MOST_KINETIC * self.potential.units.energy:
                 starts.append([*place, *(np.sqrt(2.0 * kinetic) * np.array([np.cos(turn), np.sin(turn)]))])
         return np.array(starts).reshape(-1, 4)
 

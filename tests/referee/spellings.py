@@ -100,14 +100,26 @@ def _check_reviews(
     report.judge(CHECK, "one spelling is refused", accepted, **known, refusals=refusals)
     if not accepted or review.refusal is not None:
         return False
-    same = review.channels == other.channels
-    report.judge(CHECK, "the number of exits differs", same, **known, channels=[review.channels, other.channels])
+    counts = _common_counts(review, other)
+    same = counts[0] == counts[1]
+    report.judge(CHECK, "the number of exits differs", same, **known, channels=counts)
     if not (review.channels and other.channels):
         return same
     heights = [each.potential.well.depth for each in (review, other)]
     alike = abs(heights[0] - heights[1]) <= 1e-9 * heights[0] + 1e-14 * abs(review.escape_energy)
     report.judge(CHECK, "the escape energy differs", alike, **known, heights=heights)
     return same and alike
+
+
+def _common_counts(review: PotentialReview, other: PotentialReview) -> list[int]:
+    """Return the numbers of exits in the smaller of the regions that were searched, given by their farthest critical points."""
+    distances, reaches = [], []
+    for potential in (review.potential, other.potential):
+        points = np.hypot(*potential.critical_points.T)
+        nearest = points[points > 0.0].min(initial=np.inf)
+        distances.append(np.hypot(*potential.saddles.T) / nearest)
+        reaches.append(points.max() / nearest)
+    return [int(np.count_nonzero(each <= min(reaches) * (1.0 + 1e-9))) for each in distances]
 
 
 def _check_fates(setting: Setting, other: Setting, spelling: Spelling, name: str, seed: int, report: Report) -> None:

@@ -2,8 +2,8 @@
 
 A path leads downhill from the point until V on the straight line to the origin is below the energy. The path ends with this line,
 and the point is inside if the whole path crosses the exits an even number of times. If the path leads to another minimum, or to a
-value of V below the value at the origin, the path ends outside, and the point is inside if the path crosses the exits an odd
-number of times.
+value of V below the values at the origin and on the exits, the path ends outside, and the point is inside if the path crosses the
+exits an odd number of times.
 
 The two kernels evaluate V in different ways. The kernel for polynomials uses the terms, with a proof that V on a line is below a
 level. The kernel for expressions uses a generated function, and replaces V on a line between neighbouring points by the cubic
@@ -22,6 +22,7 @@ from engine.integrator.kernels.exit_geometry import (
     REACH,
     ends_inside,
     exit_distance,
+    exit_point,
     is_circle,
     is_open_channel,
     position_across,
@@ -49,8 +50,11 @@ _ENERGY_MARGIN = 1e-12
 _LEAST_SLOPE = 1e-9
 # Number of parts of a line to the origin.
 _PIECES = 32
-# Number of points on the edge of a body at the origin.
+# Number of points on the edge of a body at the origin, and on each half of an exit.
 _EDGE_POINTS = 64
+_EXIT_POINTS = 8
+# Share of the depth of V below the energy by which V on an exit can be lower than at these points.
+_DEPTH_MARGIN = 0.1
 
 
 @subroutine
@@ -153,26 +157,44 @@ def _crosses_exits(x0, y0, x1, y1, curves):
 
 
 @subroutine
+def _lowest_on_exits(slopes, potential, energy, curves):
+    """Return a value below the lowest V on the open exits, down to which paths inside can lead."""
+    lowest = energy
+    for k in range(curves.shape[0]):
+        if not is_open_channel(curves[k]):
+            continue
+        for i in range(1 - _EXIT_POINTS, _EXIT_POINTS):
+            x, y = exit_point(curves[k], i / _EXIT_POINTS)
+            value, _, _ = slopes(potential, x, y)
+            lowest = min(lowest, value)
+    return lowest - _DEPTH_MARGIN * (energy - lowest)
+
+
+@subroutine
 def _is_outside(slopes, is_below, potential, x, y, energy, curves, bottom):
     """Return whether a point is outside.
 
     slopes, is_below: the two functions above for polynomials or for expressions; potential: their first argument; curves (exits,
-    columns); bottom: the lowest V on a path that ends inside.
+    columns); bottom: the lowest V on a path to the origin.
     """
     level = energy - _ENERGY_MARGIN
     # Whether the path so far crosses the exits an odd number of times.
     is_odd = False
+    # The lowest V inside. Most paths do not lead below `bottom`, so V on the exits is needed for few paths.
+    lowest = -np.inf
     step = _LONGEST_STEP
     for _ in range(_MOST_STEPS):
         value, slope_x, slope_y = slopes(potential, x, y)
         slope = np.sqrt(slope_x * slope_x + slope_y * slope_y)
-        if value < bottom:
-            break
         if slope < _LEAST_SLOPE and value >= level:
             # A saddle of this energy belongs to the well.
             return False
         if is_below(potential, x, y, level):
             return is_odd ^ _crosses_exits(x, y, 0.0, 0.0, curves)
+        if value < bottom and lowest == -np.inf:
+            lowest = min(bottom, _lowest_on_exits(slopes, potential, energy, curves))
+        if value < lowest:
+            break
         direction_x = -(_COS * slope_x - _SIN * slope_y) / slope
         direction_y = -(_SIN * slope_x + _COS * slope_y) / slope
         step = min(2.0 * step, _LONGEST_STEP * max(1.0, _STEP_GROWTH * (abs(x) + abs(y))))

@@ -29,8 +29,6 @@ _HALF_LENGTHS = 2.0 ** -np.arange(0.5, 8.5, 0.5)
 _PARTS = 1.1 ** np.arange(-60.0, 1.0)
 # Energies above the bottom at which a well without exits is tested, in units of energy, as powers of 4.
 _POWERS = (-3.0, 1.0, 5.0, 9.0, 13.0, 16.0)
-# Largest number of cells for one of the energies of this search.
-_MOST_CELLS = 20_000
 # Number of bisections between an energy at which the well is closed and one at which it may be open.
 _BISECTIONS = 7
 
@@ -104,7 +102,7 @@ def _bisect(search: ComponentSearch, energy_at: Callable[[float], float], low: f
 
 
 def _is_closed(search: ComponentSearch, energy: float) -> bool:
-    return search.examine(energy, most_cells=_MOST_CELLS) is Extent.BOUNDED
+    return search.examine(energy) is Extent.BOUNDED
 
 
 def _ridge_barriers(

@@ -2,15 +2,15 @@
 
 The plane is divided into cells, which grow with the distance from the origin. A cell is left out if a lower bound of V on the
 cell exceeds h. The remaining cells that hang together with those at the origin contain the component. If none of them reaches the
-edge of the plane, the component is bounded. Cells that V = h may pass are divided until this is shown, or until cells on which V
-never exceeds h lead to the edge. Barriers, such as lines across the saddles of exits, divide the component: only the part on the
-inner side of all barriers is examined.
+edge of the plane, the component is bounded. If cells on which V never exceeds h lead to the edge, it is unbounded. Otherwise, the
+cells that V = h may pass are divided where they matter: on the paths to the edge with the fewest such cells. Barriers, such as
+lines across the saddles of exits, divide the component: only the part on the inner side of all barriers is examined.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from enum import Enum
 from typing import Self
 
@@ -21,27 +21,31 @@ from engine.expressions.evaluation import evaluate
 from engine.expressions.graph import Graph, make_graph
 from engine.expressions.intervals import Interval, enclose
 from engine.expressions.nodes import Expression
+from engine.systems.landscape.cell_paths import CellPaths
+from engine.systems.landscape.cells import (
+    COARSEST,
+    MOST_DIVISIONS,
+    Cells,
+    are_at_origin,
+    are_beside_other_barriers,
+    find_connections,
+    find_neighbours,
+)
 
 FARTHEST = 2.0**20
 """Distance of the edge of the plane, in units of length: a component that reaches it counts as unbounded."""
 
-MOST_CELLS = 60_000
-"""Largest number of cells of all sizes on which V is bounded by default. This takes up to half a second."""
-
-# Number of cells along each side of the plane, before any is divided.
-_COARSEST = 32
-# Largest number of divisions of a cell.
-_MOST_DIVISIONS = 20
-# Number of divisions by which cells lag behind in a proof, for each factor of 2 in their distance from the origin, because most
-# openings are near it.
+# Largest number of cells of all sizes on which V is bounded, and of rounds in which cells are divided. This takes up to a second.
+_MOST_CELLS = 20_000
+_MOST_ROUNDS = 150
+# Number of divisions by which cells lag behind for each factor of 2 in their distance from the origin. A path is closed with
+# fewer cells near the origin.
 _LAG = 0.7
-# Index shifts of the eight neighbours of a cell.
-_NEIGHBOURS = np.array([(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if i or j])
-# Steps that put a 0 after each bit of an index below 2^32: shifts, and masks of the bits that remain.
-_BIT_GAPS = [(2**k, (2**64 - 1) // (2**2**k + 1)) for k in (4, 3, 2, 1, 0)]
+# Number of divisions in which cells may lag behind in the same round. With more, cells are divided far away in vain; with fewer,
+# there are more rounds.
+_TURNS = 3.0
 # Sample points of a cell, from 0 to 1 along its sides.
 _SAMPLES = np.stack(np.meshgrid(*[np.linspace(0.0, 1.0, 3)] * 2), axis=-1).reshape(-1, 2)
-
 
 Program = tuple[Graph, tuple[float, ...]]
 """A graph and its numbers."""
@@ -83,55 +87,6 @@ class Barrier:
         return cls(position)
 
 
-@dataclass(frozen=True)
-class _Cells:
-    """Cells of several sizes that do not overlap.
-
-    Attributes
-    ----------
-    level
-        (n,) number of divisions.
-    index
-        (n, 2) column and row among the cells of this size.
-    low, high
-        (n,) bounds of V on the cells.
-    barrier
-        (n,) the barrier that cuts the cell in two, from 0; −1 for none.
-    is_at_end
-        (n,) whether the cell lies on both sides of a barrier, but does not count as cut in two, such as a cell at its end.
-    sides
-        (n, barriers) −1 on the inner side of a barrier, 1 on the outer side, 0 if the cell is on both sides.
-    """
-
-    level: np.ndarray
-    index: np.ndarray
-    low: np.ndarray
-    high: np.ndarray
-    barrier: np.ndarray
-    is_at_end: np.ndarray
-    sides: np.ndarray
-
-    def take(self, selection: np.ndarray) -> _Cells:
-        return _Cells(*(getattr(self, each.name)[selection] for each in fields(self)))
-
-    def join(self, other: _Cells) -> _Cells:
-        return _Cells(*(np.concatenate([getattr(self, each.name), getattr(other, each.name)]) for each in fields(self)))
-
-    def quarters(self, selection: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return level and index of the quarters of some cells."""
-        quarters = 2 * self.index[selection][:, None] + [[0, 0], [1, 0], [0, 1], [1, 1]]
-        return np.repeat(self.level[selection] + 1, 4), quarters.reshape(-1, 2)
-
-    @property
-    def size(self) -> int:
-        return len(self.level)
-
-    @property
-    def are_at_edge(self) -> np.ndarray:
-        last = (_COARSEST << self.level[:, None]) - 1
-        return ((self.index == 0) | (self.index == last)).any(axis=1)
-
-
 class ComponentSearch:
     """Examines components of {V ≤ h} around the origin for one V.
 
@@ -148,54 +103,41 @@ class ComponentSearch:
         self._value: Program = make_graph((expression,))
         self._length = length
 
-    def examine(self, energy: float, barriers: Sequence[Barrier] = (), most_cells: int = MOST_CELLS) -> Extent:
-        """Return the extent of the component at an energy, on the inner side of the barriers, as proved.
+    def examine(self, energy: float, barriers: Sequence[Barrier] = ()) -> Extent:
+        """Return the extent of the component at an energy, on the inner side of the barriers, as proved."""
+        return self._examine(energy, barriers, self.bounds)
 
-        The result is undecided if V must be bounded on more than `most_cells` cells.
-        """
-        return self._examine(energy, barriers, self.bounds, _LAG, most_cells)
+    def sample(self, energy: float, barriers: Sequence[Barrier] = ()) -> Extent:
+        """Apply `examine` without proof: V is computed at nine points of each cell."""
+        return self._examine(energy, barriers, self._sampled_bounds)
 
-    def is_open(self, energy: float, barriers: Sequence[Barrier] = ()) -> bool:
-        """Return whether the component is unbounded, as proved or, where the proof is undecided, by samples of V."""
-        extent = self.examine(energy, barriers)
-        if extent is Extent.UNDECIDED:
-            extent = self._examine(energy, barriers, self._sampled_bounds, 0.0, MOST_CELLS)
-        return extent is Extent.UNBOUNDED
-
-    def _examine(self, energy: float, barriers: Sequence[Barrier], bounds: _Bounds, lag: float, most_cells: int) -> Extent:
-        """Apply `examine` with a function that returns the bounds of V on cells.
-
-        `lag` is the number of divisions by which cells lag behind for each factor of 2 in their distance from the origin.
-        """
-        whole_plane = np.stack(np.meshgrid(np.arange(_COARSEST), np.arange(_COARSEST)), axis=-1).reshape(-1, 2)
+    def _examine(self, energy: float, barriers: Sequence[Barrier], bounds: _Bounds) -> Extent:
+        whole_plane = np.stack(np.meshgrid(np.arange(COARSEST), np.arange(COARSEST)), axis=-1).reshape(-1, 2)
         cells = self._make_cells(np.zeros(len(whole_plane), int), whole_plane, energy, barriers, bounds)
         examined = len(whole_plane)
-        for most_divisions in range(1, _MOST_DIVISIONS + 1):
-            neighbours = _neighbours(cells)
-            pairs = _connections(cells, *neighbours)
-            is_reached = _spread_from_origin(cells, pairs)
-            if not (is_reached & cells.are_at_edge).any():
+        for _ in range(_MOST_ROUNDS):
+            neighbours = find_neighbours(cells)
+            cells = cells.connecting_both_sides(are_beside_other_barriers(cells, *neighbours))
+            paths = CellPaths(cells, find_connections(cells, *neighbours), energy)
+            if paths.least_undecided == np.inf:
                 return Extent.BOUNDED
-            is_below = cells.high <= energy
-            # Cells that contain points of barriers are left out.
-            is_free = is_below & (cells.barrier < 0) & ~cells.is_at_end
-            is_free_node = np.append(is_free, np.zeros(2 * len(barriers), bool))
-            if (_spread_from_origin(cells, pairs[is_free_node[pairs].all(axis=1)]) & is_free & cells.are_at_edge).any():
+            if paths.are_joined_by_free_cells:
                 return Extent.UNBOUNDED
-            is_due = cells.level + lag * self._log_distance(cells) < most_divisions
-            joins_sides = cells.is_at_end | _are_beside_other_barriers(cells, *neighbours)
-            is_divided = is_reached & (~is_below | joins_sides) & is_due
+            divisible = paths.are_to_divide & (cells.level < MOST_DIVISIONS)
+            if not divisible.any():
+                break
+            turn = cells.level + _LAG * self._log_distance(cells)
+            is_divided = divisible & (turn < turn[divisible].min() + _TURNS)
             level, index = cells.quarters(is_divided)
             examined += len(level)
-            if examined > most_cells:
+            if examined > _MOST_CELLS:
                 break
-            parts = self._make_cells(level, index, energy, barriers, bounds)
-            cells = cells.take(is_reached & ~is_divided).join(parts)
+            cells = cells.take(paths.are_reached & ~is_divided).join(self._make_cells(level, index, energy, barriers, bounds))
         return Extent.UNDECIDED
 
     def _make_cells(
         self, level: np.ndarray, index: np.ndarray, energy: float, barriers: Sequence[Barrier], bounds: _Bounds
-    ) -> _Cells:
+    ) -> Cells:
         """Return the cells on which V can be as low as the energy."""
         first, last = self._edges(level, index), self._edges(level, index + 1)
         low, high = bounds(first, last)
@@ -212,17 +154,17 @@ class ComponentSearch:
             is_beyond[:, k] = (along > 1.0).all(axis=1) | (along < -1.0).all(axis=1)
         # A cell that two barriers cut counts as cut by none, so that it connects both sides until it is divided. The same holds
         # for cells at the origin, where the component begins.
-        is_in_two_parts = (is_cut.sum(axis=1) == 1) & ~_are_at_origin(level, index)
+        is_in_two_parts = (is_cut.sum(axis=1) == 1) & ~are_at_origin(level, index)
         barrier_of = np.where(is_in_two_parts, is_cut.argmax(axis=1) if barriers else 0, -1)
         is_at_end = (barrier_of < 0) & ((sides == 0) & ~is_beyond).any(axis=1)
-        return _Cells(level, index, low, high, barrier_of, is_at_end, sides)
+        return Cells(level, index, low, high, barrier_of, is_at_end, sides)
 
     def _edges(self, level: np.ndarray, index: np.ndarray) -> np.ndarray:
         """Return the lower edges (n, 2) of cells. Neighbours of any size have the same edge to the bit."""
-        share = index / (_COARSEST << level)[:, None] - 0.5
+        share = index / (COARSEST << level)[:, None] - 0.5
         return self._length * np.sinh(2.0 * np.arcsinh(FARTHEST) * share)
 
-    def _log_distance(self, cells: _Cells) -> np.ndarray:
+    def _log_distance(self, cells: Cells) -> np.ndarray:
         """Return the binary logarithm of the distance of cells (n,) from the origin, which is at least about 0."""
         return np.log2(1.0 + np.hypot(*self._edges(cells.level, cells.index + 0.5).T) / self._length)
 
@@ -248,81 +190,3 @@ class ComponentSearch:
 def _samples(first: np.ndarray, last: np.ndarray) -> np.ndarray:
     """Return x and y of nine points of each cell with corners (n, 2), of shape (2, n, 9)."""
     return np.moveaxis(first[:, None] + _SAMPLES * (last - first)[:, None], -1, 0)
-
-
-def _are_at_origin(level: np.ndarray, index: np.ndarray) -> np.ndarray:
-    """Return which cells (n,) touch the origin."""
-    half = (_COARSEST // 2) << level[:, None]
-    return ((index == half) | (index == half - 1)).all(axis=1)
-
-
-def _spread_from_origin(cells: _Cells, pairs: np.ndarray) -> np.ndarray:
-    """Return which cells (n,) hang together with those at the origin by pairs of connected nodes, see `_connections`."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    nodes = cells.size + 2 * cells.sides.shape[1]
-    count, labels = connected_components(coo_array((np.ones(len(pairs), bool), pairs.T), shape=(nodes, nodes)), directed=False)
-    is_reached_label = np.zeros(count, bool)
-    is_reached_label[labels[: cells.size][_are_at_origin(cells.level, cells.index)]] = True
-    is_reached = is_reached_label[labels]
-    # A cut cell counts as reached if one of its parts is.
-    part = cells.size + 2 * cells.barrier
-    return np.where(cells.barrier >= 0, is_reached[part] | is_reached[np.minimum(part + 1, nodes - 1)], is_reached[: cells.size])
-
-
-def _connections(cells: _Cells, first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """Return pairs (m, 2) of connected nodes: cells, or parts of cells that a barrier cuts in two, given the cells that touch.
-
-    Behind the cells, each barrier has two nodes: the parts of its cells on its inner side, and those on its outer side.
-    """
-    is_cut_first, is_cut_second = cells.barrier[first] >= 0, cells.barrier[second] >= 0
-    pairs = [np.column_stack([first, second])[~is_cut_first & ~is_cut_second]]
-    for cut, other in ((first[is_cut_first], second[is_cut_first]), (second[is_cut_second], first[is_cut_second])):
-        barrier = cells.barrier[cut]
-        side = cells.sides[other, barrier]
-        for part, is_beside in ((0, side <= 0), (1, side >= 0)):
-            node = cells.size + 2 * barrier + part
-            has_another_barrier = cells.barrier[other] >= 0
-            neighbour = np.where(has_another_barrier, cells.size + 2 * cells.barrier[other], other)
-            is_same = has_another_barrier & (cells.barrier[other] == barrier)
-            pairs.append(np.column_stack([node, neighbour])[is_beside & ~is_same])
-            # Both parts of a neighbour that another barrier cuts.
-            pairs.append(np.column_stack([node, neighbour + 1])[is_beside & ~is_same & has_another_barrier])
-    return np.concatenate(pairs)
-
-
-def _are_beside_other_barriers(cells: _Cells, first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """Return which cells (n,) are cut by a barrier and touch a cell that another barrier cuts.
-
-    Such cells connect both sides of both barriers until they are divided.
-    """
-    barriers = cells.barrier[first], cells.barrier[second]
-    is_pair = (barriers[0] >= 0) & (barriers[1] >= 0) & (barriers[0] != barriers[1])
-    are_beside = np.zeros(cells.size, bool)
-    are_beside[first[is_pair]] = are_beside[second[is_pair]] = True
-    return are_beside
-
-
-def _neighbours(cells: _Cells) -> tuple[np.ndarray, np.ndarray]:
-    """Return the indices of cells that touch, at an edge or a corner, each pair with the smaller cell first."""
-    places = _places(cells.level, cells.index)
-    order = np.argsort(places)
-    beside = cells.index[:, None] + _NEIGHBOURS
-    is_inside = ((beside >= 0) & (beside < _COARSEST << cells.level[:, None, None])).all(axis=2)
-    first = np.nonzero(is_inside)[0]
-    wanted = _places(cells.level[first], beside[is_inside])
-    # The only cell that can contain the place beside the first cell.
-    second = order[np.maximum(np.searchsorted(places[order], wanted, side="right") - 1, 0)]
-    divisions = 2 * (_MOST_DIVISIONS - cells.level[second])
-    is_found = (cells.level[second] <= cells.level[first]) & (wanted >> divisions == places[second] >> divisions)
-    return first[is_found], second[is_found]
-
-
-def _places(level: np.ndarray, index: np.ndarray) -> np.ndarray:
-    """Return the places (n,) of cells in the Z-order, in which all parts of a cell follow each other."""
-    places = index << (_MOST_DIVISIONS - level)[:, None]
-    # The bits of both indices alternate.
-    for shift, mask in _BIT_GAPS:
-        places = (places | places << shift) & mask
-    return places[:, 0] | places[:, 1] << 1

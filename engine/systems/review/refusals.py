@@ -6,6 +6,7 @@ import numpy as np
 
 from engine.systems.forms.form import DescentError, NotIsolatedError, UndecidedError
 from engine.systems.landscape.closed_energy import HIGHEST_TRIED
+from engine.systems.landscape.hill_component import Extent
 from engine.systems.potential import Potential
 from engine.systems.review.classified_points import (
     CriticalPoint,
@@ -107,6 +108,6 @@ def _exits_refusal(potential: Potential, _points: tuple[CriticalPoint, ...]) -> 
         problem = "The well is open without a saddle, or is not shown to be closed at any energy, so its exits are not defined."
         return None if is_closed else problem
     is_shown = well.closed_energy >= potential.escape_energy
-    if not is_shown and well.component_search.is_open(well.energy_at(_TESTED_DEPTH)):
+    if not is_shown and well.component_search.examine(well.energy_at(_TESTED_DEPTH)) is Extent.UNBOUNDED:
         return "The well is open below its lowest saddle, so orbits can escape without crossing an exit."
     return None

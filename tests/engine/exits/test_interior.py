@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from engine import CASES, Fate, Potential, Window, classify_orbits, find_lyapunov_orbits
+from engine import CASES, POTENTIALS, Fate, Potential, Window, classify_orbits, find_lyapunov_orbits
 from engine.exits.interior import find_outside_channels
+from engine.exits.lyapunov_orbits import find_known_exits
 
 # Beyond the exit the outer region turns back and passes behind the line on which the exit lies.
 CURLED = Potential("", ((2, 0, 0.6389), (0, 2, 0.2833), (3, 0, 0.72), (2, 1, -0.077), (1, 2, 0.3877), (0, 3, -0.1425)))
@@ -48,6 +49,8 @@ def test_a_start_in_an_outer_region_behind_an_exit_line_is_outside() -> None:
         pytest.param(CURLED_QUINTIC, 0.435296, marks=pytest.mark.slow),
         (CASES["II"], 0.17),
         (CASES["III"], 1.0),
+        # V on the exits is below V at the origin.
+        (POTENTIALS["C8"], 3.93),
     ],
 )
 def test_the_interior_is_connected_with_the_origin(potential: Potential, energy: float) -> None:
@@ -55,6 +58,22 @@ def test_the_interior_is_connected_with_the_origin(potential: Potential, energy:
     outside = find_outside_channels(potential, energy, x[::3, ::3], y[::3, ::3])
     known = allowed[::3, ::3]
     np.testing.assert_array_equal(outside[known] == 0, connected[::3, ::3][known])
+
+
+@pytest.mark.parametrize("factor", [1.01, 3.0, 10.0, 25.0, 50.0])
+@pytest.mark.parametrize("name", ["I", "II", "III", "C5", "C8", "HH"])
+def test_an_exit_has_the_interior_on_one_side_at_all_energies(name: str, factor: float) -> None:
+    potential = POTENTIALS[name]
+    energy = factor * potential.escape_energy
+    for orbit in find_known_exits(potential, energy):
+        points, tangents = orbit.half_path.T, np.gradient(orbit.half_path.T, axis=1)
+        across = np.array([-tangents[1], tangents[0]]) / np.hypot(*tangents)
+        outward = across * np.sign(orbit.outward @ across)
+        # Near its ends, an exit is as narrow as the shifts.
+        between = slice(10, -10)
+        inside, outside = (points + side * 1e-3 * outward for side in (-1.0, 1.0))
+        assert not find_outside_channels(potential, energy, *inside[:, between]).any()
+        assert find_outside_channels(potential, energy, *outside[:, between]).all()
 
 
 @pytest.mark.parametrize("name", ["I", "II", "III"])

@@ -19,7 +19,6 @@ OPENING = [
     ("½(x² + y²) − x²y²", 0.25),
     ("½(x² + y²) − xy²", 0.125),
     ("−1/√(r² + 1)", 0.0),
-    ("−1/r", 0.0),
 ]
 # Formulas with walls all around.
 CLOSED = ["x² + y² + 0.1x²y²", "½log(r² + 0.04)", "exp(6x + 7y) + exp(6x − 7y) + exp(−12x)", "(x − y)⁴ + x² + y²", "2x² + y⁴"]
@@ -35,8 +34,15 @@ def test_a_region_is_bounded_below_the_energy_at_which_it_opens(formula: str, en
     search = search_for(formula)
     below, above = energy - 0.02 * max(abs(energy), 1.0), energy + 0.02 * max(abs(energy), 1.0)
     assert search.examine(below) is Extent.BOUNDED
-    assert search.examine(above) is not Extent.BOUNDED
-    assert search.is_open(above)
+    assert search.examine(above) is Extent.UNBOUNDED
+    assert [search.sample(below), search.sample(above)] == [Extent.BOUNDED, Extent.UNBOUNDED]
+
+
+def test_a_region_around_a_body_is_bounded_below_the_energy_at_which_it_opens() -> None:
+    search = search_for("−1/r")
+    assert search.examine(-0.02) is Extent.BOUNDED
+    # Bounds of V at the body are infinite on both sides.
+    assert search.examine(0.02) is Extent.UNDECIDED
 
 
 @pytest.mark.parametrize("formula", CLOSED)
@@ -59,7 +65,7 @@ def test_the_answer_does_not_depend_on_the_spelling() -> None:
     ]
     for one, other in pairs:
         for energy in (0.5, 0.9, 1.1, 2.0):
-            assert search_for(one).is_open(energy) == search_for(other).is_open(energy)
+            assert search_for(one).examine(energy) is search_for(other).examine(energy)
 
 
 @pytest.fixture
