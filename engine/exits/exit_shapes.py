@@ -1,6 +1,7 @@
 """Exits over saddles as rows of numbers for the kernels of `integrator.kernels.exit_geometry`: closed channels, curves, lines.
 
-An exit is a graph u = f(s) in the axes of a saddle (`brake_orbits.Axes`), with s = (q − middle)/half_width, from −1 to 1.
+An exit is a graph u = f(s) in the axes of a saddle (`brake_orbits.Axes`), with s = (q − middle)/half_width, from −1 to 1. An
+exit closes one channel, and exits do not meet.
 """
 
 from __future__ import annotations
@@ -231,3 +232,16 @@ def count_crossings(one: np.ndarray, other: np.ndarray) -> int:
     # Two segments intersect if the ends of each lie on different sides of the other.
     other_sides, one_sides = sides(one, other), sides(other, one).T
     return int(np.count_nonzero((other_sides[:, 1:] != other_sides[:, :-1]) & (one_sides[1:] != one_sides[:-1])))
+
+
+def closes_channel(potential: Potential, energy: float, channel: int, path: np.ndarray) -> bool:
+    """Return whether a path (2, n) between two points at rest separates the origin from the outside of one channel, and no other.
+
+    The path crosses an odd number of times the line of steepest descent over the saddle of the channel, from the origin to the
+    outside, and the lines of other open channels an even number of times. These numbers do not change if the ends of the path
+    move along the zero-velocity curve, because V is below h on the lines. All quantities are in units of the well.
+    """
+    lines = potential.well.exit_lines
+    return all(
+        count_crossings(path.T, lines[other - 1]) % 2 == (other == channel) for other in potential.well.open_channels(energy)
+    )

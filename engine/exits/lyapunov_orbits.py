@@ -23,11 +23,10 @@ from engine.exits.brake_orbits import (
     find_from_both_ends,
     saddle_axes,
 )
-from engine.exits.exit_shapes import curve_along, find_reach, line_across, paths_meet
+from engine.exits.exit_shapes import closes_channel, curve_along, find_reach, line_across, paths_meet
 from engine.exits.lyapunov_orbit import LyapunovOrbit
 from engine.exits.merged_orbits import axes_between, find_merged_orbits
 from engine.exits.mirrored_orbits import Images, OrbitSearchError, find_with_images, image_exits, meets_image
-from engine.exits.necks import closes_channel
 from engine.exits.periodic_orbits import find_orbit_in_rotating_frame
 from engine.foundations.validation import checked_number, checks_types
 from engine.integrator.kernels import exit_geometry as geometry

@@ -7,7 +7,7 @@ import pytest
 
 from engine import CASES, find_lyapunov_orbits, parse_formula
 from engine.exits.brake_orbits import find_directly
-from engine.exits.necks import closes_channel
+from engine.exits.exit_shapes import closes_channel
 from engine.systems.known_potentials import POTENTIALS
 from tests.peers.symmetric_wells import VALLEYS
 
