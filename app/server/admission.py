@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import http.client
 from html import escape
-from typing import Any
+from typing import Any, NoReturn
 
 from bokeh.protocol.exceptions import ProtocolError
 from bokeh.util.token import get_session_id
@@ -21,6 +21,9 @@ LONGEST_LINK = 8192
 
 RETRY_SECONDS = 10
 """Interval at which the browser requests a refused page again, in seconds."""
+
+LONGEST_PAGE_WAIT = 30.0
+"""Longest time that a page waits until it is made, in seconds; less than a proxy waits for an answer, see `deploy/nginx.conf`."""
 
 RETRIED_STATUSES = (http.client.TOO_MANY_REQUESTS, http.client.SERVICE_UNAVAILABLE)
 """HTTP statuses of refusals after which the browser requests the page again."""
@@ -43,6 +46,19 @@ def admit(request: Any) -> None:
     _raise_for(http.client.SERVICE_UNAVAILABLE, refusal_reason(process_state(), network))
     page_count = sum(visitor_of(session.document) == network for session in process_state().sessions())
     _raise_for(http.client.TOO_MANY_REQUESTS, _address_reason(page_count))
+
+
+def refuse_after_wait() -> NoReturn:
+    """Refuse a page that has waited for `LONGEST_PAGE_WAIT`.
+
+    Raises
+    ------
+    tornado.web.HTTPError
+        With status 503.
+    """
+    reason = f"The server was busy for {LONGEST_PAGE_WAIT:g} s with other pages, of your address or of others."
+    process_state().metrics.pages_refused.inc()
+    raise HTTPError(http.client.SERVICE_UNAVAILABLE, reason=reason)
 
 
 def refusal_page(sentence: str) -> str:

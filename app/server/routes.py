@@ -26,7 +26,7 @@ from tornado.web import Finish, HTTPError, RedirectHandler, StaticFileHandler
 from app.browser.module_files import ROUTES as MODULE_ROUTES
 from app.runtime.process_state import process_state
 from app.runtime.visitors import network_of
-from app.server.admission import RETRIED_STATUSES, RETRY_SECONDS, refusal_page
+from app.server.admission import LONGEST_PAGE_WAIT, RETRIED_STATUSES, RETRY_SECONDS, refusal_page, refuse_after_wait
 from app.server.compressed_files import CompressedFiles
 from app.server.endpoints import ROUTES as ENDPOINT_ROUTES
 from app.server.endpoints import NotFound
@@ -106,14 +106,24 @@ class PageHandler(SecurityHeaders, DocHandler):
 
     Pages are made one at a time. Bokeh would make all waiting pages in one iteration of the event loop. Meanwhile, it would serve
     nobody else, and it might discard the first page as unused before sending it. A visitor who has used more than a fair share
-    of the server's time waits.
+    of the server's time waits. A page that has waited for `LONGEST_PAGE_WAIT` is refused, and the browser requests it again.
     """
 
     _visitor_has_left = False
 
     async def get_session(self) -> Any:
         """Create a session with a new token, unless the server is full when this page's turn comes."""
-        visitor, state = network_of(str(self.request.remote_ip)), process_state()
+        visitor = network_of(str(self.request.remote_ip))
+        try:
+            async with asyncio.timeout(LONGEST_PAGE_WAIT) as wait:
+                return await self._make_session_in_turn(visitor, wait)
+        except TimeoutError:
+            if not wait.expired():
+                raise
+            refuse_after_wait()
+
+    async def _make_session_in_turn(self, visitor: str, wait: asyncio.Timeout) -> Any:
+        state = process_state()
         while True:
             await asyncio.sleep(state.delay(visitor))
             async with state.making_page.turn(visitor):
@@ -121,6 +131,8 @@ class PageHandler(SecurityHeaders, DocHandler):
                     raise Finish
                 # Other pages of the visitor may have had their turns in the meantime.
                 if not state.delay(visitor):
+                    # Only the wait is limited.
+                    wait.reschedule(None)
                     return await self._make_session(visitor)
 
     async def _make_session(self, visitor: str) -> Any:

@@ -20,7 +20,8 @@ from tornado.ioloop import IOLoop
 from app.runtime.fair_share import BURST_SECONDS, SHARE
 from app.runtime.process_state import ProcessState
 from app.runtime.visitors import visitor_of
-from app.server.admission import admit
+from app.server import routes
+from app.server.admission import RETRY_SECONDS, admit
 from app.server.routes import PageHandler, install_handlers
 from tests.app.other_loop import run_on_new_loop
 from tests.page_channel import Channel
@@ -140,3 +141,21 @@ def test_the_next_pages_of_a_visitor_beyond_a_fair_share_wait(start: Callable[..
 
     run_on_new_loop(scenario)
     assert pages.visitors == [OTHER, GREEDY, OTHER, GREEDY, GREEDY]
+
+
+def test_a_page_that_waits_too_long_is_refused_and_may_be_asked_for_again(
+    start: Callable[..., ProcessState], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(routes, "LONGEST_PAGE_WAIT", 0.05)
+    state, pages = start(), AdmittedPages()
+
+    async def scenario() -> None:
+        async with serving(state, pages) as port:
+            address, client = f"http://127.0.0.1:{port}/app", AsyncHTTPClient(force_instance=True)
+            async with state.making_page.turn("a visitor"):
+                answer = await client.fetch(address, raise_error=False)
+            assert (answer.code, answer.headers["Retry-After"]) == (503, str(RETRY_SECONDS))
+            assert pages.events == []
+            assert (await client.fetch(address)).code == 200
+
+    run_on_new_loop(scenario)
