@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import tempfile
 import warnings
@@ -14,10 +15,14 @@ import numpy as np
 
 from engine.foundations.extras import require_package
 from engine.foundations.output_lock import hold_lock
+from engine.sweeps.stored_values import absent_values, count_complete, has_axis
 
 if TYPE_CHECKING:
     import xarray as xr
+    import zarr
 
+# Name of the file with the metadata of the group, or of an array.
+_METADATA_FILE = "zarr.json"
 # Name of the attribute of the group with the number of values on the disk.
 _COUNT_ATTRIBUTE = "finished"
 # Pattern of the names of the temporary files of Zarr.
@@ -26,6 +31,10 @@ _PARTIAL_FILES = "*.partial"
 _WORDED_ATTRIBUTES = ("outcomes", "exit_names")
 # Options of xarray for the format of the group.
 _OPTIONS: Mapping[str, Any] = {"consolidated": False, "zarr_format": 3}
+# A chunk that equals the value of missing data is written as well, so that its file is known to be missing.
+_WRITING_OPTIONS: Mapping[str, Any] = {**_OPTIONS, "write_empty_chunks": True}
+
+log = logging.getLogger(__name__)
 
 
 @contextmanager
@@ -78,25 +87,40 @@ class SweepStore:
         """Add a value. It counts only after its arrays are on the disk, in case of a power failure or a full disk."""
         import zarr
 
-        mode: dict[str, Any] = {"append_dim": self._attributes["axis"]} if self._finished else {"mode": "w"}
+        first: dict[str, Any] = {"mode": "w", "encoding": absent_values(point)}
+        mode = {"append_dim": self._attributes["axis"]} if self._finished else first
         with _named_in_errors(self._path):
-            point.assign_attrs(self._attributes | {_COUNT_ATTRIBUTE: self._finished}).to_zarr(self._path, **mode, **_OPTIONS)
-            for pattern in ("*/zarr.json", f"*/c/{self._finished}", f"*/c/{self._finished}/**/*"):
-                for file in self._path.glob(pattern):
-                    _sync_to_disk(file)
-            zarr.open_group(self._path, mode="r+", use_consolidated=False).attrs[_COUNT_ATTRIBUTE] = self._finished + 1
-            _consolidate(self._path)
-        self._finished += 1
+            point.assign_attrs(self._attributes | {_COUNT_ATTRIBUTE: self._finished}).to_zarr(
+                self._path, **mode, **_WRITING_OPTIONS
+            )
+            for pattern in ("*/zarr.json", f"*/c/{self._finished}", f"*/c/{self._finished}/**/*", "**/"):
+                for written in self._path.glob(pattern):
+                    _sync_to_disk(written)
+            self._set_finished(zarr.open_group(self._path, mode="r+", use_consolidated=False), self._finished + 1)
+
+    def _set_finished(self, group: zarr.Group, count: int) -> None:
+        """Write the number of finished values, to the disk."""
+        group.attrs[_COUNT_ATTRIBUTE] = count
+        _consolidate(self._path)
+        for written in (self._path / _METADATA_FILE, self._path, self._path.parent):
+            _sync_to_disk(written)
+        self._finished = count
 
     def _resume(self) -> None:
         """Continue after the values of an earlier run, and remove the incomplete data of a killed run."""
         import zarr
 
-        if not (self._path / "zarr.json").exists():
+        if not (self._path / _METADATA_FILE).exists():
             raise ValueError(f"store={self._path}: holds other files; must be new, empty, or the store of this sweep")
-        group = zarr.open_group(self._path, mode="r+", use_consolidated=False)
+        axis = self._attributes["axis"]
+        with _damage_named(self._path):
+            group = zarr.open_group(self._path, mode="r+", use_consolidated=False)
+            arrays = dict(group.arrays())
+            # The collected metadata also name arrays that have been lost.
+            is_whole = set(zarr.open_group(self._path, mode="r").array_keys()) <= set(arrays)
+            finished = int(group.attrs.get(_COUNT_ATTRIBUTE, 0))  # type: ignore[arg-type]
         check_same_sweep(f"store={self._path}", group.attrs, self._attributes)
-        self._finished = int(group.attrs[_COUNT_ATTRIBUTE])  # type: ignore[arg-type]
+        self._finished = count_complete(self._path, arrays, axis, finished) if is_whole else 0
         if self._finished == self._attributes["count"]:
             return
         # If the store is not writable, this fails before anything is computed.
@@ -104,10 +128,12 @@ class SweepStore:
             pass
         for file in self._path.rglob(_PARTIAL_FILES):
             file.unlink()
-        # Arrays may contain a value that does not count.
-        for _, array in group.arrays():
-            dimensions = getattr(array.metadata, "dimension_names", None) or ()
-            if self._attributes["axis"] in dimensions and array.shape[0] > self._finished:
+        if self._finished < finished:
+            log.warning("store=%s: the data of value %d are damaged; computing from there", self._path, self._finished + 1)
+            self._set_finished(group, self._finished)
+        # Arrays may contain values that do not count.
+        for array in arrays.values():
+            if has_axis(array, axis) and array.shape[0] > self._finished:
                 array.resize((self._finished, *array.shape[1:]))
 
 
@@ -132,11 +158,25 @@ def _consolidate(path: Path) -> None:
         zarr.consolidate_metadata(path, zarr_format=3)
 
 
-def _sync_to_disk(file: Path) -> None:
-    """Write a file from the cache of the operating system to the disk."""
-    if file.is_file():
-        with file.open("rb+") as opened:
-            os.fsync(opened.fileno())
+def _sync_to_disk(path: Path) -> None:
+    """Write a file, or the names in a folder, from the cache of the operating system to the disk."""
+    if path.is_dir() and os.name != "posix":
+        return
+    opened = os.open(path, os.O_RDONLY if path.is_dir() else os.O_RDWR)
+    try:
+        os.fsync(opened)
+    finally:
+        os.close(opened)
+
+
+@contextmanager
+def _damage_named(path: Path) -> Iterator[None]:
+    """Name the store in errors of its metadata."""
+    try:
+        yield
+    except (ValueError, KeyError, TypeError) as error:
+        problem = f"store={path}: a file {_METADATA_FILE} in it cannot be read: {error}"
+        raise ValueError(f"{problem}; restore it, or delete the folder to compute the sweep again") from error
 
 
 @contextmanager

@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from engine import CASES, Plane, SweepSpec, Window, compute_sweep
+from engine import CASES, Fate, Plane, SweepSpec, Window, compute_sweep
 from engine.foundations.execution import Execution, count_workers
 from engine.sweeps.store import check_same_sweep
 from tests.forked import Finished, run
@@ -105,10 +105,10 @@ def test_a_refined_store_is_read_in_ascending_order(tmp_path: Path) -> None:
     assert measured_by(spec, tmp_path / "store") == []
 
 
-def test_arrays_are_read_on_access(tmp_path: Path) -> None:
+def test_arrays_are_read_on_access_and_missing_data_are_not_computed(tmp_path: Path) -> None:
     dataset = compute_sweep(SPEC, tmp_path / "store").dataset
     shutil.rmtree(tmp_path / "store" / "fate" / "c")
-    assert not dataset["fate"].any()
+    assert (dataset["fate"] == Fate.NOT_COMPUTED).all()
 
 
 @pytest.mark.parametrize(
@@ -184,6 +184,50 @@ def test_killed_run_resumes_byte_identically(tmp_path: Path) -> None:
         assert found.attrs["finished"] == 2
     assert run_in_child(tmp_path, "store").out == run_in_child(tmp_path, "straight").out == "finished"
     assert files_of(tmp_path / "store") == files_of(tmp_path / "straight")
+
+
+def remove(path: Path) -> None:
+    path.unlink()
+
+
+def truncate(path: Path) -> None:
+    path.write_bytes(path.read_bytes()[:-3])
+
+
+def fill_with_zeros(path: Path) -> None:
+    path.write_bytes(bytes(path.stat().st_size))
+
+
+@pytest.mark.parametrize("damage", [remove, truncate, fill_with_zeros])
+@pytest.mark.parametrize(("chunk", "kept"), [("fate/c/1/0/0", 1), ("share/c/2/0", 2), ("h/c/0", 0), ("x/c/0", 0)])
+def test_values_from_a_damaged_one_on_are_computed_again(
+    tmp_path: Path, finished: Path, caplog: pytest.LogCaptureFixture, chunk: str, kept: int, damage: Callable[[Path], None]
+) -> None:
+    store = tmp_path / "store"
+    shutil.copytree(finished, store)
+    damage(store / chunk)
+    sizes: list[int] = []
+    compute_sweep(SPEC, store, on_frame=lambda sweep: sizes.append(sweep.values.size))
+    assert min(sizes) == kept + 1
+    assert files_of(store) == files_of(finished)
+    assert "are damaged; computing from there" in caplog.text
+
+
+def test_a_sweep_that_has_lost_an_array_is_computed_again(tmp_path: Path, finished: Path) -> None:
+    store = tmp_path / "store"
+    shutil.copytree(finished, store)
+    shutil.rmtree(store / "fate")
+    compute_sweep(SPEC, store)
+    assert files_of(store) == files_of(finished)
+
+
+@pytest.mark.parametrize("file", ["zarr.json", "fate/zarr.json"])
+def test_damaged_metadata_are_named(tmp_path: Path, finished: Path, file: str) -> None:
+    store = tmp_path / "store"
+    shutil.copytree(finished, store)
+    truncate(store / file)
+    with pytest.raises(ValueError, match=r"store=.*a file zarr\.json in it cannot be read.*delete the folder"):
+        compute_sweep(SPEC, store)
 
 
 # Stores that cannot be written; a disk that becomes full is in `tests/faults`.
