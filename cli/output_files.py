@@ -12,7 +12,7 @@ from typing import Annotated
 import typer
 
 from cli.option_marks import DocumentedBy
-from engine.foundations.output_lock import hold_lock
+from engine.foundations.output_lock import hold_lock, output_named_in_errors
 
 Content = str | bytes
 """Content of a file: text or bytes."""
@@ -107,15 +107,14 @@ def write_files(contents: Mapping[Path, Content]) -> list[str]:
 def _write(path: Path, content: bytes) -> None:
     # The temporary file is in the same folder, because replacing is atomic only within one file system.
     temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        with temporary.open("xb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        temporary.replace(path)
-    except OSError as error:
+    with output_named_in_errors(path):
+        # The file of a killed process with the same number.
         temporary.unlink(missing_ok=True)
-        raise OSError(error.errno, error.strerror, str(path)) from error
-    except BaseException:
-        temporary.unlink(missing_ok=True)
-        raise
+        try:
+            with temporary.open("xb") as file:
+                file.write(content)
+                file.flush()
+                os.fsync(file.fileno())
+            temporary.replace(path)
+        finally:
+            temporary.unlink(missing_ok=True)

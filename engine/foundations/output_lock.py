@@ -1,4 +1,7 @@
-"""A lock for output that takes long to write. One process holds the lock; errors in other processes name the holder."""
+"""A lock for output that takes long to write, and errors that name the output.
+
+One process holds the lock; errors in other processes name the holder.
+"""
 
 from __future__ import annotations
 
@@ -22,6 +25,28 @@ _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP, errno.EOPNOTSUPP)
 
 
 @contextmanager
+def output_named_in_errors(path: str | os.PathLike[str]) -> Iterator[None]:
+    """Name an output in errors of the operating system, which can name a file beside the output, or none.
+
+    Parameters
+    ----------
+    path
+        The output, as the user has named it.
+
+    Raises
+    ------
+    OSError
+        With the number and the text of the operating system, and the path.
+    """
+    try:
+        yield
+    except OSError as error:
+        if error.errno is None:
+            raise
+        raise OSError(error.errno, os.strerror(error.errno), os.fspath(path)) from error
+
+
+@contextmanager
 def hold_lock(path: Path) -> Iterator[None]:
     """Reserve a path for this process by a file `.NAME.lock` beside the path; the file is deleted at the end.
 
@@ -39,7 +64,7 @@ def hold_lock(path: Path) -> Iterator[None]:
     BlockingIOError
         When another process holds the lock; the message contains its number, its machine and the time at which it took the lock.
     OSError
-        When the lock file cannot be written.
+        When a file cannot be written beside the output; the error names the output.
     """
     if sys.platform == "win32":
         # On Windows a locked file can neither be read, to find its holder, nor be deleted by its holder.
@@ -48,9 +73,10 @@ def hold_lock(path: Path) -> Iterator[None]:
     from filelock import FileLock
 
     file = path.resolve().parent / f".{path.resolve().name}.lock"
-    file.parent.mkdir(parents=True, exist_ok=True)
     lock = FileLock(file, blocking=False, fallback_to_soft=False)
-    _acquire(lock, file, path)
+    with output_named_in_errors(path):
+        file.parent.mkdir(parents=True, exist_ok=True)
+        _acquire(lock, file, path)
     try:
         file.write_text(f"process {os.getpid()} on {platform.node()} since {time.strftime('%Y-%m-%d %H:%M:%S')}")
         yield
@@ -76,6 +102,9 @@ def _acquire(lock: FileLock, file: Path, path: Path) -> None:
             if error.errno in _NO_LOCKS:
                 return
             raise
+    if not file.exists():
+        # The file cannot be made. This raises the error, which the package takes for a lock of another process.
+        file.touch()
     holder = _read_holder(file) or "another process"
     raise BlockingIOError(f"{path}: is being written by {holder}; wait for its end, or choose another output")
 

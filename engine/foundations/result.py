@@ -17,6 +17,7 @@ import numpy as np
 
 from engine.foundations.arrays import ReadOnlyArrays
 from engine.foundations.extras import load_pictures
+from engine.foundations.output_lock import output_named_in_errors
 from engine.foundations.stored_fields import FORMER_FIELDS, write_field
 from engine.foundations.wording import describe_codes, show_numbers, summarize
 
@@ -236,11 +237,13 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
             raise ValueError(f"path={path}: must end in .nc")
         # An existing file is replaced only by a complete file, even if the call is interrupted.
         incomplete = file.with_name(f".{file.name}.{os.getpid()}.part")
-        try:
-            self.to_xarray().to_netcdf(incomplete)
-            incomplete.replace(file)
-        finally:
-            incomplete.unlink(missing_ok=True)
+        dataset = self.to_xarray()
+        with output_named_in_errors(path):
+            try:
+                dataset.to_netcdf(incomplete)
+                incomplete.replace(file)
+            finally:
+                incomplete.unlink(missing_ok=True)
 
     def _meaning(self, name: str, values: Any) -> dict[str, str]:
         """Return the attributes of a variable: the meanings of codes, or the unit 1 for other numbers."""

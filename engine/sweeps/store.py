@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from engine.foundations.extras import require_package
-from engine.foundations.output_lock import hold_lock
+from engine.foundations.output_lock import hold_lock, output_named_in_errors
 from engine.sweeps.stored_values import absent_values, count_complete, has_axis
 
 if TYPE_CHECKING:
@@ -89,7 +89,7 @@ class SweepStore:
 
         first: dict[str, Any] = {"mode": "w", "encoding": absent_values(point)}
         mode = {"append_dim": self._attributes["axis"]} if self._finished else first
-        with _named_in_errors(self._path):
+        with output_named_in_errors(self._path):
             point.assign_attrs(self._attributes | {_COUNT_ATTRIBUTE: self._finished}).to_zarr(
                 self._path, **mode, **_WRITING_OPTIONS
             )
@@ -177,14 +177,3 @@ def _damage_named(path: Path) -> Iterator[None]:
     except (ValueError, KeyError, TypeError) as error:
         problem = f"store={path}: a file {_METADATA_FILE} in it cannot be read: {error}"
         raise ValueError(f"{problem}; restore it, or delete the folder to compute the sweep again") from error
-
-
-@contextmanager
-def _named_in_errors(path: Path) -> Iterator[None]:
-    """Add the path of the store to errors of the operating system that name no file, such as a full disk."""
-    try:
-        yield
-    except OSError as error:
-        if error.errno is None or error.filename is not None:
-            raise
-        raise OSError(error.errno, error.strerror, str(path)) from error

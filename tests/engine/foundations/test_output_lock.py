@@ -20,6 +20,13 @@ from tests.waiting import SECONDS
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such locks")
 
 
+@pytest.mark.skipif(not Path("/proc").exists(), reason="no folder without permission to write, even for the superuser")
+def test_a_place_where_nothing_can_be_written_is_not_called_locked() -> None:
+    with pytest.raises(OSError, match=r"'/proc/sweep\.zarr'") as raised, hold_lock(Path("/proc/sweep.zarr")):
+        pass
+    assert not isinstance(raised.value, BlockingIOError)
+
+
 def hold(path: Path, held: Event, end: Event) -> None:
     with hold_lock(path):
         held.set()

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import errno
 import functools
 import inspect
+import os
 from collections.abc import Callable
 from dataclasses import fields, replace
 from pathlib import Path
@@ -308,3 +310,10 @@ def test_a_result_that_cannot_be_written_leaves_the_earlier_file(tmp_path: Path)
         Failing().save(tmp_path / "result.nc")
     assert [path.name for path in tmp_path.iterdir()] == ["result.nc"]
     assert (tmp_path / "result.nc").read_bytes() == earlier
+
+
+def test_a_result_that_cannot_be_written_names_its_file(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError) as raised:
+        computed("potential").save(tmp_path / "missing" / "result.nc")
+    assert raised.value.filename == str(tmp_path / "missing" / "result.nc")
+    assert raised.value.strerror == os.strerror(errno.ENOENT)
