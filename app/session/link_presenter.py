@@ -52,6 +52,8 @@ class LinkPresenter:
         self._document = document
         self._link, self._problems = read_link(parameters)
         self._is_navigating = False
+        # None until the other parts of the page are made. Problems that are found earlier are shown when the view begins.
+        self._notice: Notice | None = None
         self.embedded = parameters.get(EMBED) in PICTURES
         """Whether the page shows only one picture, in a frame of another page."""
         self.open_link = OpenLink()
@@ -129,7 +131,11 @@ class LinkPresenter:
 
     def _show_problems(self) -> None:
         if self._problems:
-            self._notice.warn(" ".join(self._problems))
+            self._warn(" ".join(self._problems))
+
+    def _warn(self, sentence: str) -> None:
+        if self._notice is not None:
+            self._notice.warn(sentence)
 
     def _review(self, system: System, use: Callable[[PageReview], object], refuse: Callable[[str], None]) -> None:
         """Review a system, and say so while the review runs."""
@@ -138,7 +144,7 @@ class LinkPresenter:
 
     def _refuse(self, problem: str) -> None:
         self._progress.fail()
-        self._notice.warn(refused_link(problem))
+        self._warn(refused_link(problem))
 
     def _show(self, values: Mapping[str, Any], reviewed: PageReview) -> list[str]:
         """Show the values of a link with a reviewed system; return messages for invalid values."""

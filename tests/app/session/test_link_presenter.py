@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Any, cast
+
+from bokeh.document import Document
+
+from app.session.link_presenter import LinkPresenter
 from app.state.view_state import ViewState
+from app.views.components.notice import Notice
 from engine import Window
 from tests.app.other_loop import run_on_new_loop
 from tests.app.session.opened_page import on_loop, opened_page
@@ -19,3 +25,11 @@ def test_a_link_to_another_window_keeps_the_box_that_both_views_have() -> None:
     state = run_on_new_loop(follow)
     assert state.window == Window(-0.2, 0.2, -0.2, 0.2)
     assert state.box == Window(-0.1, 0.1, -0.1, 0.1)
+
+
+def test_a_comparison_that_is_refused_before_the_page_is_made_is_named_when_the_view_begins() -> None:
+    links, notice, unused = LinkPresenter(Document(), {"case": "I"}), Notice(), cast("Any", None)
+    links.refuse_comparison("The formula ends too soon.")
+    links.connect(unused, unused, unused, notice)
+    links.begin(lambda: None)
+    assert "Ignored the view in the link with which to compare: The formula ends too soon." in notice.layout().object
