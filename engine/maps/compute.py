@@ -19,9 +19,10 @@ from engine.maps.result import PIXEL_ARRAYS, EscapeMap, collect_map, empty_array
 from engine.maps.run import MapRun
 from engine.maps.spec import MapSpec
 from engine.maps.stages import OnChange, Stage, run_stages
+from engine.propagation.fates import Fate
 
 LARGEST_RUN = 2**20
-"""Largest number of pixels whose orbits are in memory together. Larger maps are computed in blocks and cannot be resumed."""
+"""Largest number of pixels whose orbits are in memory together. Larger maps are computed in blocks."""
 
 
 @shows_progress("escape map")
@@ -49,7 +50,8 @@ def compute_map(
         Override the fields of `execution` that have these names. All other long functions have only the parameter `execution`.
     resume
         An earlier map, complete or cancelled, whose orbits are continued. Its spec must be equal, but its t_max may be smaller.
-        Maps computed in blocks cannot be resumed.
+        Of a map of more than 2²⁰ pixels, finished rows are kept; it may be a frame or come from a file, and its t_max must be
+        equal. Along a parameter, such a map cannot be resumed.
     execution
         How the computation runs. When it is cancelled, the map so far is returned, with ``complete`` False.
 
@@ -85,24 +87,33 @@ def _begin_computation(
     spec: MapSpec, resume: EscapeMap | None, *, coarse_first: bool
 ) -> tuple[MapRun | LinewiseRun | BlockwiseRun, Callable[[EscapeMap], EscapeMap]]:
     """Return the computation of a map, and a function that converts its maps to the units of the request."""
-    keeps_states = spec.resolution[0] * spec.resolution[1] <= LARGEST_RUN
+    keeps_states = _keeps_states(spec)
     if spec.plane.parameter is not None:
         # Each line has its own units, so its maps are converted already.
         return LinewiseRun(spec, resume, keeps_states=keeps_states), lambda linewise: linewise
     restore = partial(EscapeMap.restored, spec=spec)
-    if not keeps_states:
-        return BlockwiseRun(spec.in_well_units(), LARGEST_RUN), restore
     earlier = None if resume is None else resume.in_well_units()
+    if not keeps_states:
+        return BlockwiseRun(spec.in_well_units(), LARGEST_RUN, earlier), restore
     return MapRun(spec.in_well_units(), earlier, coarse_first=coarse_first), restore
 
 
 def _check_resumable(spec: MapSpec, resume: EscapeMap) -> None:
     """Raise ValueError unless a map can be continued for a request."""
+    different_fields = [field.name for field in fields(spec) if getattr(resume.spec, field.name) != getattr(spec, field.name)]
+    if not _keeps_states(spec) and spec.plane.parameter is None:
+        if different_fields:
+            raise ValueError(f"resume: a map with another {', '.join(different_fields)}; must be equal for more than 2²⁰ pixels")
+        return
     if resume.batch is None:
         raise ValueError("resume: this map has no integration state; must be a map returned by compute_map, not a frame")
-    different_fields = [field.name for field in fields(spec) if getattr(resume.spec, field.name) != getattr(spec, field.name)]
     if different_fields not in ([], ["t_max"]) or resume.spec.t_max > spec.t_max:
         raise ValueError(f"resume: a map with another {', '.join(different_fields)}; must be equal but for a smaller t_max")
+
+
+def _keeps_states(spec: MapSpec) -> bool:
+    """Return whether all orbits of a map are in memory together, so that they can be continued."""
+    return spec.resolution[0] * spec.resolution[1] <= LARGEST_RUN
 
 
 def row_blocks(spec: MapSpec, max_pixels: int) -> Iterator[np.ndarray]:
@@ -132,6 +143,11 @@ def row_blocks(spec: MapSpec, max_pixels: int) -> Iterator[np.ndarray]:
         yield np.union1d(lower_rows, rows - 1 - lower_rows)
 
 
+def _are_decided(escapes: EscapeMap) -> np.ndarray:
+    """Return whether all pixels of a row are decided, (rows,)."""
+    return (escapes.fate != Fate.NOT_COMPUTED).all(axis=1)
+
+
 class BlockwiseRun:
     """Computes a map of one potential block by block, because all its orbits together need too much memory.
 
@@ -141,17 +157,26 @@ class BlockwiseRun:
         The request, `MapSpec.in_well_units`.
     max_pixels
         Largest number of pixels in a block, see `row_blocks`.
+    earlier
+        A map of the same request, whose finished rows are kept.
     """
 
-    def __init__(self, spec: MapSpec, max_pixels: int) -> None:
+    def __init__(self, spec: MapSpec, max_pixels: int, earlier: EscapeMap | None = None) -> None:
         self.spec, self._max_pixels = spec, max_pixels
-        self._done_row_count, self._horizon = 0, 0.0
+        self._horizon = 0.0
         self._arrays = empty_arrays(PIXEL_ARRAYS, spec.resolution[::-1])
+        if earlier is not None:
+            finished = _are_decided(earlier)
+            for name, array in self._arrays.items():
+                array[finished] = getattr(earlier, name)[finished]
+        self._is_done = self._arrays["fate"][:, 0] != Fate.NOT_COMPUTED
 
     def stages(self, execution: Execution, _on_change: OnChange) -> Iterator[Stage]:
         """Yield the stages, see `Staged`. Each stage computes a block."""
         for rows in row_blocks(self.spec, self._max_pixels):
-            yield partial(self._compute_block, rows, replace(execution, on_progress=None))
+            missing = rows[~self._is_done[rows]]
+            if missing.size:
+                yield partial(self._compute_block, missing, replace(execution, on_progress=None))
 
     def _compute_block(self, rows: np.ndarray, execution: Execution) -> None:
         """Compute the block with these rows."""
@@ -160,12 +185,12 @@ class BlockwiseRun:
         block = run.frame()
         for name, array in self._arrays.items():
             array[rows] = getattr(block, name)
-        self._done_row_count += rows.size
+        self._is_done[rows] = _are_decided(block)
         self._horizon = block.horizon
 
     def progress(self) -> float:
         """Return the share of the rows that are done."""
-        return self._done_row_count / self.spec.resolution[1]
+        return float(self._is_done.mean())
 
     def frame(self) -> EscapeMap:
         """Return the map so far, with views of the arrays, because copies would need too much memory."""

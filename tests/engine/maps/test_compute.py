@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import threading
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from engine import CASES, EscapeMap, Execution, Fate, MapSpec, Plane, compute_map
+from engine import CASES, EscapeMap, Execution, Fate, MapSpec, Plane, compute_map, open_result
 from engine.maps.compute import LARGEST_RUN, BlockwiseRun, row_blocks
 from engine.maps.result import PIXEL_ARRAYS
 from engine.maps.stages import run_stages
@@ -41,6 +43,33 @@ def test_cancelled_blocks_hold_what_is_computed_so_far() -> None:
     assert not result.complete
     assert np.any(result.fate >= 1)
     assert np.any(result.fate == Fate.NOT_COMPUTED)
+
+
+@pytest.mark.parametrize("spec", SPECS, ids=lambda spec: spec.plane.title)
+def test_blocks_that_are_resumed_from_a_file_are_bit_identical(tmp_path: Path, spec: MapSpec) -> None:
+    cancel = threading.Event()
+    begun = BlockwiseRun(spec.in_well_units(), 150)
+    run_stages(begun, Execution(cancel=cancel, on_progress=lambda share: cancel.set() if share > 0.3 else None))
+    begun.result().restored(spec).save(tmp_path / "map.nc")
+    earlier = open_result(tmp_path / "map.nc", EscapeMap)
+    assert not earlier.complete
+    shares: list[float] = []
+    resumed = BlockwiseRun(spec.in_well_units(), 150, earlier.in_well_units())
+    run_stages(resumed, Execution(on_progress=shares.append))
+    assert shares[0] > 0.3
+    in_blocks, whole = resumed.result().restored(spec), compute_map(spec)
+    for name in PIXEL_ARRAYS:
+        np.testing.assert_array_equal(getattr(in_blocks, name), getattr(whole, name), err_msg=name)
+
+
+def test_a_large_map_is_resumed_from_a_frame_of_the_same_request() -> None:
+    # All starts are forbidden, which takes no time.
+    spec = MapSpec(CASES["III"], Plane.X_PX, 0.4, (1024, LARGEST_RUN // 1024 + 1), (5.0, 6.0, 5.0, 6.0))
+    frames: list[EscapeMap] = []
+    compute_map(spec, frames.append)
+    assert compute_map(spec, resume=frames[0]).complete
+    with pytest.raises(ValueError, match="resume: a map with another t_max; must be equal for more than 2²⁰ pixels"):
+        compute_map(replace(spec, t_max=2.0 * spec.t_max), resume=frames[0])
 
 
 def test_a_large_map_is_computed_in_blocks_which_keep_no_states() -> None:
