@@ -74,8 +74,8 @@ def hold_lock(path: Path) -> Iterator[None]:
 
     file = path.resolve().parent / f".{path.resolve().name}.lock"
     lock = FileLock(file, blocking=False, fallback_to_soft=False)
+    file.parent.mkdir(parents=True, exist_ok=True)
     with output_named_in_errors(path):
-        file.parent.mkdir(parents=True, exist_ok=True)
         _acquire(lock, file, path)
     try:
         file.write_text(f"process {os.getpid()} on {platform.node()} since {time.strftime('%Y-%m-%d %H:%M:%S')}")
