@@ -144,7 +144,7 @@ def _find_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ..
 
 
 def _check_closed(potential: Potential, energy: float) -> None:
-    """Raise OrbitSearchError unless it is shown that orbits cannot leave for infinity without passing the exits at an energy.
+    """Raise OrbitSearchError unless orbits cannot leave for infinity without passing the exits at an energy, see `find_extent`.
 
     A higher energy serves all lower ones. Therefore a few energies are examined first, if the exits are defined there. Each
     potential along a parameter has one energy only.

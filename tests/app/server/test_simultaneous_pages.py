@@ -146,14 +146,15 @@ def test_the_next_pages_of_a_visitor_beyond_a_fair_share_wait(start: Callable[..
 def test_a_page_that_waits_too_long_is_refused_and_may_be_asked_for_again(
     start: Callable[..., ProcessState], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(routes, "LONGEST_PAGE_WAIT", 0.05)
     state, pages = start(), AdmittedPages()
 
     async def scenario() -> None:
         async with serving(state, pages) as port:
             address, client = f"http://127.0.0.1:{port}/app", AsyncHTTPClient(force_instance=True)
-            async with state.making_page.turn("a visitor"):
-                answer = await client.fetch(address, raise_error=False)
+            with monkeypatch.context() as patch:
+                patch.setattr(routes, "LONGEST_PAGE_WAIT", 0.05)
+                async with state.making_page.turn("a visitor"):
+                    answer = await client.fetch(address, raise_error=False)
             assert (answer.code, answer.headers["Retry-After"]) == (503, str(RETRY_SECONDS))
             assert pages.events == []
             assert (await client.fetch(address)).code == 200
