@@ -14,7 +14,7 @@ from tests.referee.report import UNDECIDED, Report
 from tests.referee.setting import Setting
 
 CHECK = "exits"
-# Displacement of the beginning of a line along the unstable direction, and sideways, in units of length.
+# Displacement of the beginning of a line along the unstable direction, and sideways, in distances of the nearest critical point.
 _ALONG, _SIDEWAYS = 1e-4, 1e-6
 # Distance where a line has arrived, in distances of the nearest saddle, and where it has left, in those of the farthest.
 _NEAR, _FAR = 0.02, 20.0
@@ -89,11 +89,16 @@ def _is_led_by_rounding(system: OwnSystem, s: np.ndarray, places: np.ndarray, sl
 
 
 @lru_cache(maxsize=256)
-def descend_steadily(system: OwnSystem, saddle: tuple[float, float], side: float, unit: float, far: float) -> Descent:
-    """Return where a line leads on one side of a saddle, undecided if a sideways displacement changes it, and its points."""
+def descend_steadily(
+    system: OwnSystem, saddle: tuple[float, float], side: float, nearest: float, unit: float, far: float
+) -> Descent:
+    """Return where a line leads on one side of a saddle, undecided if a sideways displacement changes it, and its points.
+
+    The nearest critical point is at the distance `nearest` from the saddle; `unit` is the distance of a saddle from the origin.
+    """
     across, along = np.linalg.eigh(system.curvature(*saddle))[1].T[::-1]
-    begin = np.array(saddle) + side * _ALONG * unit * along
-    found = [descend(system, begin + shift * _SIDEWAYS * unit * across, _NEAR * unit, far) for shift in (1.0, -1.0)]
+    begin = np.array(saddle) + side * _ALONG * nearest * along
+    found = [descend(system, begin + shift * _SIDEWAYS * nearest * across, _NEAR * unit, far) for shift in (1.0, -1.0)]
     return (found[0][0] if found[0][0] is found[1][0] else Way.UNDECIDED), found[0][1]
 
 
@@ -105,16 +110,20 @@ def check_exits(potential: Potential, system: OwnSystem, formula: str, report: R
         return
     unit, far = float(np.hypot(*points.T).min()), _FAR * float(np.hypot(*points.T).max())
     for place in points:
-        ways = {side: descend_steadily(system, tuple(place.tolist()), side, unit, far)[0] for side in (1.0, -1.0)}
-        if Way.UNDECIDED in ways.values():
+        ways = {way for way, _ in _descend_on_both_sides(potential, system, place, unit, far)}
+        if Way.UNDECIDED in ways:
             report.add(CHECK, UNDECIDED, "a line of steepest descent changes with a shift")
             continue
-        leads_out = set(ways.values()) == {Way.WELL, Way.ELSEWHERE}
+        leads_out = ways == {Way.WELL, Way.ELSEWHERE}
         is_exit = bool(np.any(np.hypot(*(potential.saddles - place).T) < 1e-9 * unit))
         kind = "an exit is missing" if leads_out else "a saddle is not an exit"
-        report.judge(
-            CHECK, kind, leads_out == is_exit, formula=formula, saddle=place.tolist(), ways=[w.value for w in ways.values()]
-        )
+        report.judge(CHECK, kind, leads_out == is_exit, formula=formula, saddle=place.tolist(), ways=[way.value for way in ways])
+
+
+def _descend_on_both_sides(potential: Potential, system: OwnSystem, saddle: np.ndarray, unit: float, far: float) -> list[Descent]:
+    """Return the lines on both sides of a saddle."""
+    nearest = float(np.sort(np.hypot(*(potential.critical_points - saddle).T))[1])
+    return [descend_steadily(system, tuple(saddle.tolist()), side, nearest, unit, far) for side in (1.0, -1.0)]
 
 
 def check_channels(setting: Setting, report: Report) -> None:
@@ -122,9 +131,7 @@ def check_channels(setting: Setting, report: Report) -> None:
     exits, unit = setting.exits, float(np.hypot(*setting.potential.saddles.T).min())
     for channel, path in zip(exits.channels, exits.paths, strict=True):
         saddle = setting.potential.saddles[channel - 1]
-        lines = [
-            descend_steadily(setting.system, tuple(saddle.tolist()), side, unit, _FAR * setting.size) for side in (1.0, -1.0)
-        ]
+        lines = _descend_on_both_sides(setting.potential, setting.system, saddle, unit, _FAR * setting.size)
         if {way for way, _ in lines} != {Way.WELL, Way.ELSEWHERE}:
             report.add(CHECK, UNDECIDED, "a line of steepest descent changes with a shift")
             continue

@@ -17,8 +17,9 @@ TOLERANCE = 1e-16
 _SAMPLES, _ZOOMS = 16, 6
 # Points of an exit.
 _EXIT_POINTS = 2001
-# Largest number of steps of an orbit.
-_MOST_STEPS = 200_000
+# Largest number of steps of an orbit, and largest change of its energy in units of kinetic and potential energy. heyoka chooses
+# steps from its series, which does not show a narrow feature of V ahead.
+_MOST_STEPS, _LARGEST_CHANGE = 200_000, 1e-8
 # Number of steps after which the distance is compared with the farthest.
 _STEPS_AT_ONCE = 20
 # Factors of the distance up to which an orbit is followed, and smallest ratio of its mean speeds if it leaves for ever.
@@ -28,7 +29,7 @@ _FAR = np.geomspace(1.0, 1e8, 200)
 
 
 class UndecidedError(Exception):
-    """An orbit cannot be followed: its steps become too many, or its state is not finite."""
+    """An orbit cannot be followed: its steps become too many, its state is not finite, or its energy changes."""
 
 
 @dataclass(frozen=True)
@@ -76,8 +77,7 @@ class OwnOrbits:
         for _ in range(_MOST_STEPS):
             begin = float(integrator.time)
             integrator.step(max_delta_t=t_max - begin, write_tc=True)
-            if not np.isfinite(integrator.state).all():
-                raise UndecidedError("a state is not finite")
+            self._check(start, integrator.state)
             yield Step(begin, float(integrator.time), integrator.tc.copy())
             if integrator.time >= t_max or np.hypot(*integrator.state[:2]) > self.farthest:
                 return
@@ -93,11 +93,19 @@ class OwnOrbits:
         integrator.state[:] = start
         for _ in range(_MOST_STEPS // _STEPS_AT_ONCE):
             integrator.propagate_until(duration, max_steps=_STEPS_AT_ONCE)
-            if not np.isfinite(integrator.state).all():
-                raise UndecidedError("a state is not finite")
+            self._check(start, integrator.state)
             if integrator.time >= duration or np.hypot(*integrator.state[:2]) > farthest:
                 return float(integrator.time), integrator.state.copy()
         raise UndecidedError("too many steps")
+
+    def _check(self, start: np.ndarray, state: np.ndarray) -> None:
+        """Raise UndecidedError unless a state is finite and has the energy of the start."""
+        if not np.isfinite(state).all():
+            raise UndecidedError("a state is not finite")
+        places, momenta = np.array([start[:2], state[:2]]), np.array([start[2:4], state[2:4]])
+        potential, kinetic = self.system.value(*places.T), 0.5 * np.sum(momenta**2, axis=1)
+        if not abs(np.diff(potential + kinetic)[0]) <= _LARGEST_CHANGE * np.sum(np.abs(potential) + kinetic):
+            raise UndecidedError("the energy of an own orbit changes")
 
     def path_from_rest(self, place: np.ndarray, duration: float) -> np.ndarray:
         """Return the states of an orbit that starts at rest, of shape (n, 4)."""

@@ -90,7 +90,8 @@ class Setting:
     def random_starts(self, count: int, seed: int, *, within: float = np.inf) -> np.ndarray:
         """Return starts of this energy that are seen from the origin, before any wall or exit, of shape (n, 4)."""
         random, exits = np.random.default_rng(seed), self.exits
-        fractions = np.linspace(0.0, 1.0, 400)
+        # The well may be much smaller than the distance of the farthest exit.
+        fractions = np.union1d(np.linspace(0.0, 1.0, 400), np.geomspace(1e-7, 1.0, 400))
         starts = []
         for angle, part, turn in random.uniform(0.0, 1.0, (count, 3)) * [2.0 * np.pi, 0.98, 2.0 * np.pi]:
             reach = min(within, 1.5 * self.size)

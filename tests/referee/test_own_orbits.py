@@ -10,7 +10,7 @@ from tests.peers.sampled_paths import Exits
 from tests.referee.descents import Way, descend_steadily
 from tests.referee.formulas import Formula
 from tests.referee.images import IMAGES
-from tests.referee.own_orbits import OwnOrbits
+from tests.referee.own_orbits import OwnOrbits, UndecidedError
 from tests.referee.own_system import OwnSystem
 
 HENON_HEILES = OwnSystem(Formula("0.5*(x^2+y^2)+x^2*y-y^3/3").expression)
@@ -32,6 +32,13 @@ def test_an_orbit_ends_where_it_crosses_an_exit() -> None:
     assert (end.channel, end.time) == (3, pytest.approx(0.5, abs=1e-6))
 
 
+def test_an_orbit_that_steps_over_a_narrow_wall_is_undecided() -> None:
+    # The orbit comes back to the wall on y = 0 from y = 113, where the series of heyoka does not show the wall.
+    orbits = OwnOrbits(OwnSystem(Formula("0.5*log(0.5164*x^2+0.8292*y^2+1)+0.4472*x^2*y^2*exp(-0.6937*y^2)").expression), 1000.0)
+    with pytest.raises(UndecidedError, match="energy"):
+        orbits.state_at(np.array([-1.696, 0.0, -1.5443847147650747, 2.443067222934997]), 3000.0)
+
+
 @pytest.mark.parametrize(("energy_of_y", "leaves"), [(198.0, False), (202.0, True)])
 def test_an_orbit_leaves_a_morse_bond_above_its_dissociation_energy(energy_of_y: float, leaves: bool) -> None:
     start = np.array([0.1, 0.0, 0.0, np.sqrt(2.0 * energy_of_y)])
@@ -50,5 +57,5 @@ def test_symmetries_are_found_from_values() -> None:
 
 
 def test_a_line_from_an_exit_saddle_leads_to_the_well_on_one_side_alone() -> None:
-    ways = {descend_steadily(HENON_HEILES, (0.0, 1.0), side, 1.0, 20.0)[0] for side in (1.0, -1.0)}
+    ways = {descend_steadily(HENON_HEILES, (0.0, 1.0), side, 1.0, 1.0, 20.0)[0] for side in (1.0, -1.0)}
     assert ways == {Way.WELL, Way.ELSEWHERE}

@@ -1,26 +1,28 @@
 """Lines of steepest descent of a potential from its saddles, and of steepest ascent.
 
-If V is even in y, no line crosses y = 0. In a long narrow valley along y = 0, the distance of a line from y = 0 falls to very
-small values, and it grows again on a ridge that follows. Its relative error is controlled, so that rounding does not decide where
-the line leaves the ridge. Lines from mirror images of a saddle are not followed, because they are mirror images of lines. The
-same holds for x.
+If V_y = 0 on y = 0, no line crosses y = 0. In a long narrow valley along y = 0, the distance of a line from y = 0 falls to very
+small values, and it grows again on a ridge that follows. Its logarithm is integrated, so that rounding does not decide where the
+line leaves the ridge. If V is even in y, lines from mirror images of a saddle are not followed, because they are mirror images of
+lines. The same holds for x.
 """
 
 from __future__ import annotations
 
 import warnings
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from engine.systems.forms.expression_form import Form
-from engine.systems.forms.form import DescentError, Flow
+from engine.systems.forms.form import DescentError, Flow, hessian_matrix
 from engine.systems.landscape.mirror_images import Signs, find_images, mirrors_of
 
 # Distance from the saddle at which a descent starts, in units of the distance to the nearest other critical point.
 _START_DISTANCE = 1e-3
 # Distance from a critical point at which a descent ends, in units of the distance of the critical point nearest to the origin.
-_END_DISTANCE = 1e-4
+# Its limit is in units of the distance to the nearest other critical point.
+_END_DISTANCE, _LARGEST_END_DISTANCE = 1e-4, 0.1
 # Distance from the origin at which a descent counts as infinite, in units of the distance of the outermost critical point.
 _INFINITE_DISTANCE = 10.0
 
@@ -28,20 +30,23 @@ _INFINITE_DISTANCE = 10.0
 # before the step plus the largest magnitude at a critical point.
 _LARGEST_RISE = 1e-6
 
-# Length of a step below which a descent has come to rest, in units of the distance of the nearest critical point.
-_REST_STEP = 1e-13
+# Distance from a critical point outside the searched region at which a descent ends, in units of its distance from the origin.
+# Negative curvatures below this share of the positive one are errors of zero, as on a circle of minima.
+_REST_DISTANCE = 1e-6
 
 # Relative error of a step.
 _RELATIVE_ERROR = 1e-9
-# Distance from a line of symmetry up to which the relative error of this distance is controlled, in units of the distance of the
-# nearest critical point. A smaller value would let stiff valleys need too many steps.
-_SMALLEST_DISTANCE = 1e-100
+# Smallest distance from an axis at which the slope of V is evaluated, in units of the distance of the nearest critical point. At
+# smaller distances, the slope across the axis is proportional to the distance.
+_SMALLEST_DISTANCE = 1e-7
+# Distances from the origin of points of an axis, in units of the distance of the nearest critical point.
+_PLACES_ON_AXIS = np.geomspace(1e-3, 1e3, 13)
 # Length of the first step, in units of the distance of the start of the descent from the saddle.
 _FIRST_STEP = 1e-6
-# Limit on the steps of all descents of a potential. This many steps take a few seconds. Most potentials need about 1 000 steps;
-# of 600 wells, one needed 17 000.
-_MOST_STEPS = 20_000
-# Limit on the steps of one solver along a line. Most lines need 200 steps. Lines through long narrow valleys need about 2 000.
+# Limit on the steps of all descents of a potential. This many steps take about ten seconds. Most potentials need about 1 000
+# steps; those with many saddles in long narrow valleys need 20 000.
+_MOST_STEPS = 30_000
+# Limit on the steps of one solver along a line. Most lines need 200 steps. Lines through long narrow valleys need about 1 000.
 _MOST_STEPS_ALONG_LINE = 5_000
 
 
@@ -56,8 +61,11 @@ class Descents:
         self._form, self._sign, self._points, self._is_saddle = form, sign, points, is_saddle
         distance = np.hypot(*points.T)
         self._length = float(distance[distance > 0.0].min())
-        smallest = [_SMALLEST_DISTANCE if is_even else 1.0 for is_even in (form.mirror_in_x, form.mirror_in_y)]
-        self._absolute_error = _RELATIVE_ERROR * self._length * np.array(smallest)
+        self._are_axes_never_crossed = _are_axes_never_crossed(form, self._length)
+        apart = np.hypot(*(points[:, None] - points).T)
+        np.fill_diagonal(apart, np.inf)
+        self._nearest = apart.min(axis=0)
+        self._end_distances = np.minimum(_END_DISTANCE * self._length, _LARGEST_END_DISTANCE * self._nearest)
         # The index −1, for infinity, is its own image.
         self._images = {signs: np.append(find_images(points, signs), -1) for signs in mirrors_of(form)}
         self._flow = form.descent_flow(self._length, sign)
@@ -127,19 +135,17 @@ class Descents:
 
     def _follow(self, solver_class: Any, flow: Flow, saddle: int, side: float) -> tuple[int | None, list[np.ndarray]]:
         """Descend along a flow with one of SciPy's solvers; see `_descend`. The end is None if it is not reached."""
-        other_indices = np.delete(np.arange(len(self._points)), saddle)
-        distance = _START_DISTANCE * self._distances(self._points[saddle])[other_indices].min()
+        distance = _START_DISTANCE * self._nearest[saddle]
         start = self._points[saddle] + side * distance * self._unstable_directions[saddle]
-        # There is no final time, because a descent in a flat valley can take arbitrarily long.
-        tolerances = {"rtol": _RELATIVE_ERROR, "atol": self._absolute_error}
         # The first step chosen by LSODA can be too long for its corrector to converge.
         first_step = _FIRST_STEP * distance / np.hypot(*flow(0.0, start))
-        solver = solver_class(flow, 0.0, start, np.inf, first_step=first_step, **tolerances)
-        value, places = self._value(start), [start]
+        line = _Coordinates(start, self._are_axes_never_crossed & (start != 0.0), self._length)
+        solver = line.solver(solver_class, flow, first_step)
+        place, value, places = start, self._value(start), [start]
         fewest_steps_left = max(self._steps_left - _MOST_STEPS_ALONG_LINE, 0)
         while self._steps_left > fewest_steps_left and solver.status == "running":
             self._steps_left -= 1
-            previous_place, previous_value = solver.y, value
+            previous_place, previous_value = place, value
             try:
                 solver.step()
             except ValueError:
@@ -147,17 +153,32 @@ class Descents:
                 break
             if solver.status == "failed":
                 break
-            places.append(solver.y)
-            distances = self._distances(solver.y)[other_indices]
-            if distances.min() < _END_DISTANCE * self._length:
-                return int(other_indices[np.argmin(distances)]), places
-            step_length = float(np.hypot(*(solver.y - previous_place)))
-            value = self._value(solver.y)
-            # A line at rest elsewhere is at a critical point outside the searched region. The list does not contain this point.
-            is_at_rest = step_length < _REST_STEP * self._length
-            if np.hypot(*solver.y) > self._infinite_distance or is_at_rest or self._rises(previous_value, value):
+            place = line.place(solver.y)
+            places.append(place)
+            is_at_end = np.hypot(*(self._points - place).T) < self._end_distances
+            is_at_end[saddle] = False
+            if is_at_end.any():
+                return int(np.argmax(is_at_end)), places
+            value = self._value(place)
+            is_far = np.hypot(*place) > self._infinite_distance
+            # The list does not contain critical points outside the searched region.
+            if is_far or self._rises(previous_value, value) or self._is_at_rest(previous_place, place):
                 return -1, places
         return None, places
+
+    def _is_at_rest(self, previous: np.ndarray, place: np.ndarray) -> bool:
+        """Return whether a step of a descent leads to a minimum of sign · V, which Newton's method finds nearby."""
+        distance = _REST_DISTANCE * np.hypot(*place)
+        if np.hypot(*(place - previous)) > distance:
+            return False
+        slope = self._sign * np.array(self._form.gradient(*place))
+        hessian = self._sign * hessian_matrix(self._form, *place)
+        if not np.isfinite([*slope, *hessian.ravel()]).all():
+            return False
+        step = np.linalg.lstsq(hessian, slope)[0]
+        is_solved = np.hypot(*(hessian @ step - slope)) <= 0.1 * np.hypot(*slope)
+        smallest, largest = np.linalg.eigvalsh(hessian)
+        return bool(is_solved and np.hypot(*step) < distance and smallest > -_REST_DISTANCE * largest)
 
     def _value(self, place: np.ndarray) -> float:
         """Return sign · V at a place."""
@@ -167,9 +188,45 @@ class Descents:
         """Return whether a step of a descent leads to a higher value, on the other side of a curve where V is infinite."""
         return after - before > self._largest_rise + _LARGEST_RISE * abs(before)
 
-    def _distances(self, place: np.ndarray) -> np.ndarray:
-        """Return the distances of all critical points from a place, of shape (n,)."""
-        return np.hypot(*(self._points - place).T)
+
+@dataclass(frozen=True)
+class _Coordinates:
+    """Coordinates along a line that begins at `start`: x and y, or w = z + ln z of z = |x|/length where the axis is not crossed.
+
+    Near the axis, w is a logarithm; far away, it is proportional to the distance.
+    """
+
+    start: np.ndarray
+    is_transformed: np.ndarray
+    length: float
+
+    def solver(self, solver_class: Any, flow: Flow, first_step: float) -> Any:
+        """Return a solver of SciPy. There is no final time, because a descent in a flat valley can take arbitrarily long."""
+        distance = np.abs(self.start) / self.length
+        begin = np.where(self.is_transformed, distance + np.log(np.where(self.is_transformed, distance, 1.0)), self.start)
+        errors = _RELATIVE_ERROR * np.where(self.is_transformed, 1.0, self.length)
+
+        def velocity(time: float, coordinates: np.ndarray) -> np.ndarray:
+            place = self.place(coordinates)
+            slope = np.divide(1.0, place, out=np.ones(2), where=self.is_transformed)
+            return flow(time, place) * np.where(self.is_transformed, slope + np.sign(place) / self.length, 1.0)
+
+        return solver_class(velocity, 0.0, begin, np.inf, first_step=first_step, rtol=_RELATIVE_ERROR, atol=errors)
+
+    def place(self, coordinates: np.ndarray) -> np.ndarray:
+        """Return x and y, at least the smallest distance from an axis that the line does not cross."""
+        from scipy.special import wrightomega
+
+        distance = self.length * np.maximum(wrightomega(coordinates), _SMALLEST_DISTANCE)
+        return np.where(self.is_transformed, np.copysign(distance, self.start), coordinates)
+
+
+def _are_axes_never_crossed(form: Form, length: float) -> np.ndarray:
+    """Return whether V_x = 0 on x = 0, and V_y = 0 on y = 0, exactly at points up to 1 000 lengths from the origin."""
+    along = length * np.concatenate([_PLACES_ON_AXIS, -_PLACES_ON_AXIS])
+    zeros = np.zeros_like(along)
+    slopes = form.gradient(zeros, along)[0], form.gradient(along, zeros)[1]
+    return np.array([np.all(slope == 0.0) for slope in slopes])
 
 
 def _mirror(lines: Lines, signs: Signs, images: np.ndarray) -> Lines:

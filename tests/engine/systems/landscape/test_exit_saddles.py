@@ -20,6 +20,10 @@ ROW = parse_formula("(x(x − 2)(x − 4))²/10 + y²")
 # One saddle is at (-0.007, 1897), in a valley whose curvature across is 10^11 times its curvature along.
 NARROW_VALLEY = "x^2/2 + y^2/2 - x^3/3 + 0.047*x*y^3 - 0.012*x^6 - 0.183*x^3*y^4 + 0.082*x^4*y - 0.084*x^2*y^2 + 0.184*x*y^2"
 
+INVARIANT_AXIS = "½ log(1.2041x² + 1.2139y² + 1) + 0.8447x²y² sin(0.6865 + x) + 0.3132y³ cos(0.8166x + 1.2107y)"
+# A line of steepest ascent from the saddle at (2.603, 0.206) ends at a maximum at (-5.93, 35.27), ten times as far as the others.
+REMOTE_MAXIMUM = "½ log(0.9774x² + 1.0093y² + 1) + 1.2008x²y² sin(0.5194 + x) + 1.0261y³ cos(1.4716x + 0.4342y)"
+
 
 def exits(potential: Potential) -> np.ndarray:
     """Return the saddles that lead out, of shape (n, 2)."""
@@ -74,6 +78,29 @@ def test_descents_that_need_an_implicit_method_from_the_start_end() -> None:
 def test_descents_whose_first_method_fails_end_without_a_warning() -> None:
     text = "½(x²+y²) − 1.295xy³ − 6x⁶y − 2.133xy² − 1.746x⁴y² + 4x³y³ − 1.67x⁵y⁴ + 0.957x²y + 3x⁵y⁶ − 0.184x² + 9y² + 0.35x⁴y⁵"
     assert len(exits(parse_formula(text))) == 3
+
+
+def test_a_saddle_close_beside_a_maximum_is_an_exit() -> None:
+    # The saddle is at (0, -786.04), and a maximum is at (0.00021, -786.04). The line x = 0 leads to the well.
+    potential = parse_formula("½(0.4426x² + 1.2050y²) − 0.001125x³y² + 0.000511y³")
+    assert potential.saddles[:, 1].min() == pytest.approx(-1.2050 / (3.0 * 0.000511))
+
+
+def test_lines_along_an_axis_that_is_no_line_of_symmetry_leave_its_ridges_where_they_must() -> None:
+    # V_y = 0 on y = 0, but V is not even in y. DOP853, applied to x and log y, leads one line from each of these saddles to the
+    # origin. The lines come as close as 1e-565 to y = 0.
+    farthest = [[8.738163, -0.041898], [8.738564, 0.041888], [-6.969344, -0.058634], [-6.970453, 0.058622]]
+    saddles = parse_formula(INVARIANT_AXIS).saddles
+    assert len(saddles) == 9
+    for place in farthest:
+        assert np.hypot(*(saddles - place).T).min() < 1e-6
+
+
+def test_lines_of_steepest_ascent_end_at_maxima_outside_the_searched_region() -> None:
+    potential = parse_formula(REMOTE_MAXIMUM)
+    points = potential.critical_points
+    saddles = np.flatnonzero(potential.well.critical_indices < 0)
+    assert find_maxima_beside(potential.form, points, potential.well.critical_indices, saddles).shape == (6, 8)
 
 
 def test_lines_that_pass_ridges_on_a_line_of_symmetry_end_at_the_origin() -> None:
