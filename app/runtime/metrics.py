@@ -23,7 +23,7 @@ class ServerMetrics:
         self.sessions_created = self._counter("sessions_created", "Sessions created")
         self.sessions_destroyed = self._counter("sessions_destroyed", "Sessions destroyed")
         self.pages_refused = self._counter("pages_refused", "Page requests refused because the server was full or stopping")
-        self.connections_refused = self._counter("connections_refused", "Connections closed because there were too many")
+        self.connections_refused = self._counter("connections_refused", "Connections refused because there were too many")
         self.messages_delayed = self._counter("messages_delayed", "Messages delayed because their page took more than its share")
         self.log_records = self._counter("log_records", "Warnings and errors in the log", "level", "exception")
         self.loop_delays = Histogram(

@@ -82,7 +82,7 @@ class Settings:
     pages_per_address
         Largest number of sessions, and of WebSockets, of one address (IPv6: of one network).
     most_connections
-        Largest number of open connections without WebSockets. Further connections are closed.
+        Largest number of open connections without WebSockets. Further connections are answered with status 503.
     compiled_operations
         Largest number of compiled operations in the integrators of all potentials outside the catalogue. Compiled code stays
         loaded.

@@ -6,6 +6,7 @@ to the web application and to the options of the HTTP server of ``panel serve``.
 
 from __future__ import annotations
 
+import asyncio
 from collections import Counter
 from collections.abc import Awaitable, Mapping
 from typing import Any
@@ -13,11 +14,11 @@ from typing import Any
 from bokeh.server.tornado import BokehTornado
 from tornado.httpserver import HTTPServer
 from tornado.httputil import HTTPConnection, HTTPHeaders, HTTPMessageDelegate, RequestStartLine, ResponseStartLine
-from tornado.iostream import IOStream
+from tornado.iostream import IOStream, StreamClosedError, UnsatisfiableReadError
 
 from app.runtime.process_state import process_state
 from app.runtime.visitors import network_of
-from app.server.admission import LONGEST_LINK
+from app.server.admission import LONGEST_LINK, RETRY_SECONDS, refusal_page
 from app.server.batched_stream import batched
 from app.server.routes import redirect_to_page, refuse_other_hosts, refuse_other_routes
 
@@ -41,8 +42,15 @@ CONNECTIONS_PER_PAGE = 6
 """Largest number of connections, WebSockets apart, that a browser opens to a host."""
 
 
+MOST_REFUSALS = 200
+"""Largest number of connections beyond the limits that are answered at the same time. Others are closed without an answer."""
+
+_REFUSAL_SECONDS = 2.0
+_REFUSAL = "There are too many connections."
+
+
 class LimitedHTTPServer(HTTPServer):
-    """HTTP server that closes connections beyond the limits at once, and refuses routes and hosts that are not its own.
+    """HTTP server that answers connections beyond the limits with 503, and refuses routes and hosts that are not its own.
 
     `app.server.admission` counts WebSockets. Behind a proxy (``--use-xheaders``) all connections come from one address, so only
     their total number is limited.
@@ -53,17 +61,18 @@ class LimitedHTTPServer(HTTPServer):
         super().initialize(*args, **{**LIMITS, **kwargs})
         # Numbers of open connections, WebSockets apart, by network.
         self._connection_counts: Counter[str] = Counter()
+        self._refusals: set[asyncio.Task[None]] = set()
         if isinstance(self.request_callback, BokehTornado):
             refuse_other_routes(self.request_callback)
             refuse_other_hosts(self.request_callback)
             redirect_to_page(self.request_callback)
 
     def handle_stream(self, stream: IOStream, address: Any) -> None:
-        """Serve a new connection, or close it."""
+        """Serve a new connection, or refuse it."""
         network = _network(address)
         if self._is_full(network):
             process_state().metrics.connections_refused.inc()
-            stream.close()
+            self._refuse(stream)
             return
         self._connection_counts[network] += 1
         super().handle_stream(batched(stream), address)
@@ -78,12 +87,38 @@ class LimitedHTTPServer(HTTPServer):
         # Unlike the method `subtract`, this operator removes counts of 0.
         self._connection_counts -= Counter([_network(server_conn.context.address)])
 
+    def _refuse(self, stream: IOStream) -> None:
+        """Answer a request if there are not too many refusals, and close the connection."""
+        if len(self._refusals) >= MOST_REFUSALS:
+            stream.close()
+            return
+        refusal = asyncio.ensure_future(_answer_refused(stream))
+        self._refusals.add(refusal)
+        refusal.add_done_callback(self._refusals.discard)
+
     def _is_full(self, network: str) -> bool:
         """Whether the server, or a network unless a proxy hides it, has all the connections that it may have."""
         settings = process_state().settings
         if self._connection_counts.total() >= settings.most_connections:
             return True
         return not self.xheaders and self._connection_counts[network] >= CONNECTIONS_PER_PAGE * settings.pages_per_address
+
+
+async def _answer_refused(stream: IOStream) -> None:
+    """Answer a request with status 503 and close the connection. A proxy would take a missing answer as a fault of the server."""
+    body = refusal_page(_REFUSAL).encode()
+    headers = HTTPHeaders({"Content-Type": "text/html; charset=utf-8", "Content-Length": str(len(body)), "Connection": "close"})
+    headers["Retry-After"] = str(RETRY_SECONDS)
+    lines = "".join(f"{name}: {value}\r\n" for name, value in headers.get_all())
+    try:
+        async with asyncio.timeout(_REFUSAL_SECONDS):
+            # If bytes of the request were left unread, closing the connection could discard the answer.
+            await stream.read_until(b"\r\n\r\n", max_bytes=LIMITS["max_header_size"])
+            await stream.write(f"HTTP/1.1 503 Service Unavailable\r\n{lines}\r\n".encode() + body)
+    except (TimeoutError, StreamClosedError, UnsatisfiableReadError):
+        pass
+    finally:
+        stream.close()
 
 
 class _UntrustedHeaderRemover(HTTPMessageDelegate):

@@ -8,6 +8,7 @@ lines. The same holds for x.
 
 from __future__ import annotations
 
+import math
 import warnings
 from dataclasses import dataclass
 from typing import Any
@@ -61,7 +62,7 @@ class Descents:
         self._form, self._sign, self._points, self._is_saddle = form, sign, points, is_saddle
         distance = np.hypot(*points.T)
         self._length = float(distance[distance > 0.0].min())
-        self._are_axes_never_crossed = _are_axes_never_crossed(form, self._length)
+        self._axes_never_crossed = _axes_never_crossed(form, self._length)
         apart = np.hypot(*(points[:, None] - points).T)
         np.fill_diagonal(apart, np.inf)
         self._nearest = apart.min(axis=0)
@@ -139,7 +140,7 @@ class Descents:
         start = self._points[saddle] + side * distance * self._unstable_directions[saddle]
         # The first step chosen by LSODA can be too long for its corrector to converge.
         first_step = _FIRST_STEP * distance / np.hypot(*flow(0.0, start))
-        line = _Coordinates(start, self._are_axes_never_crossed & (start != 0.0), self._length)
+        line = _Coordinates(start, [axis for axis in self._axes_never_crossed if start[axis]], self._length)
         solver = line.solver(solver_class, flow, first_step)
         place, value, places = start, self._value(start), [start]
         fewest_steps_left = max(self._steps_left - _MOST_STEPS_ALONG_LINE, 0)
@@ -191,25 +192,29 @@ class Descents:
 
 @dataclass(frozen=True)
 class _Coordinates:
-    """Coordinates along a line that begins at `start`: x and y, or w = z + ln z of z = |x|/length where the axis is not crossed.
+    """Coordinates along a line that begins at `start`: x and y, some of them transformed.
 
-    Near the axis, w is a logarithm; far away, it is proportional to the distance.
+    The distance z from an axis that the line does not cross, in units of length, becomes w = z + ln z. Near the axis, w is nearly
+    the logarithm; far away, it is nearly the distance.
     """
 
     start: np.ndarray
-    is_transformed: np.ndarray
+    transformed_axes: list[int]
     length: float
 
     def solver(self, solver_class: Any, flow: Flow, first_step: float) -> Any:
         """Return a solver of SciPy. There is no final time, because a descent in a flat valley can take arbitrarily long."""
-        distance = np.abs(self.start) / self.length
-        begin = np.where(self.is_transformed, distance + np.log(np.where(self.is_transformed, distance, 1.0)), self.start)
-        errors = _RELATIVE_ERROR * np.where(self.is_transformed, 1.0, self.length)
+        begin, errors = self.start.copy(), np.full(2, _RELATIVE_ERROR * self.length)
+        for axis in self.transformed_axes:
+            distance = abs(self.start[axis]) / self.length
+            begin[axis], errors[axis] = distance + np.log(distance), _RELATIVE_ERROR
 
         def velocity(time: float, coordinates: np.ndarray) -> np.ndarray:
             place = self.place(coordinates)
-            slope = np.divide(1.0, place, out=np.ones(2), where=self.is_transformed)
-            return flow(time, place) * np.where(self.is_transformed, slope + np.sign(place) / self.length, 1.0)
+            changes = flow(time, place)
+            for axis in self.transformed_axes:
+                changes[axis] *= 1.0 / place[axis] + math.copysign(1.0 / self.length, place[axis])
+            return changes
 
         return solver_class(velocity, 0.0, begin, np.inf, first_step=first_step, rtol=_RELATIVE_ERROR, atol=errors)
 
@@ -217,16 +222,19 @@ class _Coordinates:
         """Return x and y, at least the smallest distance from an axis that the line does not cross."""
         from scipy.special import wrightomega
 
-        distance = self.length * np.maximum(wrightomega(coordinates), _SMALLEST_DISTANCE)
-        return np.where(self.is_transformed, np.copysign(distance, self.start), coordinates)
+        place = coordinates.copy()
+        for axis in self.transformed_axes:
+            distance = max(float(wrightomega(coordinates[axis])), _SMALLEST_DISTANCE)
+            place[axis] = math.copysign(self.length * distance, self.start[axis])
+        return place
 
 
-def _are_axes_never_crossed(form: Form, length: float) -> np.ndarray:
-    """Return whether V_x = 0 on x = 0, and V_y = 0 on y = 0, exactly at points up to 1 000 lengths from the origin."""
+def _axes_never_crossed(form: Form, length: float) -> list[int]:
+    """Return 0 if V_x = 0 on x = 0, and 1 if V_y = 0 on y = 0, exactly at points up to 1 000 lengths from the origin."""
     along = length * np.concatenate([_PLACES_ON_AXIS, -_PLACES_ON_AXIS])
     zeros = np.zeros_like(along)
     slopes = form.gradient(zeros, along)[0], form.gradient(along, zeros)[1]
-    return np.array([np.all(slope == 0.0) for slope in slopes])
+    return [axis for axis, slope in enumerate(slopes) if np.all(slope == 0.0)]
 
 
 def _mirror(lines: Lines, signs: Signs, images: np.ndarray) -> Lines:

@@ -16,8 +16,9 @@ from tornado.web import Application, RequestHandler
 from tornado.websocket import WebSocketHandler, websocket_connect
 
 from app.runtime.process_state import ProcessState
+from app.server.admission import RETRY_SECONDS
 from app.server.batched_stream import BatchedStream
-from app.server.limited_http_server import CONNECTIONS_PER_PAGE, LIMITS, LimitedHTTPServer
+from app.server.limited_http_server import CONNECTIONS_PER_PAGE, LIMITS, MOST_REFUSALS, LimitedHTTPServer
 from tests.app.other_loop import run_on_new_loop
 from tests.waiting import SECONDS
 
@@ -71,24 +72,25 @@ def run(scenario: Scenario, **options: Any) -> None:
     run_on_new_loop(with_server)
 
 
-async def is_served(port: int) -> bool:
-    """Return whether a new connection, which stays open, gets an answer."""
+async def status(port: int) -> int:
+    """Return the status of the answer to a new connection, which stays open unless it is refused; 0 without an answer."""
     reader, writer = await asyncio.open_connection("127.0.0.1", port)
     _kept.append(writer)
     writer.write(REQUEST)
     try:
-        return (await reader.readline()).startswith(b"HTTP/1.1 200")
+        line = await reader.readline()
     except ConnectionResetError:
-        return False
+        return 0
+    return int(line.split()[1]) if line else 0
 
 
 _kept: list[asyncio.StreamWriter] = []
 
 
-@pytest.fixture(autouse=True)
-def close_connections() -> Any:
-    _kept.clear()
-    yield
+async def close_kept() -> None:
+    for writer in _kept:
+        writer.close()
+        await writer.wait_closed()
     _kept.clear()
 
 
@@ -101,15 +103,40 @@ def refused(state: ProcessState) -> float:
 @pytest.mark.parametrize(("xheaders", "most"), [(False, CONNECTIONS_PER_PAGE), (True, CONNECTIONS_PER_PAGE + 1)])
 def test_connections_are_limited(xheaders: bool, most: int, state: ProcessState) -> None:
     async def scenario(port: int) -> None:
-        assert [await is_served(port) for _ in range(most + 1)] == [True] * most + [False]
+        assert [await status(port) for _ in range(most + 1)] == [200] * most + [503]
         assert refused(state) == 1
-        for writer in _kept:
-            writer.close()
-            await writer.wait_closed()
-        assert await is_served(port)
-        _kept[-1].close()
+        await close_kept()
+        assert await status(port) == 200
+        await close_kept()
 
     run(scenario, xheaders=xheaders)
+
+
+def test_a_refused_connection_says_when_to_come_again_and_ends(state: ProcessState) -> None:
+    async def scenario(port: int) -> None:
+        for _ in range(CONNECTIONS_PER_PAGE):
+            await status(port)
+        reader, writer = await asyncio.open_connection("127.0.0.1", port)
+        writer.write(REQUEST)
+        answer = await reader.read()
+        assert f"Retry-After: {RETRY_SECONDS}\r\n".encode() in answer
+        _kept.append(writer)
+        await close_kept()
+
+    run(scenario)
+
+
+def test_refusals_beyond_their_own_limit_are_closed(state: ProcessState) -> None:
+    async def scenario(port: int) -> None:
+        for _ in range(CONNECTIONS_PER_PAGE):
+            await status(port)
+        # These connections send nothing, so that their refusals last.
+        opened = [await asyncio.open_connection("127.0.0.1", port) for _ in range(MOST_REFUSALS + 1)]
+        assert await opened[-1][0].read() == b""
+        _kept.extend(writer for _, writer in opened)
+        await close_kept()
+
+    run(scenario)
 
 
 def test_websockets_do_not_count_as_connections(state: ProcessState) -> None:
