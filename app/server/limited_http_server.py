@@ -20,7 +20,7 @@ from app.runtime.process_state import process_state
 from app.runtime.visitors import network_of
 from app.server.admission import LONGEST_LINK, RETRY_SECONDS, refusal_page
 from app.server.batched_stream import batched
-from app.server.routes import redirect_to_page, refuse_other_hosts, refuse_other_routes
+from app.server.routes import redirect_to_page, refuse_other_hosts, refuse_other_routes, secure_other_files
 
 LIMITS: Mapping[str, int] = {
     # Longest time until the next request of a connection has begun and its headers have arrived.
@@ -66,6 +66,7 @@ class LimitedHTTPServer(HTTPServer):
             refuse_other_routes(self.request_callback)
             refuse_other_hosts(self.request_callback)
             redirect_to_page(self.request_callback)
+            secure_other_files(self.request_callback)
 
     def handle_stream(self, stream: IOStream, address: Any) -> None:
         """Serve a new connection, or refuse it."""

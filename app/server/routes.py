@@ -6,8 +6,8 @@ imports the module that the address names.
 The handlers are installed in two documented lists of ``bokeh.server.urls``, from which Bokeh builds its web application
 (https://docs.bokeh.org/en/latest/docs/reference/server/urls.html). Panel also adds its handlers there. The lists are the only
 public way to reach the handlers of ``panel serve`` without a command line option: lifecycle hooks get no reference to the web
-application, which already exists when the hooks run. Bokeh and Panel add other handlers elsewhere: for ``/favicon.ico``,
-``/app/static`` and Panel's login pages.
+application, which already exists when the hooks run. Bokeh and Panel add other handlers elsewhere: for ``/favicon.ico`` and
+``/app/static``, which are replaced, and for Panel's login pages.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ import secrets
 from typing import Any
 
 from bokeh.server.tornado import BokehTornado
+from bokeh.server.views.ico_handler import IcoHandler
 from bokeh.settings import settings as bokeh_settings
 from panel.io.server import DocHandler, RootHandler, WSHandler
 from tornado.web import Finish, HTTPError, RedirectHandler, StaticFileHandler
@@ -61,6 +62,16 @@ def refuse_other_routes(application: BokehTornado) -> None:
     """Answer all paths but the served paths with status 404."""
     # Tornado tries the last added handlers first.
     application.add_handlers(".*", [(f"(?!(?:{'|'.join(served_routes(application))})$).*", NotFound)])
+
+
+def secure_other_files(application: BokehTornado) -> None:
+    """Serve the icon and the files beside the page with security headers."""
+    files = [
+        (f"{application.prefix}{path.rstrip('/')}/static/(.*)", _secured(StaticFileHandler), {"path": static_path})
+        for path, context in application.applications.items()
+        if (static_path := context.application.static_path) is not None
+    ]
+    application.add_handlers(".*", [*files, (_ICON, _secured(IcoHandler), {"app": application})])
 
 
 class PageRedirect(SecurityHeaders, RedirectHandler):

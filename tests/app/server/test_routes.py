@@ -31,8 +31,9 @@ def documented() -> list[str]:
 
 
 def test_all_mounted_routes_are_documented(mounted: list[str]) -> None:
-    # The addresses of modules contain a hash.
-    assert [re.sub(r"/browser/[0-9a-f]+/", "/browser/…/", route) for route in mounted[2:]] == documented()
+    # The addresses of modules contain a hash. The first two patterns refuse hosts and other routes.
+    routes = [re.sub(r"/browser/[0-9a-f]+/", "/browser/…/", route) for route in mounted[2:]]
+    assert list(dict.fromkeys(routes)) == documented()
 
 
 def accepts(application: BokehTornado, host: str) -> bool:

@@ -44,7 +44,7 @@ class Served:
         request = urllib.request.Request(f"{self.running.root}{path}", headers=headers)
         try:
             with urllib.request.urlopen(request, timeout=SECONDS) as answer:
-                return answer.status, answer.read().decode(), answer.headers
+                return answer.status, answer.read().decode(errors="replace"), answer.headers
         except urllib.error.HTTPError as refusal:
             with refusal:
                 return refusal.code, refusal.read().decode(), refusal.headers
@@ -88,7 +88,8 @@ def test_server_answers_during_compilation_and_is_ready_afterwards(served: Serve
 
 
 def test_responses_have_security_headers(served: Served) -> None:
-    for path in ("/status", "/metrics", "/readiness", "/nothing", "/static/js/bokeh.min.js"):
+    files = ("/static/js/bokeh.min.js", "/app/static/theme.css", "/favicon.ico")
+    for path in ("/status", "/metrics", "/readiness", "/nothing", *files):
         _, _, headers = served.get(path)
         assert headers["Content-Security-Policy"].startswith("default-src 'self'; "), path
         assert headers["X-Content-Type-Options"] == "nosniff", path
