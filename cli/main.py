@@ -160,7 +160,9 @@ def _message(error: Exception) -> str:
 
 
 def _on_one_line(text: str) -> str:
-    return " ".join(text.split())
+    """Return a text on one line. Control characters, which could change the terminal, are escaped."""
+    line = " ".join(text.split())
+    return "".join(each if each.isprintable() else ascii(each)[1:-1] for each in line)
 
 
 def _fail(sentence: str, code: int) -> int:

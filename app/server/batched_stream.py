@@ -11,6 +11,10 @@ from typing import Any
 from tornado.concurrent import chain_future
 from tornado.iostream import IOStream, UnsatisfiableReadError
 
+LONGEST_WRITE = 120.0
+"""Longest time until written data are sent, in seconds. A client that reads too slowly would otherwise keep its connection, and
+the data that wait for it, without end."""
+
 _HEADERS_TOO_LARGE = b"HTTP/1.1 431 Request Header Fields Too Large\r\nConnection: close\r\nContent-Length: 0\r\n\r\n"
 # Number of reads that empty the connection after this answer.
 _MOST_READS = 16
@@ -40,7 +44,7 @@ class BatchedStream(IOStream):
         if not self._has_sent:
             self._has_sent = True
             asyncio.get_running_loop().call_soon(self._end_batch)
-            return super().write(data)
+            return self._write(data)
         result: Future[None] = Future()
         # The caller need not await the result.
         result.add_done_callback(lambda done: done.cancelled() or done.exception())
@@ -59,6 +63,14 @@ class BatchedStream(IOStream):
         self._end_batch()
         super().close(exc_info)
 
+    def _write(self, data: bytes | memoryview) -> Future[None]:
+        """Send data, and close the connection if this takes too long."""
+        sent = super().write(data)
+        if not sent.done():
+            limit = asyncio.get_running_loop().call_later(LONGEST_WRITE, self.close)
+            sent.add_done_callback(lambda _: limit.cancel())
+        return sent
+
     def _refuse_headers(self) -> None:
         with suppress(OSError):
             self.socket.send(_HEADERS_TOO_LARGE)
@@ -74,7 +86,7 @@ class BatchedStream(IOStream):
         results, self._results = self._results, []
         if parts:
             # The stream is open, because `close` ends the batch first.
-            sent = super().write(b"".join(parts))
+            sent = self._write(b"".join(parts))
             for result in results:
                 chain_future(sent, result)
 

@@ -14,7 +14,7 @@ from typing import Any
 import param
 from bokeh.core.serialization import DeserializationError, Deserializer, UnknownReferenceError
 from bokeh.document import Document
-from bokeh.events import DocumentReady, ModelEvent
+from bokeh.events import DocumentReady, ModelEvent, SelectionGeometry
 from bokeh.model import DataModel, Model
 from bokeh.models import (
     AbstractGroup,
@@ -151,10 +151,17 @@ def _check_event(event: Any) -> None:
         raise RefusedMessageError(f"{name}: nothing on the server waits for it")
     if not all(_is_real(getattr(event, field)) for field in _EVENT_COORDINATES if hasattr(event, field)):
         raise RefusedMessageError(f"{name}: its coordinates must be numbers")
+    if isinstance(event, SelectionGeometry) and not _is_rectangle(event.geometry):
+        raise RefusedMessageError(f"{name}: its geometry must be a rectangle")
+
+
+def _is_rectangle(geometry: Any) -> bool:
+    return isinstance(geometry, Mapping) and all(_is_real(geometry.get(edge)) for edge in _EDGES)
 
 
 # Numeric fields of the events of plots.
-_EVENT_COORDINATES = ("x", "y", "sx", "sy", "x0", "x1", "y0", "y1")
+_EDGES = ("x0", "x1", "y0", "y1")
+_EVENT_COORDINATES = ("x", "y", "sx", "sy", *_EDGES)
 
 
 def _check_values(events: Any, known: Container[str]) -> None:

@@ -81,6 +81,11 @@ def test_invalid_request_prints_one_line_and_writes_nothing(
     assert err.count("\n") == 1
 
 
+def test_control_characters_in_a_message_are_escaped(run: Run) -> None:
+    _, _, err = run("reproduce", "I-xh", "--output", "no/such\x1b[2J")
+    assert err.rstrip("\n").isprintable()
+
+
 @pytest.mark.parametrize("command", COMMANDS)
 def test_help_contains_an_example(command: str, run: Run) -> None:
     code, out, _ = run(command, "--help")

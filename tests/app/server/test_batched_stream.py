@@ -6,6 +6,7 @@ import asyncio
 import socket
 import ssl
 from collections.abc import Awaitable, Callable
+from typing import Any
 from unittest.mock import patch
 
 import pytest
@@ -65,6 +66,33 @@ def test_closing_sends_what_has_been_written() -> None:
         await asyncio.gather(*results)
         with pytest.raises(StreamClosedError):
             stream.write(b"late")
+
+    run(scenario)
+
+
+def test_a_connection_whose_client_does_not_read_is_closed(monkeypatch: pytest.MonkeyPatch) -> None:
+    async def scenario(stream: IOStream, peer: IOStream) -> None:
+        with pytest.raises(StreamClosedError):
+            await stream.write(bytes(10_000_000))
+
+    monkeypatch.setattr("app.server.batched_stream.LONGEST_WRITE", 0.1)
+    run(scenario)
+
+
+def test_the_limit_of_a_write_ends_when_its_data_are_sent() -> None:
+    async def scenario(stream: IOStream, peer: IOStream) -> None:
+        loop, limits = asyncio.get_running_loop(), []
+
+        def call_later(delay: float, *arguments: Any) -> asyncio.TimerHandle:
+            limits.append(loop.call_at(loop.time() + delay, *arguments))
+            return limits[-1]
+
+        with patch.object(loop, "call_later", call_later):
+            sent = stream.write(bytes(10_000_000))
+        assert [limit.cancelled() for limit in limits] == [False]
+        await peer.read_bytes(10_000_000)
+        await sent
+        assert [limit.cancelled() for limit in limits] == [True]
 
     run(scenario)
 

@@ -118,6 +118,21 @@ def test_a_model_may_be_sent_with_its_attributes(plotted: tuple[Document, Any, A
     assert not is_accepted(document, event("button_click", model={"id": "new", **whole}))
 
 
+RECTANGLE = {"type": "rect", "x0": 0.0, "x1": 1.0, "y0": -1.0, "y1": 1.0}
+
+
+@pytest.mark.parametrize(
+    ("geometry", "accepted"),
+    [(RECTANGLE, True), ({**RECTANGLE, "y1": "1"}, False), ({"type": "poly", "x": [0.0]}, False), ([0.0], False), (None, False)],
+)
+def test_a_selection_is_a_rectangle(geometry: Any, accepted: bool) -> None:
+    document, plot = Document(), figure()
+    document.add_root(plot)
+    plot.on_event("selectiongeometry", lambda event: None)
+    sent = {"type": "map", "entries": [list(each) for each in geometry.items()]} if isinstance(geometry, dict) else geometry
+    assert is_accepted(document, event("selectiongeometry", model={"id": plot.id}, geometry=sent, final=True)) == accepted
+
+
 POINT = {"sx": 1, "sy": 1, "x": 0.5, "y": 0.5, "modifiers": {"shift": False}}
 
 
