@@ -38,3 +38,8 @@ def test_the_audit_fails_if_it_finds_a_vulnerability_or_audits_nothing(
     program.chmod(0o755)
     run = subprocess.run([sys.executable, AUDIT], env={"PATH": str(tmp_path)}, capture_output=True, text=True, check=False)
     assert (run.returncode, said in run.stdout) == (code, True), run
+
+
+def test_without_pip_audit_nothing_is_audited(tmp_path: Path) -> None:
+    run = subprocess.run([sys.executable, AUDIT], env={"PATH": str(tmp_path)}, capture_output=True, text=True, check=False)
+    assert (run.returncode, run.stderr, "pip-audit is not installed" in run.stdout) == (2, "", True), run
