@@ -31,9 +31,6 @@ INTERRUPTED = 130
 COMMANDS = ("map", "orbit", "lyapunov", "measures", "curves", "ensemble", "sweep", "reproduce", "potential", "serve")
 """Names of the modules in `commands`. A module is imported when its command runs."""
 
-FORMER_OPTIONS = {"--certify": "--evidence", "--no-certify": "--no-evidence"}
-"""Present names of renamed options, by former name."""
-
 
 class _Command(TyperCommand):
     """A command whose arguments may begin with one minus, as formulas do. All its options begin with two."""
@@ -46,7 +43,6 @@ class _Command(TyperCommand):
         minus_words: list[str] = []
         while words and words[0] != "--":
             word = words.popleft()
-            word = FORMER_OPTIONS.get(word, word)
             if re.match("-[^-]", word):
                 minus_words.append(word)
                 continue

@@ -84,7 +84,3 @@ from engine.trajectories.trajectory import integrate_orbit as integrate_orbit
 
 if not typing.TYPE_CHECKING:
     __all__ = sorted(name for name, value in vars().items() if name[0] != "_" and not isinstance(value, types.ModuleType))
-    from engine.foundations.former_names import find_former_name
-
-    # With `__getattr__`, type checkers would accept any name as a name of the module.
-    __getattr__ = find_former_name

@@ -33,7 +33,7 @@ def __getattr__(name: str) -> Any:
         # With `import *` all of these are imported.
         return [*engine.__all__, *(["Explorer"] if find_spec("panel") else [])]
     if name not in engine.__all__:
-        return import_module("engine.foundations.former_names").find_former_name(name, stacklevel=3)
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(engine, name)
 
 

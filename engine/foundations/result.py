@@ -18,7 +18,7 @@ import numpy as np
 from engine.foundations.arrays import ReadOnlyArrays
 from engine.foundations.extras import load_pictures
 from engine.foundations.output_lock import output_named_in_errors
-from engine.foundations.stored_fields import FORMER_FIELDS, write_field
+from engine.foundations.stored_fields import write_field
 from engine.foundations.wording import describe_codes, show_numbers, summarize
 
 if TYPE_CHECKING:
@@ -68,7 +68,6 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
         {
             *("chart", "codes", "columns", "fate_labels", "held_as", "in_well_units", "inner_names", "kinds", "made_by"),
             *("numbers", "read_parts", "row_dimension", "shown_numbers"),
-            *FORMER_FIELDS,
         }
     )
     """Attributes that `dir` omits, because they are for internal use."""

@@ -1,4 +1,4 @@
-"""Fields of results in files, and their former names. Files contain numbers and texts unchanged, other values as JSON."""
+"""Fields of results in files, and their names in earlier versions. Files contain numbers and texts unchanged, other values as JSON."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 FORMER_FIELDS: Mapping[str, str] = {"certificate": "evidence", "certify": "use_evidence", "certifies_tori": "tori_are_evidence"}
-"""Former names of attributes and parameters of public classes, and of variables and attributes in files."""
+"""Names of variables and attributes in files of earlier versions, with the present ones."""
 
 
 def with_present_names(dataset: xr.Dataset) -> xr.Dataset:

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from engine.foundations.former_names import with_former_fields
 from engine.foundations.result import MapResult, Result
 from engine.foundations.validation import checked_flag
 from engine.foundations.wording import describe_codes
@@ -53,7 +52,6 @@ NOTED_SHARE = 0.01
 """Smallest share of interior pixels, not supported by double precision, at which a map counts as rounded."""
 
 
-@with_former_fields
 @dataclass(frozen=True, eq=False, repr=False)
 class EscapeMap(MapResult):
     """An escape map, complete or in progress. Arrays are read-only and of shape (rows, columns), with row 0 at the bottom.

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from engine.foundations.former_names import with_former_fields
 from engine.foundations.validation import check_type, checked_flag, replace_unchecked, short_repr
 from engine.slices.axes import Energy, common_energy, scaled_energy
 from engine.slices.default_window import map_window
@@ -38,7 +37,6 @@ FINEST_PIXEL = 1e-15
 """Smallest distance of neighbouring pixels, as a share of the well's unit or, if larger, of the largest coordinate."""
 
 
-@with_former_fields
 @dataclass(frozen=True)
 class MapSpec:
     """The request for an escape map: the orbits, the resolution and the integration time.

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from engine.foundations.former_names import with_former_fields
 from engine.foundations.validation import LARGEST_NUMBER, check_type, checked_count, short_repr
 from engine.maps.spec import DEFAULT_RESOLUTION, MapSpec
 from engine.slices.axes import Coordinate, ParameterAxis
@@ -34,7 +33,6 @@ VALUE_ATTRIBUTES = ("requested", "refine", "count")
 """Names of the attributes of a sweep that describe only its values and their number."""
 
 
-@with_former_fields
 @dataclass(frozen=True)
 class SweepSpec:
     """A sweep of maps over energies, or over a parameter of the system, on one plane.

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from engine.expressions.nodes import Expression
-from engine.foundations.former_names import with_former_fields
 from engine.foundations.result import Result
 from engine.foundations.validation import LONGEST_TIME, check_type, checked_between, checked_items, checked_number, checked_t_max
 from engine.integrator.source.polynomial_recurrence import Terms
@@ -38,7 +37,6 @@ _AS_IN_ENDS: Any = ...
 _SHORT_TIME = 1000.0
 
 
-@with_former_fields
 @dataclass(frozen=True, init=False)
 class Potential(Motion):
     """V(x, y), dimensionless: H = (px² + py²)/2m + V, with a mass m of 1 by default.

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from typing import ClassVar
 
 from engine.evidence.birkhoff_averages import TORUS_DIGITS
-from engine.foundations.former_names import with_former_fields
 from engine.foundations.validation import checks_types
 from engine.foundations.wording import format_count, format_time
 from engine.propagation.fates import Evidence, Fate, OrbitResult, describe_evidence, describe_fate, name_fate, outcome_of
@@ -19,7 +18,6 @@ from engine.trajectories.trajectory import Orbit
 _DEVIATION_INDICATORS = {indicator.name for indicator in INDICATORS if indicator.of_deviations}
 
 
-@with_former_fields
 @dataclass(frozen=True)
 class OrbitVerdict(OrbitResult):
     """The facts known about one orbit.

@@ -8,7 +8,6 @@ from typing import Any, ClassVar
 import numpy as np
 
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
-from engine.foundations.former_names import with_former_parameters
 from engine.foundations.result import Chart, RecordedResult
 from engine.foundations.validation import checked_state, checks_types
 from engine.integrator.kernels.dense_output import sample_path, trace_steps
@@ -40,7 +39,6 @@ class Separation(RecordedResult):
     chart: ClassVar = Chart("t", "distance", "t", "distance", logarithmic="y")
 
 
-@with_former_parameters(t_end="t_max")
 @checks_types(potential=Potential, execution=Execution)
 def compute_separation(
     potential: Potential, first: Any, second: Any, t_max: float, *, execution: Execution = DEFAULT_EXECUTION

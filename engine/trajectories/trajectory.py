@@ -11,7 +11,6 @@ import numpy as np
 from engine.evidence.birkhoff_averages import compare_halves
 from engine.exits.exit_rows import exit_curves_if_known
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
-from engine.foundations.former_names import with_former_fields
 from engine.foundations.validation import checked_state, checks_types
 from engine.integrator.kernels.dense_output import find_crossings, sample_deviations, sample_path, trace_steps
 from engine.propagation.classification import OrbitSteps, record_orbit
@@ -33,7 +32,6 @@ _MIN_INTERVALS = 400
 _MAX_INTERVALS = 500_000
 
 
-@with_former_fields
 @dataclass(frozen=True, eq=False, repr=False)
 class Orbit(OrbitResult):
     """One orbit, dimensionless, sampled at n evenly spaced times from 0 to its end or t_max; arrays are read-only.

@@ -42,10 +42,6 @@ REQUESTS = {
         ("III", "--energy", 0.3, "--plane", "x_y", "--resolution", 10, "--t-max", 300, "--no-evidence", "--threads", 1),
         MapSpec(CASES["III"], Plane.X_Y, 0.3, (10, 10), t_max=300.0, use_evidence=False),
     ),
-    "the former name of an option": (
-        ("III", "--energy", 0.3, "--resolution", 8, "--t-max", 100, "--no-certify"),
-        MapSpec(CASES["III"], Plane.X_PX, 0.3, (8, 8), t_max=100.0, use_evidence=False),
-    ),
     "(x, h)": (
         ("I", "--energies", 0.13, 0.4, "--plane", "x_h", "--resolution", 8, "--t-max", 100),
         MapSpec(CASES["I"], Plane.X_H, (0.13, 0.4), (8, 8), t_max=100.0),

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import subprocess
 import sys
-import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -23,14 +22,6 @@ def check_refusal(call: Callable[[], Any], package: str, extra: str) -> None:
     except ModuleNotFoundError as error:
         found = str(error)
     assert found == f"{package} is not installed: pip install 'escape-explorer[{extra}]'", found
-
-
-def check_former_name(old: str, new: str) -> None:
-    """Check that a former name stands for the present one, with a warning."""
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        assert getattr(escape_explorer, old) is getattr(escape_explorer, new)
-    assert [str(warning.message) for warning in caught] == [f"{old} is deprecated: use {new}"], caught
 
 
 def run_program(*arguments: str) -> str:
@@ -58,7 +49,6 @@ def main() -> None:
     check_refusal(
         lambda: compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.3,), (9, 9), t_max=10.0), "sweep.zarr"), "zarr", "files"
     )
-    check_former_name("compute_curves", "compute_sweep")
     assert "pip install 'escape-explorer[page]'" in run_program("serve")
 
 
