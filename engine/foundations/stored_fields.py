@@ -1,4 +1,4 @@
-"""Fields of results in files, and their names in earlier versions. Files contain numbers and texts unchanged, other values as JSON."""
+"""Fields of results in files, and their names in earlier versions. Files contain numbers and texts unchanged, others as JSON."""
 
 from __future__ import annotations
 

@@ -58,6 +58,9 @@ def _check_beyond(setting: Setting, channel: int, state: np.ndarray, known: dict
     except UndecidedError:
         # The orbit runs to infinity in a finite time.
         later = None
+    if later is not None and later.time < flux.followed_time and not later.channel and not setting.orbits.leaves(later.state):
+        report.add(CHECK, UNDECIDED, "an orbit is far away, but does not leave")
+        return
     comes_back = later is not None and later.channel > 0
     if comes_back and not share:
         report.add(CHECK, UNDECIDED, "an orbit comes back, but none of those sampled for the flux")

@@ -97,6 +97,9 @@ def _check_reviews(
     known = {"spelling": name, "formula": formula.text, "spelled": other_formula.text}
     refusals = review.refusal, other.refusal
     accepted = (refusals[0] is None) == (refusals[1] is None)
+    if not accepted and any("is not decided within" in (refusal or "") for refusal in refusals):
+        report.add(CHECK, UNDECIDED, "one spelling needs more work than the limit")
+        return False
     report.judge(CHECK, "one spelling is refused", accepted, **known, refusals=refusals)
     if not accepted or review.refusal is not None:
         return False
