@@ -14,6 +14,9 @@ STARTS = 12
 # Rounding of escape times by the sampled exits, in units of time.
 _ROUNDING = 1e-5
 
+# Factor of the distance up to which an orbit is followed to see whether it comes back, possibly from a large outer well.
+_FARTHER = 1000.0
+
 
 def check_fates(setting: Setting, seed: int, report: Report) -> None:
     """Compare the fates of random starts, and of the start of an example."""
@@ -54,7 +57,7 @@ def _check_beyond(setting: Setting, channel: int, state: np.ndarray, known: dict
     flux = setting.flux
     share = float(flux.returning[flux.channels == channel][0])
     try:
-        later = setting.orbits.end_of(_beyond(setting, state), setting.exits, flux.followed_time)
+        later = setting.orbits.end_of(_beyond(setting, state), setting.exits, flux.followed_time, farther=_FARTHER)
     except UndecidedError:
         # The orbit runs to infinity in a finite time.
         later = None

@@ -69,8 +69,8 @@ class OwnOrbits:
     def _varied(self) -> hy.taylor_adaptive:
         return hy.taylor_adaptive(self.system.variational_equations(), [0.0] * 8, tol=TOLERANCE, compact_mode=True)
 
-    def steps(self, start: np.ndarray, t_max: float) -> Iterator[Step]:
-        """Yield the steps of an orbit until t_max or `farthest`."""
+    def steps(self, start: np.ndarray, t_max: float, *, farther: float = 1.0) -> Iterator[Step]:
+        """Yield the steps of an orbit until t_max or `farthest` times a factor."""
         integrator = self._plain
         integrator.time = 0.0
         integrator.state[:] = start
@@ -79,7 +79,7 @@ class OwnOrbits:
             integrator.step(max_delta_t=t_max - begin, write_tc=True)
             self._check(start, integrator.state)
             yield Step(begin, float(integrator.time), integrator.tc.copy())
-            if integrator.time >= t_max or np.hypot(*integrator.state[:2]) > self.farthest:
+            if integrator.time >= t_max or np.hypot(*integrator.state[:2]) > farther * self.farthest:
                 return
         raise UndecidedError("too many steps")
 
@@ -116,11 +116,11 @@ class OwnOrbits:
             path[within] = step.states(times[within])
         return path
 
-    def end_of(self, start: np.ndarray, exits: Exits, t_max: float) -> End:
-        """Return the end of an orbit at the first exit that it crosses, at t_max, or at the distance `farthest`."""
+    def end_of(self, start: np.ndarray, exits: Exits, t_max: float, *, farther: float = 1.0) -> End:
+        """Return the end of an orbit at the first exit that it crosses, at t_max, or at `farthest` times a factor."""
         if not exits.channels:
             return End(0, *self.state_at(start, t_max))
-        for step in self.steps(start, t_max):
+        for step in self.steps(start, t_max, farther=farther):
             end, channel = _first_crossing(exits, step)
             if channel:
                 return End(channel, end, step.states(np.array([end]))[0])
