@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from engine import Fate, classify_orbits
-from tests.referee.own_orbits import UndecidedError
+from tests.referee.own_orbits import EnergyError, UndecidedError
 from tests.referee.report import UNDECIDED, Report
 from tests.referee.setting import DURATION, STEADY, Setting
 
@@ -58,6 +58,8 @@ def _check_beyond(setting: Setting, channel: int, state: np.ndarray, known: dict
     share = float(flux.returning[flux.channels == channel][0])
     try:
         later = setting.orbits.end_of(_beyond(setting, state), setting.exits, flux.followed_time, farther=_FARTHER)
+    except EnergyError:
+        raise
     except UndecidedError:
         # The orbit runs to infinity in a finite time.
         later = None

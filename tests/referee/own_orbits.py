@@ -32,6 +32,10 @@ class UndecidedError(Exception):
     """An orbit cannot be followed: its steps become too many, its state is not finite, or its energy changes."""
 
 
+class EnergyError(UndecidedError):
+    """The energy of an own orbit changes."""
+
+
 @dataclass(frozen=True)
 class Step:
     """A step of an orbit: its times, and its Taylor coefficients of shape (4, order + 1)."""
@@ -105,7 +109,7 @@ class OwnOrbits:
         places, momenta = np.array([start[:2], state[:2]]), np.array([start[2:4], state[2:4]])
         potential, kinetic = self.system.value(*places.T), 0.5 * np.sum(momenta**2, axis=1)
         if not abs(np.diff(potential + kinetic)[0]) <= _LARGEST_CHANGE * np.sum(np.abs(potential) + kinetic):
-            raise UndecidedError("the energy of an own orbit changes")
+            raise EnergyError("the energy of an own orbit changes")
 
     def path_from_rest(self, place: np.ndarray, duration: float) -> np.ndarray:
         """Return the states of an orbit that starts at rest, of shape (n, 4)."""
