@@ -10,6 +10,11 @@ from typing import Any
 _TEXT = (Path(__file__).parents[1] / "docs" / "extending.md").read_text(encoding="utf-8")
 
 
+def example_colours(key: str) -> list[tuple[str, ...]]:
+    """Return the colours of a kind of outcome in each palette, in order."""
+    return [tuple(re.findall("#[0-9a-f]{6}", colours)) for colours in re.findall(rf'`"{key}": \((.*?)\)`', _TEXT)]
+
+
 def run_example(heading: str, given: Mapping[str, Any]) -> dict[str, Any]:
     """Return the given names and the names that the Python code under a heading defines."""
     section = _TEXT.split(f"\n## {heading}\n")[1].split("\n## ")[0]

@@ -49,7 +49,9 @@ class Kind:
     word
         The word for the place where orbits end: "exit", "centre".
     label, action
-        Label and action of an outcome, with {} for its name. The verb of the action must end in e, because `Outcome.past` adds d.
+        Label and action of an outcome, with {} for its name. The action begins with a verb.
+    verbs
+        The verb of the action in the present and in the past tense.
     event
         One word for the event that ends an orbit: "escape", "collision".
     origin
@@ -60,6 +62,7 @@ class Kind:
     word: ClassVar[str]
     label: ClassVar[str]
     action: ClassVar[str]
+    verbs: ClassVar[tuple[str, str]] = "escapes", "escaped"
     event: ClassVar[str] = "escape"
     origin: ClassVar[str] = "backward in time it {present}"
 
@@ -196,7 +199,7 @@ class Centre(End):
     """
 
     key, word, event, attribute = "collision", "centre", "collision", "centres"
-    label, action = "collision with {}", "collide with {}"
+    label, action, verbs = "collision with {}", "collide with {}", ("collides", "collided")
     spellings = ("center",)
 
 
@@ -271,14 +274,17 @@ class Outcome:
     @property
     def present(self) -> str:
         """The action of an orbit in the present tense: "escapes through exit 1"."""
-        verb, rest = self.action.split(" ", 1)
-        return f"{verb}s {rest}"
+        return f"{self.kind.verbs[0]} {self._manner}"
 
     @property
     def past(self) -> str:
         """The action of an orbit in the past tense, as the beginning of a sentence: "Escaped through exit 1"."""
-        verb, rest = self.action.split(" ", 1)
-        return f"{verb.capitalize()}d {rest}"
+        return f"{self.kind.verbs[1].capitalize()} {self._manner}"
+
+    @property
+    def _manner(self) -> str:
+        """The action without its verb: "through exit 1"."""
+        return self.action.partition(" ")[2]
 
     @property
     def event(self) -> str:

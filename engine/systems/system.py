@@ -102,7 +102,8 @@ class System:
 
     def default_of(self, name: str) -> float:
         """Return the default value of a parameter."""
-        return self.entry.parameters.get(name, 1.0)
+        other = WELL_PARAMETERS[name].default if name in WELL_PARAMETERS else 1.0
+        return self.entry.parameters.get(name, other)
 
     def range_of(self, name: str) -> tuple[float, float]:
         """Return the smallest and the largest legal value of a parameter."""
@@ -166,4 +167,4 @@ def _make_potential(system: System) -> Potential:
     letters = {name: value for name, value in values.items() if name not in WELL_PARAMETERS}
     well_values = {name: value for name, value in values.items() if name in WELL_PARAMETERS and name != ROTATION}
     potential = parse_formula(entry.formula, entry.name, letters).with_parameters(**well_values)
-    return replace(potential.in_rotating_frame(values[ROTATION]), system=system)
+    return replace(potential.in_rotating_frame(system.value_of(ROTATION)), system=system)

@@ -11,7 +11,9 @@ from engine.systems.formulas.formula_parser import read_potential
 from engine.systems.outcomes import KINDS, EscapeCircle
 from plots.layers.origins import ORIGINS
 from plots.pictures.palette import PALETTES, end_places
-from tests.extending import run_example
+from tests.extending import example_colours, run_example
+from tests.plots.colour_vision import VISIONS
+from tests.plots.pictures import test_palette
 
 WELL = "½(x² + y²) − xy²"
 DOCK = (0.2, 0.3, 0.05, "the dock")
@@ -22,8 +24,8 @@ def station(monkeypatch: pytest.MonkeyPatch) -> type[outcomes.End]:
     """Return the kind of outcome of the example, with colours in each palette."""
     kind: type[outcomes.End] = run_example("Example: add a kind of outcome", vars(outcomes))["Station"]
     monkeypatch.setitem(KINDS, kind.key, kind)
-    for palette in PALETTES.values():
-        monkeypatch.setitem(palette.of_kinds, kind.key, ("#005f73", "#0a9396", "#94d2bd", "#e9d8a6"))
+    for palette, colours in zip(PALETTES.values(), example_colours(kind.key), strict=True):
+        monkeypatch.setitem(palette.of_kinds, kind.key, colours)
     return kind
 
 
@@ -32,6 +34,16 @@ def test_each_kind_has_individual_colours_in_each_palette() -> None:
     assert len(counts) == 1
     for palette in PALETTES.values():
         assert len(set(palette.ends)) == len(palette.ends)
+
+
+@pytest.mark.parametrize("name", PALETTES)
+def test_colours_of_the_example_pass_the_tests_of_palettes(name: str, station: type[outcomes.End]) -> None:
+    palette = PALETTES[name]
+    test_palette.test_channels_crossing_classes_characters_and_orbits_have_no_colour_in_common(palette)
+    for vision in VISIONS:
+        test_palette.test_collisions_and_escape_differ_from_each_other_and_from_exits_and_bounded_orbits(palette, vision)
+    for page in test_palette.PAGES:
+        test_palette.test_orbits_collisions_and_escape_are_visible_on_the_page(palette, page)
 
 
 def test_formulas_and_files_keep_ends_of_all_kinds(station: type[outcomes.End]) -> None:
@@ -57,7 +69,7 @@ def test_orbits_end_at_a_station_as_at_a_body_and_in_its_words_and_colour(statio
     assert arrival[2].sentence == "Arrived at the dock."
     palette = PALETTES["paper"]
     assert palette.entry(3, arrival).label == "arrival at the dock"
-    assert palette.entry(3, arrival).colour == palette.ends[end_places(arrival)[2]] == "#005f73"
+    assert palette.entry(3, arrival).colour == palette.ends[end_places(arrival)[2]] == palette.of_kinds["arrival"][0]
 
 
 def test_passages_from_a_station_have_individual_codes(station: type[outcomes.End]) -> None:

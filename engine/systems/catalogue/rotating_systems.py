@@ -86,7 +86,7 @@ ROTATING_ENTRIES = (
         "Two screened charges at x = ±1, at rest: collision with one of them, or escape beyond r = 10.",
         "two potentials of H. Yukawa, Proceedings of the Physico-Mathematical Society of Japan 17, 48 (1935); this project "
         "chose the values",
-        {"k": 0.5, ROTATION: 0.0},
+        {"k": 0.5},
         ("k", ROTATION),
         EnergyRange(-1.5, 1.0, (), 0.02),
     ),
@@ -96,7 +96,7 @@ ROTATING_ENTRIES = (
         "x² y² exp(−x² − y²); escape 6 exits 4",
         "Chaotic scattering off four hills of height exp(−2) = 0.135, at rest: escape beyond r = 6 near one of four directions.",
         "S. Bleher, E. Ott & C. Grebogi, Physical Review Letters 63, 919 (1989); this project chose the radius",
-        {ROTATION: 0.0},
+        {},
         (ROTATION,),
         EnergyRange(0.005, 0.2, (), 0.05),
     ),

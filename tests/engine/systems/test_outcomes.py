@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from engine.systems.outcomes import Centre, EscapeCircle, Exit, outcomes_of, read_outcomes, write_outcomes
+from engine.systems.outcomes import Centre, End, EscapeCircle, Exit, outcomes_of, read_outcomes, write_outcomes
 
 ALL = outcomes_of(2, (Centre(0.0, 0.0, 0.1, "the Moon"), Centre(1.0, 0.0, 0.1), EscapeCircle(10.0)))
 
@@ -29,6 +29,15 @@ def test_each_outcome_has_a_sentence_and_a_verb() -> None:
         "entered through exit 1",
         "backward in time it collides with the Moon",
     ]
+
+
+def test_a_verb_may_be_irregular() -> None:
+    class Halo(End):
+        key, word = "departure", "halo"
+        label, action, verbs = "departure from {}", "leave {}", ("leaves", "left")
+
+    outcome = Halo.outcome(1, "the halo")
+    assert (outcome.present, outcome.sentence) == ("leaves the halo", "Left the halo.")
 
 
 def test_written_outcomes_are_read_again() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from engine import CASES, POTENTIALS, ParameterAxis, System, parse_formula, review_potential
+from engine.systems.catalogue.entry import CatalogueEntry
 from engine.systems.catalogue.table import CATALOGUE
 from engine.systems.review.potential_review import review_system
 from engine.systems.system import TYPED
@@ -25,6 +26,12 @@ def test_a_frame_may_rotate_either_way() -> None:
         assert System("I", parameters={"rotation": rotation}).potential.rotation == rotation
     low, high = System("I").range_of("rotation")
     assert low == -high < 0.0
+
+
+def test_a_system_with_letters_rests_if_its_entry_states_no_rotation(monkeypatch: pytest.MonkeyPatch) -> None:
+    entry = CatalogueEntry("Q", "Q", "½(x² + a y²) − xy²", parameters={"a": 2.0}, adjustable=("a",))
+    monkeypatch.setattr("engine.systems.system.CATALOGUE", {**CATALOGUE, "Q": entry})
+    assert System("Q").potential.rotation == 0.0
 
 
 def test_a_typed_system_keeps_its_letters_and_rotation_when_it_is_edited() -> None:
