@@ -33,6 +33,9 @@ _LAW_POINTS = 200
 # Symbols of the rates of decay laws.
 _RATE_SYMBOLS = {"exponential": "κ", "power law": "γ"}
 
+# Margin of an axis that is fitted to its points, as a share of their range.
+_MARGIN = 0.05
+
 Limits = tuple[float, float]
 """Ends of an axis."""
 
@@ -78,6 +81,11 @@ class Series:
         """x and y of the line through the points."""
         return (np.repeat(self.x, 2)[1:], np.repeat(self.y, 2)[:-1]) if self.shape is Shape.STEPS else (self.x, self.y)
 
+    def extent(self, axis: str) -> tuple[np.ndarray, ...]:
+        """Return the coordinates of the points along an axis, "x" or "y", and of the ends of the bars along it."""
+        has_bars = self.bars is not None and (axis == "x") == (self.shape is Shape.BARS)
+        return (self.x if axis == "x" else self.y), *(self.bars if has_bars and self.bars else ())
+
 
 @dataclass(frozen=True)
 class Frame:
@@ -106,11 +114,30 @@ class Frame:
 
 @dataclass(frozen=True, eq=False)
 class Chart:
-    """Series in a frame. `limits` are those of the x axis and the y axis; None fits an axis to the points."""
+    """Series in a frame. `limits` are those of the x axis and the y axis; None fits an axis to the points, see `axis_limits`."""
 
     frame: Frame
     series: Sequence[Series]
     limits: tuple[Limits | None, Limits | None] = (None, None)
+
+    @property
+    def axis_limits(self) -> tuple[Limits, Limits]:
+        """The limits of both axes, which all renderers apply."""
+        x, y = self.limits
+        return x or self._fitted_limits("x"), y or self._fitted_limits("y")
+
+    def _fitted_limits(self, axis: str) -> Limits:
+        """Return limits a little beyond the points and bars of the series."""
+        values = np.concatenate([np.zeros(0), *(part for one in self.series for part in one.extent(axis))])
+        is_logarithmic = axis in self.frame.logarithmic
+        values = values[np.isfinite(values) & ((values > 0.0) | (not is_logarithmic))]
+        if not values.size:
+            return (1.0, 100.0) if is_logarithmic else (0.0, 1.0)
+        low, high = float(values.min()), float(values.max())
+        if is_logarithmic:
+            return logarithmic_limits(low, high)
+        margin = _MARGIN * ((high - low) or abs(low) or 1.0)
+        return low - margin, high + margin
 
     def legend(self) -> list[Entry]:
         """Return the entries of the legend."""

@@ -28,7 +28,7 @@ def chart_elements(chart: Chart) -> list[hv.Element]:
 
 def axis_options(chart: Chart) -> dict[str, Any]:
     """Return the options that give elements the limits and logarithmic axes of a chart."""
-    limits = {f"{axis}lim": ends for axis, ends in zip("xy", chart.limits, strict=True) if ends is not None}
+    limits = {f"{axis}lim": ends for axis, ends in zip("xy", chart.axis_limits, strict=True)}
     return {**limits, **{f"log{axis}": True for axis in chart.frame.logarithmic}}
 
 

@@ -71,9 +71,8 @@ def draw_chart(axes: Axes, chart: Chart, style: FigureStyle = SCREEN, corner: Co
         axes.axhline(frame.level[0], color=THRESHOLD, linestyle="--", linewidth=1.2, label=frame.level[1])
     for axis in frame.logarithmic:
         axes.set(**{f"{axis}scale": "log"})
-    for axis, limits in zip("xy", chart.limits, strict=True):
-        if limits is not None:
-            axes.set(**{f"{axis}lim": limits})
+    for axis, limits in zip("xy", chart.axis_limits, strict=True):
+        axes.set(**{f"{axis}lim": limits})
     style_axes(axes, style, grid=True, labels=frame.labels)
     if corner is not None and len(chart.legend()) > 1:
         add_panel_legend(axes, corner, style)

@@ -81,9 +81,8 @@ class ChartView:
         if chart is None:
             return
         self.lines.data, self.points.data = _line_columns(chart.series), _point_columns(chart.series)
-        for axis_range, limits in zip((self.x_range, self.y_range), chart.limits, strict=True):
-            if limits is not None:
-                set_range(axis_range, *limits)
+        for axis_range, limits in zip((self.x_range, self.y_range), chart.axis_limits, strict=True):
+            set_range(axis_range, *limits)
         entries = chart.legend()
         self._legend.param.update(object=legend(entries), visible=bool(entries))
         self._labels = chart.frame.labels

@@ -52,8 +52,7 @@ class HistogramView:
 
     def _draw(self, data: Chart) -> hv.Histogram:
         (element,) = chart_elements(data)
-        x_limits = data.limits[0]
-        ticks = {"xticks": _few_ticks(*x_limits)} if "x" in self._frame.logarithmic and x_limits is not None else {}
+        ticks = {"xticks": _few_ticks(*data.axis_limits[0])} if "x" in self._frame.logarithmic else {}
         return element.opts(
             color=MEASURED,
             line_color=None,

@@ -1,0 +1,98 @@
+"""Charts have the same axes on the page, in figures and in HoloViews."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import holoviews as hv
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from app.views.components.charts import ChartView
+from engine import CASES, MapSpec, Plane, SweepSpec, compute_map, compute_statistics, compute_sweep, fit_decay_laws
+from plots.pictures.charts import (
+    Chart,
+    Frame,
+    Limits,
+    Series,
+    Shape,
+    probabilities_chart,
+    survival_chart,
+    sweep_charts,
+    times_chart,
+)
+from plots.pictures.holoviews_elements import axis_options
+from plots.pictures.palette import PAPER
+from plots.printed.curve_figures import draw_chart
+
+FRAME = Frame("points", "Points", ("x", "y"))
+POINTS = Series("points", "#123456", np.array([5.0, 6.0, np.nan]), np.array([10.0, 20.0, 30.0]), Shape.POINTS)
+BARS = (np.array([9.0, 18.0, 28.0]), np.array([11.0, 22.0, 32.0]))
+EDGES = (np.array([0.5, 1.5]), np.array([1.5, 2.5]))
+CHARTS = {
+    "fitted": Chart(FRAME, [POINTS]),
+    "fitted to error bars": Chart(FRAME, [replace(POINTS, bars=BARS)]),
+    "fitted along y": Chart(FRAME, [POINTS], ((0.0, 10.0), None)),
+    "fitted on logarithmic axes": Chart(replace(FRAME, logarithmic="xy"), [POINTS]),
+    "of one point": Chart(FRAME, [replace(POINTS, x=np.array([0.2]), y=np.array([0.0]))]),
+    "of bars": Chart(FRAME, [Series("", "#123456", np.array([1.0, 2.0]), np.array([3.0, 4.0]), Shape.BARS, EDGES)]),
+    "without points": Chart(FRAME, [replace(POINTS, x=np.zeros(0), y=np.zeros(0))]),
+    "without points, logarithmic": Chart(replace(FRAME, logarithmic="xy"), []),
+}
+
+
+def on_the_page(chart: Chart) -> tuple[Limits, Limits]:
+    view = ChartView(chart.frame, "")
+    view.show(chart)
+    return (view.x_range.start, view.x_range.end), (view.y_range.start, view.y_range.end)
+
+
+def in_a_figure(chart: Chart) -> tuple[Limits, Limits]:
+    axes = Figure().subplots()
+    draw_chart(axes, chart)
+    return axes.get_xlim(), axes.get_ylim()
+
+
+def in_holoviews(chart: Chart) -> tuple[Limits, Limits]:
+    hv.renderer("bokeh")
+    options = axis_options(chart)
+    return options["xlim"], options["ylim"]
+
+
+def charts_of_results() -> list[Chart]:
+    """Return charts of the measures of a map and of a sweep with one energy."""
+    escape_map = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.24, (24, 24), t_max=100.0))
+    statistics = compute_statistics(escape_map)
+    sweep = compute_sweep(SweepSpec(CASES["II"], Plane.X_PX, (0.24,), (12, 12), t_max=50.0))
+    laws = survival_chart(fit_decay_laws(escape_map))
+    return [times_chart(statistics), probabilities_chart(statistics), laws, *sweep_charts(sweep, PAPER)]
+
+
+def assert_equal_axes(chart: Chart) -> None:
+    for drawn in (on_the_page(chart), in_a_figure(chart), in_holoviews(chart)):
+        np.testing.assert_allclose(drawn, chart.axis_limits, rtol=1e-12)
+
+
+@pytest.mark.parametrize("name", CHARTS)
+def test_axes_are_equal_in_all_renderers(name: str) -> None:
+    assert_equal_axes(CHARTS[name])
+
+
+def test_axes_of_measures_are_equal_in_all_renderers() -> None:
+    for chart in charts_of_results():
+        assert_equal_axes(chart)
+
+
+@pytest.mark.parametrize("name", [name for name in CHARTS if name.startswith(("fitted", "of"))])
+def test_fitted_axes_contain_all_points_and_their_bars(name: str) -> None:
+    chart = CHARTS[name]
+    for axis, (low, high) in zip("xy", chart.axis_limits, strict=True):
+        for values in chart.series[0].extent(axis):
+            assert low < np.nanmin(values) <= np.nanmax(values) < high or "logarithmic" in name
+
+
+def test_an_axis_is_fitted_with_a_small_margin() -> None:
+    x, y = CHARTS["fitted"].axis_limits
+    assert x == pytest.approx((4.95, 6.05))
+    assert y == pytest.approx((9.0, 31.0))
