@@ -21,6 +21,7 @@ from app.runtime.visitors import network_of
 from app.server.admission import LONGEST_LINK, RETRY_SECONDS, refusal_page
 from app.server.batched_stream import batched
 from app.server.routes import redirect_to_page, refuse_other_hosts, refuse_other_routes, secure_other_files
+from app.server.security_headers import security_headers
 
 LIMITS: Mapping[str, int] = {
     # Longest time until the next request of a connection has begun and its headers have arrived.
@@ -45,6 +46,7 @@ CONNECTIONS_PER_PAGE = 6
 MOST_REFUSALS = 200
 """Largest number of connections beyond the limits that are answered at the same time. Others are closed without an answer."""
 
+# Longest time until a request has arrived and its refusal has been sent, in seconds.
 _REFUSAL_SECONDS = 2.0
 _REFUSAL = "There are too many connections."
 
@@ -109,7 +111,7 @@ async def _answer_refused(stream: IOStream) -> None:
     """Answer a request with status 503 and close the connection. A proxy would take a missing answer as a fault of the server."""
     body = refusal_page(_REFUSAL).encode()
     headers = HTTPHeaders({"Content-Type": "text/html; charset=utf-8", "Content-Length": str(len(body)), "Connection": "close"})
-    headers["Retry-After"] = str(RETRY_SECONDS)
+    headers.update({"Retry-After": str(RETRY_SECONDS)} | security_headers(process_state().settings.frame_ancestors))
     lines = "".join(f"{name}: {value}\r\n" for name, value in headers.get_all())
     try:
         async with asyncio.timeout(_REFUSAL_SECONDS):

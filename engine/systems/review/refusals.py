@@ -18,7 +18,7 @@ from engine.systems.review.classified_points import (
 )
 from engine.systems.review.singularity_check import singularity_refusal
 
-MOST_CHANNELS = 16
+MOST_CHANNELS = 32
 """Largest number of exit channels of a potential. The kernels support more."""
 
 

@@ -120,6 +120,7 @@ def test_a_refused_connection_says_when_to_come_again_and_ends(state: ProcessSta
         writer.write(REQUEST)
         answer = await reader.read()
         assert f"Retry-After: {RETRY_SECONDS}\r\n".encode() in answer
+        assert b"Content-Security-Policy: default-src 'self'" in answer
         _kept.append(writer)
         await close_kept()
 
