@@ -45,6 +45,9 @@ def descend(system: OwnSystem, begin: np.ndarray, near: float, far: float) -> De
         return float(np.hypot(*place)) - far
 
     def resting(_s: float, place: np.ndarray) -> float:
+        # Near its saddle, a line first comes closer to the unstable direction, and the slope falls.
+        if np.hypot(*(place - begin)) < near:
+            return 1.0
         return float(np.hypot(*system.gradient(*place))) - 1e-3 * slope
 
     slope = float(np.hypot(*system.gradient(*begin)))
