@@ -230,11 +230,15 @@ class _Coordinates:
 
 
 def _axes_never_crossed(form: Form, length: float) -> list[int]:
-    """Return 0 if V_x = 0 on x = 0, and 1 if V_y = 0 on y = 0, exactly at points up to 1 000 lengths from the origin."""
+    """Return 0 if V_x = 0 on x = 0, and 1 if V_y = 0 on y = 0, exactly at points up to 1 000 lengths from the origin.
+
+    Points where the slope is not a number do not count, because V overflows there or is not defined.
+    """
     along = length * np.concatenate([_PLACES_ON_AXIS, -_PLACES_ON_AXIS])
     zeros = np.zeros_like(along)
     slopes = form.gradient(zeros, along)[0], form.gradient(along, zeros)[1]
-    return [axis for axis, slope in enumerate(slopes) if np.all(slope == 0.0)]
+    are_zero = [slope[np.isfinite(slope)] == 0.0 for slope in slopes]
+    return [axis for axis, each in enumerate(are_zero) if each.size and each.all()]
 
 
 def _mirror(lines: Lines, signs: Signs, images: np.ndarray) -> Lines:
