@@ -16,7 +16,7 @@ from bokeh.plotting import figure
 from app.views.components.legends import legend
 from app.views.components.plots import FigurePane, chart_hover, set_range, square_figure
 from app.views.components.texts import TextPane
-from plots.pictures.charts import Chart, Frame, Series, Shape
+from plots.pictures.charts import Chart, Frame, Limits, Series, Shape
 from plots.pictures.palette import THRESHOLD
 
 _POINT_COLUMNS = ("x", "y", "low", "high", "colour", "label")
@@ -54,12 +54,17 @@ class ChartView:
     @cached_property
     def x_range(self) -> Range1d:
         """The range of x."""
-        return self._shared_x_range or _first_range("x" in self.frame.logarithmic)
+        return self._shared_x_range or Range1d(*self._first_limits[0])
 
     @cached_property
     def y_range(self) -> Range1d:
         """The range of y."""
-        return _first_range("y" in self.frame.logarithmic)
+        return Range1d(*self._first_limits[1])
+
+    @property
+    def _first_limits(self) -> tuple[Limits, Limits]:
+        """The limits before there are numbers. An automatic range would cause warnings in the browser."""
+        return Chart(self.frame, []).axis_limits
 
     @cached_property
     def lines(self) -> ColumnDataSource:
@@ -116,11 +121,6 @@ class ChartView:
     def _name_axes(self) -> None:
         if self.plot is not None:
             self.plot.below[0].axis_label, self.plot.left[0].axis_label = self._labels
-
-
-def _first_range(is_logarithmic: bool) -> Range1d:
-    """Return a range before there are numbers. An automatic range would cause warnings in the browser."""
-    return Range1d(1.0, 100.0) if is_logarithmic else Range1d(0.0, 1.0)
 
 
 def _line_columns(series: Sequence[Series]) -> dict[str, list[Any]]:
