@@ -28,7 +28,7 @@ FAILED = 1
 INTERRUPTED = 130
 """Exit code after Ctrl-C, as in shells: 128 + SIGINT."""
 
-COMMANDS = ("map", "orbit", "lyapunov", "measures", "curves", "ensemble", "sweep", "reproduce", "potential", "serve")
+COMMANDS = ("map", "orbit", "lyapunov", "measures", "curves", "study", "ensemble", "sweep", "reproduce", "potential", "serve")
 """Names of the modules in `commands`. A module is imported when its command runs."""
 
 

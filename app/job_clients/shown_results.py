@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import MappingProxyType
+
 import param
 
 from engine import EscapeMap
@@ -14,7 +16,7 @@ class ShownResults(param.Parameterized):
     frame = param.Parameter(default=None, doc="the `engine.EscapeMap` in view, complete or not; None before its first frame")
     analyses = param.Parameter(default=NO_ANALYSES, doc="complete results of the layers of the map, by name")
     orbits = param.Parameter(default=(), doc="a `StartOrbit` for each start")
-    curves = param.Parameter(default=None, doc="the `engine.Sweep` of the curves against energy or a parameter")
+    studies = param.Parameter(default=MappingProxyType({}), doc="results of the studies so far, by name")
 
     @property
     def whole_map(self) -> EscapeMap | None:

@@ -1,13 +1,10 @@
-"""Analyses of one session: follow-up analyses of each map, measures of its basins, and curves against energy or a parameter."""
+"""Analyses of the maps of one session: the layers that are on, and the measures of the basins."""
 
 from __future__ import annotations
 
-import math
 from functools import partial
 from html import escape
 from typing import Any, NamedTuple
-
-import numpy as np
 
 from app.job_clients.follow_up_requests import FollowUp, FollowUpRequests
 from app.job_clients.latest_request import LatestRequest
@@ -16,21 +13,13 @@ from app.state.glossary import with_terms
 from app.state.view import Analysis
 from app.state.view_state import WINDOW_UNKNOWN
 from app.views.analysis.basin_measures import DESCRIBED_MEASURES, BasinMeasuresView, counts_in_box
-from app.views.analysis.curves import REFINED_VALUES, SWEPT_VALUES, CurvesView
 from app.views.components.texts import TextPane
 from app.views.maps.map_plots import MapsView
-from engine import MEASURES, EscapeMap, MapSpec, ParameterAxis, SweepSpec
+from engine import MEASURES, EscapeMap, MapSpec
 from engine.jobs.job import Job
-from engine.results import Sweep
-from engine.slices.planes import SECTION
-from engine.slices.slice_text import default_range
-from engine.sweeps.map_jobs import measure_job, sweep_job
-from engine.sweeps.measures import CURVES
+from engine.sweeps.map_jobs import measure_job
 from plots.layers.layer import NO_ANALYSES, Layer
 from plots.layers.table import LAYERS
-
-# Columns and rows of each map of a sweep.
-_SWEEP_RESOLUTION = (112, 112)
 
 
 class _LayerResult(NamedTuple):
@@ -54,29 +43,22 @@ class AnalysisPresenter:
 
     def __init__(self, context: SessionContext, maps: MapsView) -> None:
         state, jobs, locked = context.state, context.jobs, context.locked
-        self._open_view, self._notice = context.open_view, context.notice
+        self._notice = context.notice
         self._state, self._results, self._maps = state, context.results, maps
         self._map_spec: MapSpec | None = None
-        self._sweep_spec: SweepSpec | None = None
-        # Specification of the shown curves. It differs from `_sweep_spec` until the first curves of a new sweep arrive.
-        self._shown_sweep_spec: SweepSpec | None = None
         self._results_by_layer: dict[str, _LayerResult] = {}
         self._sentences_by_name: dict[str, str] = {}
         self.notes = TextPane("", name="notes", sizing_mode="stretch_width", margin=(0, 10), css_classes=["notes"])
         self.measures = BasinMeasuresView(state, self._request_measure, context.copy)
-        self.curves = CurvesView(state, self._toggle_sweep, self._open_value, context.latest)
         self._measure_requests = {
             name: LatestRequest(jobs, partial(self._show_slow_measure, name), partial(self.measures.say, name), locked)
             for name in self.measures.buttons
         }
         state.param.watch(lambda event: self._cancel_box_measures(), "box")
-        self._sweep_request = LatestRequest(jobs, self._show_curves, self._fail_sweep, locked)
         self._follow_ups = FollowUpRequests(state, jobs, self._list_follow_ups(), self._fail, locked)
         self._results.param.watch(lambda event: self._follow_map(), "frame")
         state.param.watch(self._switch_layers, "layers")
         state.param.watch(lambda event: self._apply_settings(), "settings")
-        state.param.watch(lambda *events: self._stop_sweep(), ["system", "plane", "t_max"])
-        state.param.watch(lambda *events: self._show_curves(None), "system")
 
     def _list_follow_ups(self) -> list[FollowUp]:
         """Return the analyses of each complete map."""
@@ -120,7 +102,7 @@ class AnalysisPresenter:
         """Return a measure of the whole view or of the box, which is requested while the measures are open."""
         state = self._state
         return FollowUp(
-            lambda frame: measure_job(frame.spec, name, state.box) if state.analysis is Analysis.MEASURES else None,
+            lambda frame: measure_job(frame.spec, name, state.box) if state.analysis == Analysis.MEASURES else None,
             lambda _, result: self.measures.show(name, result),
             ("analysis", "box"),
         )
@@ -214,66 +196,7 @@ class AnalysisPresenter:
             if counts_in_box(MEASURES[name]):
                 request.cancel()
 
-    # Curves.
-
-    def _toggle_sweep(self) -> None:
-        """Start a sweep along the energy or a parameter, or stop the sweep that is running."""
-        if self.curves.running:
-            self._stop_sweep()
-            return
-        self._sweep_spec = self._make_sweep_spec(self.curves.against.value)
-        self.curves.show_running(True)
-        self._sweep_request.submit(sweep_job(self._sweep_spec))
-
-    def _make_sweep_spec(self, name: str) -> SweepSpec:
-        """Return the specification of a sweep along the energy, "h", or along the parameter of this name."""
-        state, energies = self._state, self._state.energies
-        plane = state.plane if state.plane.energy_axis is None and state.plane.parameter is None else SECTION
-        if name == "h":
-            low, high, energy, along = energies.low, energies.high, None, None
-        else:
-            low, high = default_range(state.system, name)
-            energy, along = state.energy, ParameterAxis(name, low, high, state.system)
-        return SweepSpec(
-            state.potential, plane, _sweep_values(low, high), _SWEEP_RESOLUTION, t_max=state.t_max, measures=CURVES, along=along,
-            energy=energy, refine=REFINED_VALUES,
-        )  # fmt: skip
-
-    def _stop_sweep(self) -> None:
-        self._sweep_request.cancel()
-        self.curves.show_running(False)
-
-    def _fail_sweep(self, sentence: str) -> None:
-        self.curves.show_running(False)
-        self.curves.say(sentence)
-
-    def _show_curves(self, curves: Sweep | None) -> None:
-        if curves is not None and curves.complete:
-            self._stop_sweep()
-        self._shown_sweep_spec = self._sweep_spec
-        self.curves.show(curves)
-        self._results.curves = curves
-
-    def _open_value(self, value: float) -> None:
-        """Show the map of an energy, or of a value of the parameter, on the plane of the curves."""
-        spec = self._shown_sweep_spec
-        if self.curves.shown is None or spec is None:
-            return
-        if spec.along is None:
-            self._state.param.update(energy=value, plane=spec.plane)
-        else:
-            system = spec.along.system.with_parameter(spec.along.key, value)
-            self._open_view(system, {"energy": spec.energy, "plane": spec.plane, "window": None, "starts": (), "chosen": 0})
-
 
 def _is_complete(result: Any) -> bool:
     """Whether no further part of a result follows; results that always arrive whole have no attribute `complete`."""
     return bool(getattr(result, "complete", True))
-
-
-def _sweep_values(low: float, high: float) -> list[float]:
-    """Return `SWEPT_VALUES` evenly spaced values from `low` to `high`, rounded to 4 decimals, or more for a small spacing."""
-    spacing = (high - low) / (SWEPT_VALUES - 1)
-    decimals = max(4, 2 - math.floor(math.log10(spacing)))
-    values: list[float] = np.round(np.linspace(low, high, SWEPT_VALUES), decimals).tolist()
-    return values

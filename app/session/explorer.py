@@ -21,7 +21,8 @@ from app.session.link_presenter import LinkPresenter
 from app.session.map_presenter import MapPresenter
 from app.session.orbit_presenter import OrbitPresenter
 from app.session.potential_presenter import PotentialPresenter
-from app.state.help_texts import title_with_help
+from app.session.study_presenter import StudyPresenter
+from app.state.help_texts import HELP_TEXTS, title_with_help
 from app.state.navigation import WINDOW_MOVES
 from app.state.presets import Preset
 from app.state.view import Analysis
@@ -42,6 +43,7 @@ from app.views.panels.slice_panel import SlicePanel
 from engine import System
 from engine.jobs.client import JobClient
 from engine.systems.system import TYPED
+from plots.studies.table import STUDIES
 
 
 class Explorer:
@@ -81,6 +83,7 @@ class Explorer:
         self.potential = PotentialPresenter(context, self.links.history)
         self.maps = MapPresenter(context, self._document, self.links.history, alone=self.links.embedded)
         self.analyses = AnalysisPresenter(context, self.maps.view)
+        self.studies = {name: StudyPresenter(study, context) for name, study in STUDIES.items()}
         self.comparison = ComparisonPresenter(
             context, self.maps.view, lambda sentence: self.analyses.show_notes(compared=sentence), self.links.refuse_comparison
         )
@@ -112,7 +115,7 @@ class Explorer:
                 Analysis.ORBIT: [lambda: [self.orbits.inspector.layout(), self.gallery.invitation()]],
                 Analysis.STATISTICS: self.statistics.parts(),
                 Analysis.MEASURES: self.analyses.measures.parts(),
-                Analysis.ENERGIES: [self.analyses.curves.build],
+                **{name: [study.view.build] for name, study in self.studies.items()},
                 Analysis.WATCH: [self._build_watch],
             },
             "analysis",
@@ -132,7 +135,7 @@ class Explorer:
             process_state().limited.start()
 
     def _build_watch(self) -> list[pn.viewable.Viewable]:
-        title = TextPane(title_with_help("Many orbits at once", "watch"), margin=(0, 10))
+        title = TextPane(title_with_help("Many orbits at once", "watch", HELP_TEXTS["watch"]), margin=(0, 10))
         return [title, EnsemblePlayer(self.state, self.results, self._client, self._locked)]
 
     def close(self, *_: Any) -> None:

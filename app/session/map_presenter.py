@@ -134,7 +134,7 @@ class MapPresenter:
     def _count_in(self, box: Window) -> None:
         """Count the starts in a box, and show the statistics unless the measures are open."""
         shown = self._state.analysis
-        self._state.param.update(box=box, analysis=shown if shown is Analysis.MEASURES else Analysis.STATISTICS)
+        self._state.param.update(box=box, analysis=shown if shown == Analysis.MEASURES else Analysis.STATISTICS)
 
     def _remove_box(self, *events: Any) -> None:
         """Remove the box when another view is shown, unless the view comes with a box."""

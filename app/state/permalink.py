@@ -22,7 +22,7 @@ from app.state.link_formats import (
 )
 from app.state.link_system import SYSTEM_FORMATS, system_of, write_system
 from app.state.system_review import PageReview
-from app.state.view import FIRST_VIEW, PICTURES, Analysis, View, allowed_resolutions, allowed_t_max, default_settings
+from app.state.view import ANALYSES, FIRST_VIEW, PICTURES, View, allowed_resolutions, allowed_t_max, default_settings
 from app.state.view_state import ViewState, longest_first_t_max
 from engine import Plane
 from engine.foundations.validation import LARGEST_NUMBER
@@ -63,7 +63,7 @@ _LINKED: dict[str, LinkParameter] = {
     "resolution": LinkParameter("resolution", number_choice_format(_sides), always=True),
     "window": LinkParameter("window", WINDOW, of_system=True),
     "box": LinkParameter("box", WINDOW, of_system=True),
-    "analysis": LinkParameter("analysis", name_format(Analysis)),
+    "analysis": LinkParameter("analysis", name_format(ANALYSES)),
     "watched": LinkParameter("watch", WATCHED),
     "starts": LinkParameter("orbits", STARTS, of_system=True),
     "chosen": LinkParameter("look", choice_format(_PLACES), of_system=True),

@@ -14,20 +14,23 @@ from engine.systems.review.potential_review import SystemReview
 from plots.layers.layer import Settings
 from plots.layers.table import PICTURES as PICTURE_ENTRIES
 from plots.layers.table import SETTINGS
+from plots.studies.table import STUDIES
 
 Start = tuple[float, float]
 """x and ordinate of a start in the plane."""
 
 
 class Analysis(StrEnum):
-    """The analysis beside the maps. Links contain the values, so the values must not change."""
+    """The analyses beside the maps that are no studies. Links contain the values, so the values must not change."""
 
     ORBIT = "orbit"
     STATISTICS = "statistics"
     MEASURES = "measures"
-    ENERGIES = "energies"
     WATCH = "watch"
 
+
+ANALYSES = (Analysis.ORBIT, Analysis.STATISTICS, Analysis.MEASURES, *STUDIES, Analysis.WATCH)
+"""Names of all analyses beside the maps, studies included, in the order of their tabs."""
 
 _FIRST_SYSTEM = System("I")
 
@@ -89,7 +92,7 @@ class View:
     settings
         The values of all `plots.layers.table.SETTINGS`, by name.
     analysis
-        The analysis shown beside the maps.
+        The analysis shown beside the maps, one of `ANALYSES`.
     watched
         Starts of the orbits in the player of many orbits.
     starts, chosen
@@ -105,7 +108,7 @@ class View:
     box: Window | None = None
     layers: frozenset[str] = frozenset()
     settings: Settings = field(default_factory=default_settings, hash=False)
-    analysis: Analysis = Analysis.ORBIT
+    analysis: str = Analysis.ORBIT
     watched: WatchedStarts = field(default=WatchedStarts())
     starts: tuple[Start, ...] = ()
     chosen: int = 0

@@ -11,11 +11,11 @@ import param
 
 from app.state.system_review import PageReview, review_catalogue_entry, review_job
 from app.state.view import (
+    ANALYSES,
     FIRST_VIEW,
     PICTURES,
     RESOLUTION_CHOICES,
     T_MAX_CHOICES,
-    Analysis,
     Start,
     View,
     allowed_resolutions,
@@ -33,6 +33,7 @@ from engine.systems.system import TYPED
 from plots.layers.table import LAYERS, SETTINGS
 from plots.pictures.palette import MOST_ORBITS, PALETTES, Palette
 from plots.pictures.time_scale import TimeScale
+from plots.studies.study import Subject
 
 WINDOW_UNKNOWN = "The window is not known before the first map."
 """Message while the default window is not known."""
@@ -121,7 +122,7 @@ class ViewState(param.Parameterized):
     resolution = param.Selector(default=FIRST_VIEW.resolution, objects=list(RESOLUTION_CHOICES.values()))
     layers = _Layers(class_=frozenset, default=FIRST_VIEW.layers, doc="names of the layers that are on")
     settings = _Settings(class_=Mapping, default=FIRST_VIEW.settings, doc="value of each setting of the layers")
-    analysis = param.Selector(default=FIRST_VIEW.analysis, objects=list(Analysis))
+    analysis = param.Selector(default=FIRST_VIEW.analysis, objects=list(ANALYSES))
     box = param.ClassSelector(class_=Window, default=FIRST_VIEW.box, allow_None=True)
     watched = param.ClassSelector(class_=WatchedStarts, default=FIRST_VIEW.watched)
     starts = _Starts(default=FIRST_VIEW.starts)
@@ -179,6 +180,11 @@ class ViewState(param.Parameterized):
     def energies(self) -> EnergyRange:
         """The energy range of the chosen system."""
         return self.reviewed.energies
+
+    @property
+    def subject(self) -> Subject:
+        """What the studies of the view are about."""
+        return Subject(self.system, self.potential, self.plane, self.energy, self.energies, self.t_max)
 
     @property
     def colours(self) -> Palette:

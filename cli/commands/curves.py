@@ -28,9 +28,10 @@ from engine import ParameterAxis, Potential, Slice, SweepSpec, System, compute_s
 from engine.results import Sweep
 from engine.sweeps.measures import CURVES, QUICK_CURVES
 from engine.systems.parameters import WELL_PARAMETERS
-from plots.printed.figure_files import sweep_figure_bytes
+from plots.printed.figure_files import study_figure_bytes
 from plots.printed.figure_style import FigureFormat, FigureStyle
-from plots.texts.exports import curves_csv, dataset_bytes
+from plots.studies.against import AGAINST
+from plots.texts.exports import dataset_bytes, table_csv
 
 AGAINST_HELP = f"h, or a parameter: {', '.join(WELL_PARAMETERS)} or a letter of the formula."
 MEASURE_HELP = f"{', '.join(CURVES)}; all by default. Can be repeated."
@@ -87,8 +88,8 @@ def _make_content(curves: Sweep, ending: str, style: FigureStyle) -> Content:
     if ending == "nc":
         return dataset_bytes(curves.dataset)
     if ending == "csv":
-        return curves_csv(curves)
-    return sweep_figure_bytes(curves, FigureFormat(ending), style)
+        return table_csv(curves)
+    return study_figure_bytes(AGAINST, curves, FigureFormat(ending), style)
 
 
 def _print(curves: Sweep, files: Sequence[str], as_json: bool) -> None:

@@ -85,7 +85,7 @@ def run_job[Result](job: Job[Result], execution: Execution, known_results: Mappi
     job
         The job.
     execution
-        Execution of the job, and of the jobs among its arguments.
+        Execution of the job, of the jobs among its arguments, and of those whose results it asks for.
     known_results
         Results that are not computed again, by job.
 
@@ -97,7 +97,8 @@ def run_job[Result](job: Job[Result], execution: Execution, known_results: Mappi
     if job in known_results:
         return known_results[job]
     arguments = [run_job(value, execution, known_results) if isinstance(value, Job) else value for value in job.arguments]
-    result = job.function(*arguments, **job.keywords({"execution": execution}))
+    find_result = functools.partial(run_job, execution=execution, known_results=known_results)
+    result = job.function(*arguments, **job.keywords({"execution": execution, "find_result": find_result}))
     execution.raise_if_cancelled()
     return result
 

@@ -75,7 +75,7 @@ def _measure_point(point: SweepPoint, escape_map: EscapeMap, *, execution: Execu
 def _compute_sweep(
     spec: SweepSpec,
     *,
-    on_frame: Callable[[Sweep], None],
+    on_frame: Callable[[Sweep], None] | None = None,
     execution: Execution,
     find_result: Callable[[Job[Any]], Any],
 ) -> Sweep:

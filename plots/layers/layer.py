@@ -176,8 +176,8 @@ class Stroke:
 
     Attributes
     ----------
-    channel
-        Exit channel, from 1; the lines have its colour.
+    colour
+        Returns the colour of the lines.
     lines
         Points of each line in the plane, of shape (n, 2).
     width, halo_width
@@ -186,7 +186,7 @@ class Stroke:
         Opacity of the line, 0 to 1.
     """
 
-    channel: int
+    colour: Callable[[Palette], str]
     lines: tuple[np.ndarray, ...]
     width: float
     halo_width: float

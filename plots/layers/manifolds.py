@@ -58,7 +58,7 @@ def _stroke(channel: int, image: int, arcs: list[ManifoldArc]) -> Stroke:
     index = min(image, len(_WIDTHS)) - 1
     halo_width = _WIDTHS[index] + 2.0 * _HALO_RIM if image == 1 else 0.0
     lines = tuple(np.column_stack([arc.x, arc.px]) for arc in arcs)
-    return Stroke(channel, lines, _WIDTHS[index], halo_width, _ALPHAS[index])
+    return Stroke(lambda palette: palette.channels[channel - 1], lines, _WIDTHS[index], halo_width, _ALPHAS[index])
 
 
 def _length(arc: ManifoldArc) -> float:

@@ -5,42 +5,43 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from engine.results import EscapeStatistics, Sweep
-from plots.pictures.charts import Chart, Series, Shape, probabilities_chart, sweep_charts, times_chart
+from engine import Result
+from engine.results import EscapeStatistics
+from plots.pictures.charts import Chart, Series, Shape
 from plots.pictures.palette import PAPER, THRESHOLD
 from plots.printed.figure_axes import Corner, add_panel_legend, new_figure, set_title, style_axes
 from plots.printed.figure_style import SCREEN, FigureStyle
+from plots.studies.escape_charts import probabilities_chart, times_chart
+from plots.studies.study import Study
 
-# Height of the figure of curves with two columns, in units of the width.
-_HEIGHT = 1.2
-# Height of the figure of curves with one column, in units of the width.
-_ONE_COLUMN_HEIGHT = 4.5
+# Heights of a row of charts in figures with two columns and with one, in units of the width.
+_ROW_HEIGHT, _ONE_COLUMN_ROW_HEIGHT = 0.24, 0.5
 # Line styles of shapes without solid lines.
 _LINES = {Shape.DASHED: (0, (4.0, 3.0)), Shape.POINTS: ""}
 # Markers of shapes with points.
 _MARKERS = {Shape.POINTS: "o", Shape.JOINED_POINTS: "o"}
 
 
-def draw_sweep_figure(sweep: Sweep, style: FigureStyle) -> Figure:
-    """Draw the shares and the other measures of a sweep against the energy or a parameter, with their error bars.
+def draw_study_figure(study: Study[Any], found: Result, style: FigureStyle) -> Figure:
+    """Draw the charts of a study, with error bars, under the caption of the result.
 
     Raises
     ------
     ValueError
-        If there is no point yet.
+        If there is nothing to draw yet.
     """
-    if not sweep.values.size:
-        raise ValueError("sweep: must have at least one point")
-    request = sweep.dataset.attrs
-    starts = " × ".join(str(side) for side in request["resolution"])
-    title = f"{request['potential']}, {request['plane']}, {starts} starts, t_max = {request['t_max']:g}"
-    height = style.width * (_HEIGHT if style.columns(2) == 2 else _ONE_COLUMN_HEIGHT)
-    return _draw_figure(sweep_charts(sweep, PAPER), new_figure(style, height, title), style)
+    charts = study.charts(found, PAPER)
+    if not charts:
+        raise ValueError(f"{study.files}: there must be at least one point")
+    rows = math.ceil(len(study.frames) / style.columns(2))
+    height = style.width * (_ROW_HEIGHT if style.columns(2) == 2 else _ONE_COLUMN_ROW_HEIGHT) * rows
+    return _draw_figure(charts, new_figure(style, height, study.caption(found)), style)
 
 
 def draw_statistics_figure(statistics: EscapeStatistics, style: FigureStyle) -> Figure:

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from engine import EscapeMap, Potential, Window, compute_statistics
-from engine.results import Sweep
+from engine import EscapeMap, Potential, Result, Window, compute_statistics
 from plots.layers.layer import NO_ANALYSES, Analyses
 from plots.pictures.orbit_curves import OrbitCurves, initial_state
 from plots.pictures.palette import Palette
 from plots.pictures.time_scale import TimeScale
 from plots.printed.figure_style import FigureFormat, FigureStyle
+from plots.studies.study import Study
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -119,11 +119,15 @@ def statistics_figure_bytes(frame: EscapeMap, box: Window | None, format: Figure
     return _figure_bytes(lambda: draw_statistics_figure(statistics, style), format, facts)
 
 
-def sweep_figure_bytes(sweep: Sweep, format: FigureFormat, style: FigureStyle) -> bytes:
-    """Return the content of a file with the figure of `plots.printed.curve_figures.draw_sweep_figure`."""
-    from plots.printed.curve_figures import draw_sweep_figure
+def study_figure_bytes(study: Study[Any], found: Result, format: FigureFormat, style: FigureStyle) -> bytes:
+    """Return the content of a file with the figure of `plots.printed.curve_figures.draw_study_figure`.
 
-    return _figure_bytes(lambda: draw_sweep_figure(sweep, style), format, sweep.dataset.attrs)
+    The metadata contain the attributes of the result's dataset.
+    """
+    from plots.printed.curve_figures import draw_study_figure
+
+    facts = {str(name): value for name, value in found.to_xarray().attrs.items()}
+    return _figure_bytes(lambda: draw_study_figure(study, found, style), format, facts)
 
 
 def _figure_bytes(draw: Callable[[], Figure], format: FigureFormat, facts: Mapping[str, object]) -> bytes:

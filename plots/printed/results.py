@@ -23,17 +23,7 @@ from engine.slices.planes import SPACE
 from plots.layers.layer import Layer
 from plots.layers.picture import ShownMap
 from plots.layers.table import LAYERS, map_legend
-from plots.pictures.charts import (
-    Chart,
-    Frame,
-    Series,
-    Shape,
-    pairs_chart,
-    probabilities_chart,
-    survival_chart,
-    sweep_charts,
-    times_chart,
-)
+from plots.pictures.charts import Chart, Frame, Series, Shape
 from plots.pictures.orbit_curves import compute_orbit_curves, well_energy
 from plots.pictures.orbit_quantities import ORBIT_QUANTITIES
 from plots.pictures.palette import LIGHT, MEASURED, PALETTES, PAPER, Entry, Palette, rgba
@@ -43,6 +33,9 @@ from plots.printed.map_figure import draw_picture
 from plots.printed.orbit_figure import draw_path, draw_quantity
 from plots.printed.potential_figure import draw_equipotentials, enlarge
 from plots.printed.window_axes import draw_limits, draw_pixels, draw_strokes, show_window
+from plots.studies.escape_charts import probabilities_chart, times_chart
+from plots.studies.measure_charts import pairs_chart, survival_chart
+from plots.studies.sweep_charts import sweep_charts
 
 # Width and height of a picture, in inches.
 _FIGURE_SIZE = (4.6, 4.0)
@@ -174,7 +167,7 @@ def _draw_columns(result: Result, axes: Axes, palette: Palette) -> None:
     else:
         drawn_y = np.maximum(y, _LOG_FLOOR) if "y" in chart.logarithmic else y
         shape = Shape.JOINED_POINTS if x.size <= _MOST_MARKERS else Shape.LINE
-        frame = Frame("", "", (chart.x_label, chart.y_label), chart.logarithmic)
+        frame = Frame("", "", (chart.x_label, chart.y_label), help="", logarithmic=chart.logarithmic)
         draw_chart(axes, Chart(frame, [Series("", MEASURED, x, drawn_y, shape)]))
     if chart.title:
         set_title(axes, chart.title.format(**result.numbers()))

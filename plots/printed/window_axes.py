@@ -73,13 +73,13 @@ def draw_limits(
 
 
 def draw_strokes(axes: Axes, strokes: Sequence[Stroke], shown_window: Window, palette: Palette) -> None:
-    """Draw curves of a layer, from back to front, in the colours of their channels."""
+    """Draw curves of a layer, from back to front, in their colours."""
     for stroke in strokes:
         if stroke.halo_width:
             halo: dict[str, Any] = {"colors": LIGHT.halo, "linewidths": _LINE_SCALE * stroke.halo_width}
             draw_curve(axes, stroke.lines, shown_window, zorder=_HALO_ORDER, **halo)
     for stroke in strokes:
-        line: dict[str, Any] = {"colors": palette.channels[stroke.channel - 1], "linewidths": _LINE_SCALE * stroke.width}
+        line: dict[str, Any] = {"colors": stroke.colour(palette), "linewidths": _LINE_SCALE * stroke.width}
         draw_curve(axes, stroke.lines, shown_window, alpha=stroke.alpha, **line)
 
 

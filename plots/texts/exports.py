@@ -8,8 +8,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
-from engine import CASES, EscapeMap, MapSpec, Orbit, Plane, Slice, System, judge_orbit
-from engine.results import OrbitVerdict, Sweep
+from engine import CASES, EscapeMap, MapSpec, Orbit, Plane, Result, Slice, System, judge_orbit
+from engine.results import OrbitVerdict
 from engine.systems.system import TYPED
 from plots.layers.layer import NO_ANALYSES, Analyses
 from plots.layers.table import LAYERS
@@ -186,8 +186,8 @@ def file_stem(spec: MapSpec, case: str) -> str:
     return re.sub(r"[^A-Za-z0-9_.+-]", "_", stem)
 
 
-def curves_csv(curves: Sweep) -> str:
-    """Return a CSV table of a sweep, with a row for each energy or parameter value and a column for each number of a measure."""
-    columns = curves.columns()
-    comments = (program_version(), *(f"{name}: {value}" for name, value in curves.dataset.attrs.items()))
+def table_csv(found: Result) -> str:
+    """Return a CSV table of the columns of a result, below the attributes of its dataset as comments."""
+    columns = found.columns()
+    comments = (program_version(), *(f"{name}: {value}" for name, value in found.to_xarray().attrs.items()))
     return write_csv(columns, zip(*(column.tolist() for column in columns.values()), strict=True), comments)

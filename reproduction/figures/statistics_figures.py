@@ -15,11 +15,12 @@ from matplotlib.figure import Figure
 
 from engine import Plane, compute_statistics, fit_decay_laws
 from engine.results import EscapeStatistics
-from plots.pictures.charts import survival_chart, sweep_charts
 from plots.pictures.palette import LIGHT, MEASURED, PAPER, THRESHOLD
 from plots.printed.curve_figures import draw_chart
 from plots.printed.figure_axes import add_panel_legend, label_axes, new_figure, set_titles, style_axes
 from plots.printed.figure_style import SCREEN
+from plots.studies.measure_charts import survival_chart
+from plots.studies.sweep_charts import sweep_charts
 from reproduction.analyses.share_fits import CaseFit, fit_case
 from reproduction.map_cache import MapCache
 from reproduction.notation import plane_label

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import expect
 
-from plots.pictures.charts import CURVE_PANELS
+from plots.studies.sweep_charts import CURVE_PANELS
 from tests.browser.explorer_page import ExplorerPage
 
 OpenExplorer = Callable[..., ExplorerPage]

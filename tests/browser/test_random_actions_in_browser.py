@@ -166,11 +166,11 @@ def expected_texts(state: ViewState, shown: Shown) -> dict[str, list[str]]:
         layers = {"bounded and chaotic": "judge" in state.layers, "tones: from": "origins" in state.layers}
         times = state.lock_times or fitted_scale(shown.frame)
         texts[LEGEND] = [f"≤ {times.low:g}", *channels, *(name for name, is_on in layers.items() if is_on)]
-    if shown.frame is not None and state.analysis is Analysis.STATISTICS:
+    if shown.frame is not None and state.analysis == Analysis.STATISTICS:
         statistics = compute_statistics(shown.frame, state.box)
         texts[SHARES] = [typeset(format_share(share, 2)) for fate, share in statistics.shares.items() if fate >= Fate.BOUNDED]
     # The description of a bounded orbit depends on indicators that follow later.
-    if shown.orbit is not None and shown.orbit.fate > Fate.BOUNDED and state.analysis is Analysis.ORBIT:
+    if shown.orbit is not None and shown.orbit.fate > Fate.BOUNDED and state.analysis == Analysis.ORBIT:
         texts[VERDICT] = [typeset(judge_orbit(shown.orbit).headline())]
     return texts
 

@@ -18,7 +18,7 @@ from engine.maps.spec import DEFAULT_RESOLUTION
 from plots.printed.figure_style import FigureStyle
 from tests.cli.conftest import Run
 
-COMMANDS = ("map", "orbit", "ensemble", "lyapunov", "measures", "curves", "sweep", "potential", "reproduce", "serve")
+COMMANDS = ("map", "orbit", "ensemble", "lyapunov", "measures", "curves", "study", "sweep", "potential", "reproduce", "serve")
 MAP = ("map", "I", "--energy", 0.19, "--resolution", 9, "--t-max", 100)
 INVALID = {
     "missing command": (),
@@ -54,6 +54,8 @@ INVALID = {
     "energy without Lyapunov orbits": ("lyapunov", "III", "--energy", 8),
     "low above high": ("curves", "I", "--low", 0.3, "--high", 0.2, "--count", 3),
     "curves on (x, h)": ("curves", "I", "--plane", "x_h", "--low", 0.1, "--high", 0.2, "--count", 3),
+    "unknown study": ("study", "fractals", "I"),
+    "study against an unknown parameter": ("study", "energies", "I", "--against", "mass"),
     "entering through the exits on a plane": ("ensemble", "I", "--energy", 0.2, "--entering", "--plane", "x_px"),
     "entering through closed exits": ("ensemble", "I", "--energy", 0.1, "--entering"),
     "too many orbits of a movie": ("ensemble", "I", "--energy", 0.2, "--count", 30_000, "--output", "film.webp"),

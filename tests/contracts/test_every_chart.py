@@ -11,22 +11,15 @@ from matplotlib.figure import Figure
 
 from app.views.components.charts import ChartView
 from engine import CASES, MapSpec, Plane, SweepSpec, compute_map, compute_statistics, compute_sweep, fit_decay_laws
-from plots.pictures.charts import (
-    Chart,
-    Frame,
-    Limits,
-    Series,
-    Shape,
-    probabilities_chart,
-    survival_chart,
-    sweep_charts,
-    times_chart,
-)
+from plots.pictures.charts import Chart, Frame, Limits, Series, Shape
 from plots.pictures.holoviews_elements import axis_options
 from plots.pictures.palette import PAPER
 from plots.printed.curve_figures import draw_chart
+from plots.studies.escape_charts import probabilities_chart, times_chart
+from plots.studies.measure_charts import survival_chart
+from plots.studies.sweep_charts import sweep_charts
 
-FRAME = Frame("points", "Points", ("x", "y"))
+FRAME = Frame("points", "Points", ("x", "y"), help="Three points.")
 POINTS = Series("points", "#123456", np.array([5.0, 6.0, np.nan]), np.array([10.0, 20.0, 30.0]), Shape.POINTS)
 BARS = (np.array([9.0, 18.0, 28.0]), np.array([11.0, 22.0, 32.0]))
 EDGES = (np.array([0.5, 1.5]), np.array([1.5, 2.5]))
@@ -43,7 +36,7 @@ CHARTS = {
 
 
 def on_the_page(chart: Chart) -> tuple[Limits, Limits]:
-    view = ChartView(chart.frame, "")
+    view = ChartView(chart.frame)
     view.show(chart)
     return (view.x_range.start, view.x_range.end), (view.y_range.start, view.y_range.end)
 

@@ -16,10 +16,11 @@ from app.job_clients.orbit_requests import StartOrbit
 from app.state.system_review import review_catalogue_entry
 from app.state.view_state import ViewState
 from app.views.analysis.basin_measures import BasinMeasuresView
-from app.views.analysis.curves import CurvesView
 from app.views.analysis.potential_panel import PotentialPanel
+from app.views.analysis.study_view import StudyView
 from app.views.components.notice import Notice
 from app.views.orbits.orbit_controls import OrbitActions, OrbitControls
+from plots.studies.against import AGAINST
 from tests.conftest import TIMEOUT_MS
 from tests.waiting import SECONDS
 
@@ -35,7 +36,7 @@ def orbit_controls() -> OrbitControls:
 
 def test_quoted_text_is_escaped() -> None:
     notice, controls, panel = Notice(), orbit_controls(), PotentialPanel(review_catalogue_entry("I"), lambda system, done: None)
-    curves = CurvesView(ViewState(), lambda *_: None, lambda *_: None)
+    curves = StudyView(AGAINST, ViewState(), lambda: None, lambda x, y: None)
     measures = BasinMeasuresView(ViewState(), lambda name: None, lambda text: None)
     says: list[tuple[Callable[[str], None], pn.pane.HTML]] = [
         (notice.warn, notice.layout()),

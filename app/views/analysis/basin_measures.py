@@ -20,7 +20,7 @@ from engine import MEASURES, Measure, Result, Window
 from engine.foundations.wording import format_decimals, format_number
 from engine.measures.measure import Quantity
 from engine.results import DecayLaws, UncertaintyExponent
-from plots.pictures.charts import PAIRS, SURVIVAL, Shape, pairs_chart, survival_chart
+from plots.studies.measure_charts import PAIRS, SURVIVAL, pairs_chart, survival_chart
 
 DESCRIBED_MEASURES: tuple[Measure, ...] = tuple(measure for measure in MEASURES.values() if measure.sentence is not None)
 """The measures that the page describes in words, in order."""
@@ -31,11 +31,6 @@ def counts_in_box(measure: Measure) -> bool:
     return not measure.place
 
 
-_PAIRS_TEXT = (
-    "<b>@y{percent}</b> of the pairs have different fates<br>at a separation of @x{number}, @label<br>"
-    "95 % interval @low{percent} to @high{percent}"
-)
-_SURVIVAL_TEXT = "<b>$snap_y{percent}</b> are still inside<br>at t = $snap_x{number}: @label"
 _COMPUTING_ORBITS = "Computing further orbits …"
 _UNDEFINED = "Not defined for this map."
 
@@ -61,8 +56,8 @@ class BasinMeasuresView:
         self.copy = copy_button(self._rows, on_copy)
         self._sentences: dict[str, str] = {}
         self._results: dict[str, Result] = {}
-        self.survival = ChartView(SURVIVAL, _SURVIVAL_TEXT, Shape.LINE)
-        self.uncertainty = ChartView(PAIRS, _PAIRS_TEXT)
+        self.survival = ChartView(SURVIVAL)
+        self.uncertainty = ChartView(PAIRS)
         state.follow(self._follow_box, "box")
 
     def begin(self) -> None:

@@ -19,12 +19,7 @@ from engine import EscapeMap, Fate, compute_statistics
 from engine.foundations.wording import format_share, format_share_range
 from engine.propagation.fates import UNRESOLVED
 from engine.results import EscapeStatistics
-from plots.pictures.charts import PROBABILITIES, TIMES, probabilities_chart, times_chart
-
-_TIMES_TEXT = "<b>@top{count} starts</b> escape<br>from t = @left{number} to @right{number}"
-_PROBABILITIES_TEXT = (
-    "n = $x{count} upward crossings:<br><b>@top{percent}</b> of the orbits still inside<br>escape before the next one"
-)
+from plots.studies.escape_charts import PROBABILITIES, TIMES, probabilities_chart, times_chart
 
 
 class StatisticsView:
@@ -43,8 +38,8 @@ class StatisticsView:
     def __init__(self, state: ViewState, results: ShownResults, on_copy: Callable[[str], None]) -> None:
         self._state = state
         self._frame: EscapeMap | None = None
-        self._times = HistogramView(TIMES, _TIMES_TEXT)
-        self._probabilities = HistogramView(PROBABILITIES, _PROBABILITIES_TEXT)
+        self._times = HistogramView(TIMES)
+        self._probabilities = HistogramView(PROBABILITIES)
         self.table = TextPane("", name="statistics", sizing_mode="stretch_width")
         self.count_whole = button(COUNT_WHOLE, lambda: state.param.update(box=None))
         self.copy = copy_button(self._rows, on_copy)
@@ -67,7 +62,7 @@ class StatisticsView:
 
     def _count(self) -> None:
         """Count and show the pixels of the last frame, if the tab is open."""
-        if self._frame is None or self._state.analysis is not Analysis.STATISTICS:
+        if self._frame is None or self._state.analysis != Analysis.STATISTICS:
             return
         statistics = compute_statistics(self._frame, self._state.box)
         self.table.object = self._table(statistics)

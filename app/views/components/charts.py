@@ -22,6 +22,7 @@ from plots.pictures.palette import THRESHOLD
 _POINT_COLUMNS = ("x", "y", "low", "high", "colour", "label")
 _LINE_COLUMNS = ("xs", "ys", "colour", "dash", "label")
 _DASHES = {Shape.DASHED: "8 8"}
+_SHAPES_WITH_POINTS = (Shape.POINTS, Shape.JOINED_POINTS)
 
 
 class ChartView:
@@ -30,21 +31,15 @@ class ChartView:
     Parameters
     ----------
     frame
-        Name, title and axes of the charts.
-    text
-        Text of the points or lines under the mouse, see `chart_hover`; its columns are x, y, low, high and label.
-    described
-        The shapes that the text describes: Shape.LINE for all lines, or Shape.POINTS for all points.
+        What the charts have in common.
     x_range
         The range of x; None for a range of the chart's own.
     **options
         Options of `square_figure`.
     """
 
-    def __init__(
-        self, frame: Frame, text: str, described: Shape = Shape.POINTS, x_range: Range1d | None = None, **options: Any
-    ) -> None:
-        self.frame, self._text, self._described, self._options = frame, text, described, options
+    def __init__(self, frame: Frame, x_range: Range1d | None = None, **options: Any) -> None:
+        self.frame, self._options = frame, options
         self._shared_x_range = x_range
         self._labels = frame.labels
         self.plot: figure | None = None
@@ -73,7 +68,7 @@ class ChartView:
 
     @cached_property
     def points(self) -> ColumnDataSource:
-        """The points of the chart, with error bars."""
+        """The points of the chart, with their error bars."""
         return ColumnDataSource({name: [] for name in _POINT_COLUMNS}, name=f"{self.frame.name}_points")
 
     @cached_property
@@ -104,15 +99,15 @@ class ChartView:
         frame = self.frame
         scales = {f"{axis}_axis_type": "log" for axis in frame.logarithmic}
         ranges = {"x_range": self.x_range, "y_range": self.y_range}
-        plot = square_figure(frame.name, frame.title, x_axis_label=" ", **ranges, **scales, **self._options)
+        plot = square_figure(frame.name, frame.title, frame.help, x_axis_label=" ", **ranges, **scales, **self._options)
         lines = plot.add_glyph(self.lines, MultiLine(line_color="colour", line_dash="dash", line_width=2))
         ends = {"x0": "x", "x1": "x", "y0": "low", "y1": "high"}
         plot.add_glyph(self.points, Segment(**ends, line_color="colour", line_alpha=0.6))
         points = plot.add_glyph(self.points, Scatter(x="x", y="y", size=6, fill_color="colour", line_color="colour"))
-        if self._described is Shape.LINE:
-            plot.add_tools(chart_hover(self._text, [lines], line_policy="nearest"))
+        if frame.described is Shape.LINE:
+            plot.add_tools(chart_hover(frame.text, [lines], line_policy="nearest"))
         else:
-            plot.add_tools(chart_hover(self._text, [points], mode="vline"))
+            plot.add_tools(chart_hover(frame.text, [points], mode="vline"))
         if frame.level is not None:
             style: dict[str, Any] = {"line_color": THRESHOLD, "line_dash": "dashed", "line_width": 1.5}
             plot.add_layout(Span(location=frame.level[0], dimension="width", **style))
@@ -132,7 +127,8 @@ def _line_columns(series: Sequence[Series]) -> dict[str, list[Any]]:
 
 
 def _point_columns(series: Sequence[Series]) -> dict[str, Any]:
-    bars = [(one, one.bars) for one in series if one.bars is not None]
+    # The bars of points without error bars have no length.
+    bars = [(one, one.bars or (one.y, one.y)) for one in series if one.shape in _SHAPES_WITH_POINTS]
     if not bars:
         return {name: [] for name in _POINT_COLUMNS}
     counts = [one.x.size for one, _ in bars]

@@ -30,13 +30,11 @@ class HistogramView:
     Parameters
     ----------
     frame
-        Name, title and axes of the charts.
-    text
-        Text of the bar under the mouse, see `chart_hover`; its columns are left, right and top.
+        What the charts have in common.
     """
 
-    def __init__(self, frame: Frame, text: str) -> None:
-        self._frame, self._text = frame, text
+    def __init__(self, frame: Frame) -> None:
+        self._frame = frame
         self._labels = CustomJSTickFormatter(code=_TICK)
         self._charts = hv.streams.Pipe(data=_empty_chart(frame))
 
@@ -76,13 +74,13 @@ class HistogramView:
         # HoloViews sets the borders again with each chart.
         plot.update(**CHART_BORDERS)
         if plot.name != self._frame.name:
-            style_chart(plot, self._frame.name, self._frame.title)
+            style_chart(plot, self._frame.name, self._frame.title, self._frame.help)
             bars = drawing.handles["glyph_renderer"]
             # HoloViews names these models after the values, but a name must be unique on the page.
             for model in (plot.x_range, plot.y_range, bars):
                 model.name = None
             # The hover tool describes a bar also while the mouse is above its top.
-            plot.add_tools(chart_hover(self._text, [bars], mode="vline"))
+            plot.add_tools(chart_hover(self._frame.text, [bars], mode="vline"))
 
 
 def prepare() -> None:

@@ -29,7 +29,7 @@ from bokeh.plotting import figure
 
 from app.browser.javascript import callback_code
 from app.browser.module_files import NUMBERS_MODULE
-from app.state.help_texts import title_with_help
+from app.state.help_texts import HELP_TEXTS, title_with_help
 from engine import Window
 from plots.pictures.axis_labels import find_offset
 from plots.pictures.histories import logarithmic_limits
@@ -71,7 +71,7 @@ _BORDERS = {"compact": _COMPACT_BORDERS, "small": _SMALL_BORDERS}
 def map_figure(name: str, title: str, x: Range1d, y: Range1d) -> figure:
     """Return the square figure of a picture, see `square_figure`. `annotate_picture` writes around its frame."""
     # A frame aligned with the frames of larger pictures would not be square.
-    plot = square_figure(name, title, x_range=x, y_range=y, frame_align=False, **_PICTURE_BORDERS)
+    plot = square_figure(name, title, HELP_TEXTS[name], x_range=x, y_range=y, frame_align=False, **_PICTURE_BORDERS)
     for axis in (*plot.below, *plot.left):
         axis.major_label_text_font_size = "14px"
         axis.ticker.desired_num_ticks = 5
@@ -80,7 +80,7 @@ def map_figure(name: str, title: str, x: Range1d, y: Range1d) -> figure:
 
 def history_figure(name: str, title: str, **options: Any) -> figure:
     """Return a low figure with the time of orbits as abscissa, see `square_figure`. Its title names the values."""
-    plot = square_figure(name, title, aspect_ratio=_HISTORY_ASPECT, **_HISTORY_BORDERS, **options)
+    plot = square_figure(name, title, HELP_TEXTS[name], aspect_ratio=_HISTORY_ASPECT, **_HISTORY_BORDERS, **options)
     plot.elements[0].html += "<i class='axis-name abscissa'>t →</i>"
     return plot
 
@@ -111,7 +111,7 @@ def annotate_picture(
     enlarge = f"Enlarge, or show all: {title}"
     abscissa, ordinate = (_MOMENTUM.sub(r"p<sub>\1</sub>", name) for name in names)
     html = (
-        f"{title_with_help(title, plot.name, under_way)}"
+        f"{title_with_help(title, plot.name, HELP_TEXTS[plot.name], under_way)}"
         f"<button type='button' class='enlarge' data-picture='{plot.name}' aria-label='{enlarge}' title='{enlarge}'></button>"
         f"<i class='axis-name abscissa'>{abscissa} →</i><i class='axis-name ordinate'>{ordinate} ↑</i>"
         f"<div class='foot legend' data-picture='{plot.name}'>{legend}"
@@ -134,25 +134,27 @@ def label_axes(plots: Iterable[figure], names: tuple[str, str], window: Window) 
     return [f"Labels: {offset.describe(name)}" for name, offset in zip(names, offsets, strict=True) if offset is not None]
 
 
-def square_figure(name: str, title: str, **options: Any) -> figure:
+def square_figure(name: str, title: str, text: str, **options: Any) -> figure:
     """Return a figure with a title and a help text, without tools. By default, it is square.
 
     Parameters
     ----------
     name
-        Name of the model and of its help text.
+        Name of the model.
     title
         Displayed title.
+    text
+        Help text of the figure.
     **options
         Options of `bokeh.plotting.figure`.
     """
     defaults = {"tools": "", "toolbar_location": None, "aspect_ratio": 1, **CHART_BORDERS}
     plot = figure(title=None, **(defaults | options))
-    style_chart(plot, name, title)
+    style_chart(plot, name, title, text)
     return plot
 
 
-def style_chart(plot: figure, name: str, title: str) -> None:
+def style_chart(plot: figure, name: str, title: str, text: str) -> None:
     """Give a figure the style of all charts, its name, and its title with a help text; see `square_figure`."""
     plot.update(name=name, sizing_mode="scale_width", center=[], background_fill_alpha=0.0, border_fill_alpha=0.0)
     # `plot.axis` would search all models of the figure for each attribute.
@@ -161,7 +163,7 @@ def style_chart(plot: figure, name: str, title: str) -> None:
         axis.update(major_tick_line_color=None, major_tick_out=2, minor_tick_line_color=None, minor_tick_out=0)
     plot.css_classes = [name]
     plot.html_attributes = {"role": "group", "aria-label": title}
-    plot.elements = [HTML(html=title_with_help(title, name))]
+    plot.elements = [HTML(html=title_with_help(title, name, text))]
 
 
 class FigurePane(pn.pane.Bokeh):

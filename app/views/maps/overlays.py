@@ -29,7 +29,7 @@ class Overlays:
     source
         Data source of all pictures, which contains the pixel columns of the layers.
     state
-        View state, whose palette has the colours of the exits.
+        View state, whose palette has the colours.
     """
 
     def __init__(self, source: ColumnDataSource, state: ViewState) -> None:
@@ -95,7 +95,7 @@ def _curve_columns(strokes: Sequence[Stroke], palette: Palette) -> dict[str, lis
     return {
         "xs": [line[:, 0] for line in lines],
         "ys": [line[:, 1] for line in lines],
-        "colour": [palette.channels[stroke.channel - 1] for stroke in strokes],
+        "colour": [stroke.colour(palette) for stroke in strokes],
         "width": [stroke.width for stroke in strokes],
         "alpha": [stroke.alpha for stroke in strokes],
         "halo_width": [stroke.halo_width for stroke in strokes],

@@ -106,7 +106,7 @@ class EnsemblePlayer(JSComponent):
     def _request_rate(self) -> None:
         """Request the decay rate of mixed motion while the analysis is open, once the kernels are compiled."""
         state = self._state
-        if state.analysis is not Analysis.WATCH:
+        if state.analysis != Analysis.WATCH:
             return
         self.rate = 0.0
         spec = state.map_spec()

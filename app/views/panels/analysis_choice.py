@@ -8,21 +8,13 @@ from typing import Any
 
 import panel as pn
 
-from app.state.view import Analysis, View
+from app.state.view import ANALYSES, View
 from app.state.view_state import ViewState
 from app.views.components.texts import TextPane
 from app.views.components.widgets import SegmentedControl, Switches, bind, button, switch
 from plots.layers.layer import Layer, Setting
 from plots.layers.table import LAYERS
-
-ANALYSIS_LABELS = {
-    Analysis.ORBIT: "Orbit",
-    Analysis.STATISTICS: "Statistics",
-    Analysis.MEASURES: "Measures",
-    Analysis.ENERGIES: "Against",
-    Analysis.WATCH: "Watch",
-}
-"""Labels of the tabs beside the maps."""
+from plots.studies.table import STUDIES
 
 
 class LayerSwitches:
@@ -99,6 +91,6 @@ class ComparisonSwitch:
 
 def analysis_tabs(state: ViewState) -> SegmentedControl:
     """Return the tabs of the analyses. They write to the view state and follow it."""
-    options = {label: analysis for analysis, label in ANALYSIS_LABELS.items()}
+    options = {STUDIES[name].title if name in STUDIES else name.capitalize(): str(name) for name in ANALYSES}
     tabs = SegmentedControl(label="Analysis", options=options, margin=(0, 10), css_classes=["segmented", "narrow", "tight"])
     return bind(tabs, state, "analysis")

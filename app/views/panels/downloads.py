@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import panel as pn
 
@@ -16,13 +17,16 @@ from app.views.components.texts import TextPane
 from app.views.components.widgets import button
 from app.views.panels.embedding import NOT_ALLOWED
 from app.views.panels.figure_form import FigureForm
-from plots.texts.exports import curves_csv, file_stem, netcdf_bytes, orbits_csv, python_lines
+from engine import Result
+from plots.studies.study import Study
+from plots.studies.table import STUDIES
+from plots.texts.exports import file_stem, netcdf_bytes, orbits_csv, python_lines, table_csv
 
 File = tuple[str, Callable[[], bytes]]
 """Name of a file, and the function that makes its content. Calling the function may take seconds."""
 
 # Labels of the buttons that save data.
-MAPS, ORBITS, CURVES, SCRIPT = "Maps (NetCDF)", "Orbits (CSV)", "Curves (CSV)", "Python script"
+MAPS, ORBITS, SCRIPT = "Maps (NetCDF)", "Orbits (CSV)", "Python script"
 
 
 class Downloads:
@@ -51,8 +55,11 @@ class Downloads:
         self.link = button("Copy link", copy_link)
         self.embed = button("Copy embed code", copy_embed_code, disabled=not process_state().settings.frame_ancestors)
         self.figure = FigureForm(state, results, self.saver, self._figure_name, on_copied)
-        self.data = {label: button(label, partial(self._save, label)) for label in (MAPS, ORBITS, CURVES, SCRIPT)}
-        results.param.watch(lambda *events: self._enable(), ["frame", "orbits", "curves"])
+        self.data = {
+            label: button(label, partial(self._save, label))
+            for label in (MAPS, ORBITS, *map(_table_label, STUDIES.values()), SCRIPT)
+        }
+        results.param.watch(lambda *events: self._enable(), ["frame", "orbits", "studies"])
         self._enable()
 
     def build(self) -> list[pn.viewable.Viewable]:
@@ -85,7 +92,7 @@ def file_choices(results: ShownResults, state: ViewState) -> dict[str, File]:
     """Return the files of data that the results allow, by label. Later changes of the page do not change the files."""
     choices: dict[str, File] = {}
     name = partial(_file_name, results, state)
-    system, frame, curves = state.system, results.whole_map, results.curves
+    system, frame = state.system, results.whole_map
     if frame is not None:
         # Along a parameter, each orbit belongs to another potential, and the script has no orbits.
         starts = [one.start for one in results.orbits] if state.plane.parameter is None else []
@@ -96,9 +103,18 @@ def file_choices(results: ShownResults, state: ViewState) -> dict[str, File]:
     if orbits:
         verdicts = [one.verdict for one in results.orbits if one.verdict is not None]
         choices[ORBITS] = name("-orbits.csv"), lambda: orbits_csv(orbits, verdicts=verdicts).encode()
-    if curves is not None:
-        choices[CURVES] = f"escapes-{system.case}-curves.csv", lambda: curves_csv(curves).encode()
+    for study_name, found in results.studies.items():
+        study = STUDIES[study_name]
+        choices[_table_label(study)] = f"escapes-{system.case}-{study.files}.csv", partial(_table_bytes, found)
     return choices
+
+
+def _table_bytes(found: Result) -> bytes:
+    return table_csv(found).encode()
+
+
+def _table_label(study: Study[Any]) -> str:
+    return f"{study.files.capitalize()} (CSV)"
 
 
 def _file_name(results: ShownResults, state: ViewState, ending: str) -> str:

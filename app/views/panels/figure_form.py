@@ -19,14 +19,16 @@ from app.views.components.widgets import SegmentedControl, Switches, button
 from engine import EscapeMap
 from engine.slices.axes import highest_energy
 from plots.layers.table import LAYERS_BY_PICTURE, TITLES
+from plots.pictures.palette import PAPER
 from plots.printed.figure_files import (
     map_figure_bytes,
     orbits_figure_bytes,
     statistics_figure_bytes,
-    sweep_figure_bytes,
+    study_figure_bytes,
     well_figure_bytes,
 )
 from plots.printed.figure_style import FigureFormat, FigureStyle
+from plots.studies.table import STUDIES
 
 Make = Callable[[FigureFormat, FigureStyle], bytes]
 """Makes the content of a figure's file. This takes seconds."""
@@ -35,8 +37,13 @@ Send = Callable[[str, bytes | None], None]
 """Sends the name and the content of a file to the browser. The content is None if there is an error."""
 
 # Titles of the figures that are not single maps.
-ALL_MAPS, WELL, ORBITS, STATISTICS, CURVES = "All maps", "The well in (x, y)", "Orbits", "Statistics", "Curves against energy"
-FIGURES = (ALL_MAPS, *(title for name, title in TITLES.items() if name != "curves"), WELL, ORBITS, STATISTICS, CURVES)
+ALL_MAPS, WELL, ORBITS, STATISTICS = "All maps", "The well in (x, y)", "Orbits", "Statistics"
+FIGURES = (
+    ALL_MAPS,
+    *(title for name, title in TITLES.items() if name != "curves"),
+    *(WELL, ORBITS, STATISTICS),
+    *(study.figure for study in STUDIES.values()),
+)
 """Titles of all figures, in the order of the list."""
 
 # Option of the switch for titles and provenance.
@@ -79,7 +86,7 @@ class FigureForm:
         self.save = button("Save figure", self._on_save, kind="primary", margin=(5, 10, 5, 0))
         self.copy = ImageCopier(self._on_copy, on_copied, margin=(5, 0))
         self.text = StatusPane("", margin=(0, 10), css_classes=["quiet"])
-        results.param.watch(lambda *events: self._offer(), ["frame", "analyses", "orbits", "curves"])
+        results.param.watch(lambda *events: self._offer(), ["frame", "analyses", "orbits", "studies"])
         self.what.param.watch(lambda event: self._enable(), "value")
         self._offer()
 
@@ -177,8 +184,9 @@ def figure_choices(shown: ShownResults, state: ViewState) -> dict[str, Make]:
         choices[ORBITS] = partial(orbits_figure_bytes, state.potential, curves, state.colours, verdicts)
     if frame is not None:
         choices[STATISTICS] = partial(statistics_figure_bytes, frame, state.box)
-    if shown.curves is not None and shown.curves.values.size:
-        choices[CURVES] = partial(sweep_figure_bytes, shown.curves)
+    for name, found in shown.studies.items():
+        if STUDIES[name].charts(found, PAPER):
+            choices[STUDIES[name].figure] = partial(study_figure_bytes, STUDIES[name], found)
     return choices
 
 

@@ -13,7 +13,6 @@ import pytest
 from app.session.analysis_presenter import AnalysisPresenter
 from app.state.view import Analysis, default_settings
 from app.state.view_state import ViewState
-from app.views.analysis.curves import REFINED_VALUES, SWEPT_VALUES, CurvesView
 from engine import CASES, EscapeMap, MapSpec, Plane, System, Trust, Window, compute_map
 from engine.jobs.manager import Jobs
 from plots.layers.layer import Analyses
@@ -62,12 +61,6 @@ def frame() -> EscapeMap:
 def unfinished(frame: EscapeMap, energy: float) -> EscapeMap:
     """Return a frame of a map of another energy."""
     return replace(frame, spec=replace(frame.spec, energy=energy), complete=False)
-
-
-@pytest.fixture(autouse=True)
-def wide_intervals(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Limit the work for each exponent of the curves, which widens the intervals."""
-    monkeypatch.setattr("engine.sweeps.measures.WORK", 1e7)
 
 
 @pytest.fixture
@@ -182,57 +175,3 @@ def test_another_map_cancels_a_slow_measure(begin: Callable[..., Session], frame
     assert session.jobs.in_flight == 1
     session.show(unfinished(frame, 0.3))
     assert session.jobs.in_flight == 0
-
-
-def shown_values(curves: CurvesView) -> np.ndarray:
-    assert curves.shown is not None
-    return curves.shown.values
-
-
-def test_curves_arrive_one_by_one_and_stop_at_a_click_or_with_another_case(begin: Callable[..., Session]) -> None:
-    session = begin(analysis=Analysis.ENERGIES)
-    curves = session.presenter.curves
-    curves.button.clicks += 1
-    session.wait_for(lambda: curves.shown is not None and curves.shown.values.size >= 2)
-    assert curves.running
-    curves.button.clicks += 1
-    assert not curves.running
-    assert session.jobs.in_flight == 0
-    assert f"of {SWEPT_VALUES + REFINED_VALUES}" in curves.text.object
-    energies = np.sort(shown_values(curves))
-    curves.open_near(float(energies[1]) + 1e-4)
-    assert (session.state.energy, session.state.plane) == (energies[1], Plane.X_PX)
-    session.state.param.update(system=System("III"), energy=0.4)
-    assert curves.shown is None
-    curves.open_near(0.3)
-    assert session.state.energy == 0.4
-
-
-def test_a_click_opens_the_plane_of_the_shown_curves_after_another_sweep_was_stopped(begin: Callable[..., Session]) -> None:
-    session = begin(analysis=Analysis.ENERGIES)
-    curves = session.presenter.curves
-    curves.button.clicks += 1
-    session.wait_for(lambda: curves.shown is not None and curves.shown.values.size >= 2)
-    curves.button.clicks += 1
-    session.state.plane = Plane.X_Y
-    with session.changed:
-        curves.button.clicks += 1
-        curves.button.clicks += 1
-    value = float(np.max(shown_values(curves)))
-    curves.open_near(value)
-    assert (session.state.energy, session.state.plane) == (value, Plane.X_PX)
-
-
-@pytest.mark.slow
-def test_a_click_on_a_curve_against_a_parameter_opens_its_system(begin: Callable[..., Session]) -> None:
-    session = begin(analysis=Analysis.ENERGIES)
-    curves = session.presenter.curves
-    assert list(curves.against.options) == ["h", "ω₁", "ω₂", "ε", "Ω"]
-    curves.against.value = "epsilon"
-    curves.button.clicks += 1
-    session.wait_for(lambda: curves.shown is not None and curves.shown.values.size >= 2)
-    curves.button.clicks += 1
-    value = float(np.max(shown_values(curves)))
-    curves.open_near(value)
-    assert session.opened[0] == System("II", parameters={"epsilon": value})
-    assert session.opened[1]["energy"] == 0.25

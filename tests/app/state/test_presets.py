@@ -123,7 +123,7 @@ def test_every_thumbnail_has_a_preset() -> None:
 def test_starts_are_in_the_window_and_allowed(preset: Preset) -> None:
     view, spec = preset.view, spec_of(preset.view)
     # Presets that show many orbits have no chosen orbits.
-    fewest = 0 if view.analysis is Analysis.WATCH else 1
+    fewest = 0 if view.analysis == Analysis.WATCH else 1
     assert fewest <= len(set(view.starts)) == len(view.starts) <= MOST_ORBITS
     for x, ordinate in view.starts:
         assert spec.pixel_at(x, ordinate) is not None

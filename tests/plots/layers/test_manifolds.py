@@ -8,6 +8,7 @@ import pytest
 from engine import CASES, find_stable_manifolds
 from engine.results import StableManifolds
 from plots.layers.manifolds import manifold_strokes
+from plots.pictures.palette import PAPER
 
 
 @pytest.fixture(scope="module")
@@ -26,7 +27,7 @@ def test_first_images_are_in_front_wider_and_with_a_halo(manifolds: StableManifo
 
 def test_closed_curves_are_in_front_of_the_spirals_around_them(manifolds: StableManifolds) -> None:
     # In case III the first images of channels 1 and 2 are closed, and those of channels 3 and 4 wind around them.
-    assert {stroke.channel for stroke in manifold_strokes(manifolds)[-2:]} == {1, 2}
+    assert {stroke.colour(PAPER) for stroke in manifold_strokes(manifolds)[-2:]} == set(PAPER.channels[:2])
 
 
 def test_every_arc_is_drawn_once(manifolds: StableManifolds) -> None:

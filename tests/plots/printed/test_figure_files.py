@@ -23,8 +23,9 @@ from engine.sweeps.measures import CURVES
 from plots.pictures.orbit_curves import compute_orbit_curves
 from plots.pictures.palette import PAPER
 from plots.printed.figure_axes import MOST_PIXELS
-from plots.printed.figure_files import map_figure_bytes, orbits_figure_bytes, sweep_figure_bytes
+from plots.printed.figure_files import map_figure_bytes, orbits_figure_bytes, study_figure_bytes
 from plots.printed.figure_style import CM_PER_INCH, FigureFormat, FigureStyle
+from plots.studies.against import AGAINST
 
 NARROW = FigureStyle(8.5, dpi=100.0)
 Draw = Callable[[FigureFormat, FigureStyle], bytes]
@@ -43,7 +44,7 @@ def draw_orbits(format: FigureFormat, style: FigureStyle) -> bytes:
 
 def draw_curves(format: FigureFormat, style: FigureStyle) -> bytes:
     sweep = compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.2, 0.3), (12, 12), t_max=100.0, measures=CURVES))
-    return sweep_figure_bytes(sweep, format, style)
+    return study_figure_bytes(AGAINST, sweep, format, style)
 
 
 @pytest.fixture(

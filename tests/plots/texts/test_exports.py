@@ -25,7 +25,7 @@ from engine import (
     judge_orbit,
 )
 from engine.systems.system import TYPED
-from plots.texts.exports import curves_csv, file_stem, netcdf_bytes, orbits_csv, python_lines
+from plots.texts.exports import file_stem, netcdf_bytes, orbits_csv, python_lines, table_csv
 
 START = (0.1, 0.0, 0.05, 0.6)
 SPECS = {
@@ -103,7 +103,7 @@ def test_a_long_orbit_is_thinned_evenly_with_a_note(orbit: Orbit) -> None:
 def test_a_table_of_curves_has_a_row_for_each_energy() -> None:
     measures = ("shares", "basin_entropy")
     curves = compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.13, 0.2), (20, 20), t_max=100.0, measures=measures))
-    comments, rows = table(curves_csv(curves))
+    comments, rows = table(table_csv(curves))
     assert "# t_max: 100.0" in comments
     assert [float(row["h"]) for row in rows] == [0.13, 0.2]
     np.testing.assert_array_equal([float(row["share_exit_2"]) for row in rows], curves["share"][:, 2])

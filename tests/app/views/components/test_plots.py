@@ -24,7 +24,7 @@ from app.views.components.plots import (
 
 def test_a_figure_shown_again_handles_each_event_once() -> None:
     heard: list[float] = []
-    pane = FigurePane(square_figure("r2", "R²"), {Tap: lambda event: heard.append(event.x)})
+    pane = FigurePane(square_figure("r2", "R²", "Help."), {Tap: lambda event: heard.append(event.x)})
     column, document = pn.Column(pane), Document()
     column.server_doc(document)
     for x in (1.0, 2.0):
@@ -35,7 +35,7 @@ def test_a_figure_shown_again_handles_each_event_once() -> None:
 
 
 def test_glyphs_are_added_with_one_search_of_the_models() -> None:
-    plots, document = [square_figure(name, name) for name in ("basins", "times")], Document()
+    plots, document = [square_figure(name, name, "Help.") for name in ("basins", "times")], Document()
     glyphs = LaterGlyphs(lambda: [(ColumnDataSource(), Scatter())])
     for plot in plots:
         document.add_root(plot)
@@ -50,7 +50,7 @@ def test_glyphs_are_added_with_one_search_of_the_models() -> None:
 def test_a_figure_that_is_made_later_gets_the_glyphs_that_other_figures_have() -> None:
     glyphs = LaterGlyphs(lambda: [(ColumnDataSource(), Scatter())], level="annotation")
     glyphs.draw()
-    plots = [square_figure(name, name) for name in ("basins", "times")]
+    plots = [square_figure(name, name, "Help.") for name in ("basins", "times")]
     for plot in plots:
         glyphs.add_figure(plot)
     renderers = [renderer for plot in plots for renderer in plot.renderers]
@@ -67,7 +67,7 @@ def test_lines_are_joined_with_a_gap_between_them() -> None:
 
 
 def test_another_legend_is_written_into_the_same_model() -> None:
-    plot = square_figure("basins", "Basins")
+    plot = square_figure("basins", "Basins", "Help.")
     [title] = plot.elements
     annotate_picture(plot, "Basins", ("x", "y"), "channels 1 to 3")
     assert plot.elements == [title]

@@ -44,7 +44,9 @@ def shown(escape_map: EscapeMap) -> ShownResults:
     curves = compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.2, 0.3), (12, 12), t_max=100.0, measures="shares"))
     orbit = compute_orbit_curves(CASES["I"], integrate_orbit(CASES["I"], (0.1, 0.0, 0.05, 0.6), 50.0))
     analyses = {"judge": compute_regularity(escape_map)}
-    return ShownResults(frame=escape_map, analyses=analyses, orbits=(StartOrbit((0.1, 0.05), orbit),), curves=curves)
+    return ShownResults(
+        frame=escape_map, analyses=analyses, orbits=(StartOrbit((0.1, 0.05), orbit),), studies={"energies": curves}
+    )
 
 
 class KeptFiles(FileSaver):
@@ -66,7 +68,7 @@ def saved() -> KeptFiles:
 @pytest.fixture
 def results(shown: ShownResults) -> ShownResults:
     """Return a copy of the results, for a test that changes them."""
-    return ShownResults(frame=shown.frame, analyses=shown.analyses, orbits=shown.orbits, curves=shown.curves)
+    return ShownResults(frame=shown.frame, analyses=shown.analyses, orbits=shown.orbits, studies=shown.studies)
 
 
 @pytest.fixture
@@ -108,9 +110,9 @@ def test_the_event_loop_runs_while_a_figure_is_made(form: FigureForm) -> None:
 
 def test_a_choice_stays_while_the_next_map_is_computed(form: FigureForm, results: ShownResults, shown: ShownResults) -> None:
     form.what.value = "Regular or chaotic"
-    results.param.update(frame=None, orbits=(), curves=None)
+    results.param.update(frame=None, orbits=(), studies={})
     assert (form.what.options, form.what.value) == ([ALL_MAPS, "Regular or chaotic"], "Regular or chaotic")
-    results.param.update(frame=shown.frame, orbits=shown.orbits, curves=shown.curves)
+    results.param.update(frame=shown.frame, orbits=shown.orbits, studies=shown.studies)
     assert {"Basins of escape", "Regular or chaotic"} < set(form.what.options)
     assert "Origin and exit" not in form.what.options
 

@@ -8,8 +8,10 @@ import pytest
 
 from engine import CASES, MapSpec, Plane, compute_map, compute_statistics, fit_decay_laws
 from engine.results import EscapeStatistics
-from plots.pictures.charts import BINS, Shape, probabilities_chart, survival_chart, times_chart
+from plots.pictures.charts import Shape
 from plots.pictures.holoviews_elements import axis_options
+from plots.studies.escape_charts import BINS, probabilities_chart, times_chart
+from plots.studies.measure_charts import survival_chart
 
 
 @pytest.fixture(scope="module")

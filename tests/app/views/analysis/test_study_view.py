@@ -1,4 +1,4 @@
-"""The figure of curves has axes only when there are curves."""
+"""A study has axes only when there is a result."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ import numpy as np
 from bokeh.models import HoverTool
 
 from app.state.view_state import ViewState
-from app.views.analysis.curves import CurvesView
+from app.views.analysis.study_view import StudyView
 from app.views.components.plots import FigurePane
 from engine import CASES, Plane, SweepSpec, compute_sweep
 from engine.results import Sweep
 from engine.sweeps.measures import CURVES
-from plots.pictures.charts import CURVE_PANELS
+from plots.studies.against import AGAINST
 
 
 def curves(*energies: float) -> Sweep:
@@ -24,16 +24,16 @@ def curves(*energies: float) -> Sweep:
 
 
 def test_there_are_no_axes_before_the_first_curves() -> None:
-    view = CurvesView(ViewState(), lambda: None, lambda energy: None)
+    view = StudyView(AGAINST, ViewState(), lambda: None, lambda x, y: None)
     *_, plots = view.build()
     assert not plots.visible
     assert plots.objects == []
     # Below the escape energy there are no escape times yet.
     for energies in ((0.2, 0.3), (0.1,)):
-        view.show(curves(*energies))
+        view.show(curves(*energies), "h")
         assert plots.visible
         figures = [pane.object for column in plots.objects for pane in column.objects if isinstance(pane, FigurePane)]
-        assert len(figures) == 1 + len(CURVE_PANELS)
+        assert len(figures) == len(AGAINST.frames)
         assert all(figure.y_range.start < figure.y_range.end for figure in figures)
         assert all(list(figure.select(HoverTool)) for figure in figures)
         view.show(None)

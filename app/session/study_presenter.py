@@ -1,0 +1,83 @@
+"""A study of one session: it is computed when its button is pressed, shown beside the maps, and stored for files."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from app.job_clients.latest_request import LatestRequest
+from app.session.context import SessionContext
+from app.views.analysis.study_view import StudyView
+from plots.studies.study import Study, Subject
+
+
+class _Run(NamedTuple):
+    """What is computed: the subject, and the axis of the charts."""
+
+    subject: Subject
+    axis: str
+
+
+class StudyPresenter:
+    """Computes a study, shows it, and changes the view at a click on its charts.
+
+    Parameters
+    ----------
+    study
+        The study.
+    context
+        The session.
+    """
+
+    def __init__(self, study: Study[Any], context: SessionContext) -> None:
+        self._study, self._state, self._results = study, context.state, context.results
+        self._open_view = context.open_view
+        self._run: _Run | None = None
+        # The run whose result is shown. It differs from `_run` until the first result of a new run arrives.
+        self._shown_run: _Run | None = None
+        self.view = StudyView(study, self._state, self._toggle, self.click, context.latest)
+        self._request = LatestRequest(context.jobs, self._show, self._fail, context.locked)
+        self._state.param.watch(lambda *events: self._stop(), ["system", "plane", "t_max"])
+        self._state.param.watch(lambda *events: self._show(None), "system")
+
+    def _toggle(self) -> None:
+        """Start the study, or stop it if it is running."""
+        if self.view.running:
+            self._stop()
+            return
+        run = _Run(self._state.subject, self.view.axis)
+        try:
+            job = self._study.job(*run)
+        except ValueError as error:
+            self.view.say(str(error))
+            return
+        self._run = run
+        self.view.show_running(True)
+        self._request.submit(job)
+
+    def _stop(self) -> None:
+        self._request.cancel()
+        self.view.show_running(False)
+
+    def _fail(self, sentence: str) -> None:
+        self.view.show_running(False)
+        self.view.say(sentence)
+
+    def _show(self, found: Any) -> None:
+        """Show and store a result, complete or not; None removes it."""
+        if found is not None and self._study.is_complete(found):
+            self._stop()
+        self._shown_run = self._run
+        self.view.show(found, "" if self._run is None else self._run.axis)
+        others = {name: result for name, result in self._results.studies.items() if name != self._study.name}
+        self._results.studies = others if found is None else {**others, self._study.name: found}
+
+    def click(self, x: float, y: float) -> None:
+        """Change the view as the study says for a click at a place of a chart."""
+        if self.view.shown is None or self._shown_run is None:
+            return
+        changes = dict(self._study.changes(*self._shown_run, self.view.shown, x, y))
+        system = changes.pop("system", None)
+        if system is None:
+            self._state.param.update(**changes)
+        else:
+            self._open_view(system, changes)

@@ -1,0 +1,94 @@
+"""Compute a study, as the tabs beside the maps of the page do, and write it to STEM.nc and STEM.csv.
+
+With --output FILE.png, FILE.svg or FILE.pdf, its charts are drawn instead.
+
+Examples:
+
+escape-explorer study energies I --output study-I
+
+escape-explorer study energies III --against epsilon --energy 0.3 --output study-III.pdf
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from cli.arguments import Case, GivenEnergy, file_name_part
+from cli.execution import THREADS_ONLY, Place
+from cli.option_marks import DocumentedBy
+from cli.options import with_options
+from cli.output_files import Content, Stem, name_files, reserve_output, write_files
+from cli.printing import AsJson, list_rows, print_result
+from engine import Potential, Result, Slice, SweepSpec, System
+from engine.jobs.job import run_job
+from engine.systems.review.potential_review import review_system
+from plots.printed.figure_files import study_figure_bytes
+from plots.printed.figure_style import FigureFormat, FigureStyle
+from plots.studies.study import Study, Subject
+from plots.studies.table import STUDIES
+from plots.texts.exports import dataset_bytes, table_csv
+
+STUDY_HELP = f"{'; '.join(f'{name}: {study.title}. {study.hint}' for name, study in STUDIES.items())}"
+AGAINST_HELP = "h, or a parameter; by default the first quantity against which the study can be made."
+
+
+@with_options
+def run(
+    *,
+    study: Annotated[str, typer.Argument(metavar="STUDY", help=STUDY_HELP)],
+    case: Case,
+    system: System,
+    potential: Potential,
+    plane: Slice,
+    energy: GivenEnergy,
+    t_max: Annotated[float, DocumentedBy(SweepSpec)],
+    against: Annotated[str | None, typer.Option(help=AGAINST_HELP)] = None,
+    style: FigureStyle,
+    output: Stem = None,
+    place: Annotated[Place, THREADS_ONLY],
+    as_json: AsJson = False,
+) -> None:
+    """Compute, write and print the study. Without --energy, it is made at the first energy of the page."""
+    entry = _find_study(study)
+    energies = review_system(system).energies
+    subject = Subject(system, potential, plane, energies.first if energy is None else energy, energies, t_max)
+    job = entry.job(subject, _choose_axis(entry, system, against))
+    stem = Path(f"{entry.files}-{file_name_part(case)}-{plane.key}")
+    paths = name_files(output, ["nc", "csv", *FigureFormat], ["nc", "csv"], stem)
+    with reserve_output(output or stem):
+        with place.run() as context:
+            found = run_job(job, context.start_stage(entry.files), {})
+        files = write_files({path: _make_content(entry, found, ending, style) for ending, path in paths.items()})
+    _print(entry, found, files, as_json)
+
+
+def _find_study(name: str) -> Study[Any]:
+    if name not in STUDIES:
+        raise ValueError(f"study={name!r}: must be one of {', '.join(STUDIES)}")
+    return STUDIES[name]
+
+
+def _choose_axis(study: Study[Any], system: System, against: str | None) -> str:
+    """Return the axis of the charts; ValueError for one that the study does not have."""
+    axes = study.axes(system)
+    if against is not None and against not in axes:
+        raise ValueError(f"against={against!r}: must be {f'one of {", ".join(axes)}' if axes else f'left out for {study.name}'}")
+    return against or next(iter(axes), "")
+
+
+def _make_content(study: Study[Any], found: Result, ending: str, style: FigureStyle) -> Content:
+    """Return the content of the output file with an ending."""
+    if ending == "nc":
+        return dataset_bytes(found.to_xarray())
+    if ending == "csv":
+        return table_csv(found)
+    return study_figure_bytes(study, found, FigureFormat(ending), style)
+
+
+def _print(study: Study[Any], found: Result, files: Sequence[str], as_json: bool) -> None:
+    points = list_rows(found.columns())
+    print_result(as_json, {"numbers": found.numbers(), "points": points}, study.sentence(found), files=files)

@@ -1,0 +1,79 @@
+"""The study of the measures of the maps against the energy or a parameter."""
+
+from __future__ import annotations
+
+from engine import SweepSpec
+from engine.foundations.wording import format_number
+from engine.jobs.job import Job
+from engine.results import Sweep
+from engine.sweeps.map_jobs import sweep_job
+from engine.sweeps.measures import CURVES
+from plots.studies.axes import changes_at, energy_and_parameters, parameter_axis, section_of, spaced_values
+from plots.studies.study import Study, Subject
+from plots.studies.sweep_charts import CURVE_PANELS, SHARES, measure_frame, sweep_charts
+
+SWEPT_VALUES = 25
+"""Number of evenly spaced values of the energy or the parameter."""
+
+REFINED_VALUES = 8
+"""Number of further values, placed where the shares change most."""
+
+# Columns and rows of each map of a sweep.
+_RESOLUTION = (112, 112)
+
+
+def _job(subject: Subject, axis: str) -> Job[Sweep]:
+    along = parameter_axis(subject, axis)
+    spec = SweepSpec(
+        subject.potential,
+        section_of(subject).plane,
+        spaced_values(subject, axis, SWEPT_VALUES),
+        _RESOLUTION,
+        t_max=subject.t_max,
+        measures=CURVES,
+        along=along,
+        energy=None if along is None else subject.energy,
+        refine=REFINED_VALUES,
+    )
+    return sweep_job(spec)
+
+
+def _progress(curves: Sweep) -> float:
+    return float(curves.values.size / curves.dataset.attrs["count"])
+
+
+def _sentence(curves: Sweep) -> str:
+    """Describe how many values have been measured, and where."""
+    request = curves.dataset.attrs
+    energy = f" at h = {format_number(request['energy'], 6)}" if request["along"] else ""
+    values = f"values of {curves.symbol} on {request['plane']}{energy}"
+    if curves.complete:
+        return f"{request['count']} {values}. Click a curve to open the map there."
+    return f"{curves.values.size} of {request['count']} {values}"
+
+
+def sweep_caption(curves: Sweep) -> str:
+    """Return the title of the figure of a sweep: its request."""
+    request = curves.dataset.attrs
+    starts = " × ".join(str(side) for side in request["resolution"])
+    return f"{request['potential']}, {request['plane']}, {starts} starts, t_max = {request['t_max']:g}"
+
+
+AGAINST = Study(
+    name="energies",
+    title="Against",
+    start="Compute the curves",
+    hint=f"The shares and each measure at {SWEPT_VALUES + REFINED_VALUES} values, closer together where the shares change: "
+    "a minute or more.",
+    axes=energy_and_parameters,
+    job=_job,
+    progress=_progress,
+    sentence=_sentence,
+    frames=(measure_frame(SHARES), *map(measure_frame, CURVE_PANELS)),
+    charts=sweep_charts,
+    changes=lambda subject, axis, curves, x, y: changes_at(subject, axis, curves.values, x),
+    files="curves",
+    figure="Curves against energy",
+    caption=sweep_caption,
+)
+"""The shares of the outcomes and the other measures of the maps."""

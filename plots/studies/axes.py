@@ -1,0 +1,84 @@
+"""Studies against the energy or a parameter: the values at which something is computed, and the view of a value."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from engine import ParameterAxis, System
+from engine.slices.planes import SECTION
+from engine.slices.slice_text import default_range
+from plots.studies.study import Changes, Subject
+
+ENERGY = "h"
+"""Name of the energy as an axis."""
+
+
+def energy_and_parameters(system: System) -> tuple[str, ...]:
+    """Return the names of the energy and of the parameters of a system."""
+    return (ENERGY, *system.parameter_names)
+
+
+def value_on(axis: str, system: System, energy: float) -> float:
+    """Return the value of the energy or of a parameter in a view."""
+    return energy if axis == ENERGY else system.value_of(axis)
+
+
+def parameter_axis(subject: Subject, axis: str) -> ParameterAxis | None:
+    """Return the parameter of the subject with its usual range; None for the energy."""
+    return None if axis == ENERGY else ParameterAxis(axis, *default_range(subject.system, axis), subject.system)
+
+
+def spaced_values(subject: Subject, axis: str, count: int) -> tuple[float, ...]:
+    """Return evenly spaced values over the range of the energy or of a parameter.
+
+    Parameters
+    ----------
+    subject
+        The subject, whose system has the range.
+    axis
+        "h" or the name of a parameter.
+    count
+        Number of values, at least 2.
+
+    Returns
+    -------
+    The values, rounded to 4 decimals, or to more if the spacing is small.
+    """
+    energies = subject.energies
+    low, high = (energies.low, energies.high) if axis == ENERGY else default_range(subject.system, axis)
+    decimals = max(4, 2 - math.floor(math.log10((high - low) / (count - 1))))
+    return tuple(np.round(np.linspace(low, high, count), decimals).tolist())
+
+
+def section_of(subject: Subject) -> Subject:
+    """Return the subject on its slice, or on the surface of section if the slice has an axis of energies or of a parameter."""
+    plane = subject.plane
+    return subject if plane.energy_axis is None and plane.parameter is None else replace(subject, plane=SECTION)
+
+
+def changes_at(subject: Subject, axis: str, values: np.ndarray, x: float) -> Changes:
+    """Return the changes that open the map at the computed value nearest to `x`.
+
+    Parameters
+    ----------
+    subject
+        The subject of the result.
+    axis
+        "h" or the name of a parameter.
+    values
+        (n,) computed values of it.
+    x
+        The position of the click on the axis.
+    """
+    if not values.size:
+        return {}
+    value = float(values[np.argmin(np.abs(values - x))])
+    plane = section_of(subject).plane
+    along = parameter_axis(subject, axis)
+    if along is None:
+        return {"energy": value, "plane": plane}
+    system = subject.system.with_parameter(along.key, value)
+    return {"system": system, "energy": subject.energy, "plane": plane, "window": None, "starts": (), "chosen": 0}

@@ -1,0 +1,105 @@
+"""Define a study: a computation beside the maps, with its charts, and what a click on them sets.
+
+A study is one entry in a module of this package, listed in `plots.studies.table`. The tab with help texts, progress and clicks,
+the table and the figure among the files, the name in links, and the command ``study`` follow from the entry.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from engine import Potential, Result, Slice, System
+from engine.jobs.job import Job
+from engine.systems.catalogue.entry import EnergyRange
+from plots.pictures.charts import Chart, Frame
+from plots.pictures.palette import Palette
+
+Changes = Mapping[str, Any]
+"""New values of fields of a view, by name. A new `system` is reviewed before it is shown."""
+
+
+@dataclass(frozen=True)
+class Subject:
+    """What a study is about: the part of a view on which its job may depend.
+
+    Attributes
+    ----------
+    system
+        The system.
+    potential
+        Its potential.
+    plane
+        The slice of the starts.
+    energy
+        The energy h, in the units of the potential. Unused on a slice with an axis h.
+    energies
+        The energies at which the system is explored.
+    t_max
+        Longest time of the orbits, in the units of the potential.
+    """
+
+    system: System
+    potential: Potential
+    plane: Slice
+    energy: float
+    energies: EnergyRange
+    t_max: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Study[Found: Result]:
+    """A computation beside the maps.
+
+    Attributes
+    ----------
+    name
+        Name in links and for the command ``study``. It must not change.
+    title
+        Label of the tab.
+    start
+        Label of the button that starts the job.
+    hint
+        What the study computes, and how long this takes. The page shows it until there is a result.
+    axes
+        Returns the names of the quantities against which a system can be studied, "h" or a parameter; empty for no choice.
+        If there are any, all charts share the axis of x, and the page marks the present value.
+    job
+        Returns the job, given one of `axes`, or "" if there are none; raises ValueError for a subject that cannot be studied.
+    progress
+        Returns the computed share of a result, 0 to 1.
+    sentence
+        Describes a result, complete or not.
+    frames
+        The charts, in order. Each has a help text.
+    charts
+        Returns the charts of a result that are not empty, in the order of the frames.
+    changes
+        Returns the changes of the view at a click, given the subject and the axis of the shown result, the result, and x and y.
+    files
+        The part of file names that identifies the study, and the label of its table.
+    figure
+        Title in the list of figures.
+    caption
+        Title of the printed figure of a result.
+    """
+
+    name: str
+    title: str
+    start: str
+    hint: str
+    job: Callable[[Subject, str], Job[Found]]
+    sentence: Callable[[Found], str]
+    frames: Sequence[Frame]
+    charts: Callable[[Found, Palette], Sequence[Chart]]
+    changes: Callable[[Subject, str, Found, float, float], Changes]
+    files: str
+    figure: str
+    caption: Callable[[Found], str]
+    axes: Callable[[System], Sequence[str]] = lambda system: ()
+    progress: Callable[[Found], float] = lambda found: 1.0
+
+    def is_complete(self, found: Found) -> bool:
+        """Whether no further part of a result follows."""
+        return self.progress(found) >= 1.0

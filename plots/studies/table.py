@@ -1,0 +1,15 @@
+"""The studies as entries of one table, which the page, links, files, figures and the command line use."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any
+
+from plots.studies.against import AGAINST
+from plots.studies.study import Study
+
+_ENTRIES: tuple[Study[Any], ...] = (AGAINST,)
+
+STUDIES: Mapping[str, Study[Any]] = MappingProxyType({study.name: study for study in _ENTRIES})
+"""The studies by name, in the order of their tabs."""

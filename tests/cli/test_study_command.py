@@ -1,0 +1,43 @@
+"""The command ``study`` computes, prints and writes any study of the page."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+
+import pytest
+
+from cli.commands import study as command
+from engine import CASES, find_lyapunov_orbits
+from tests.cli.conftest import Run
+from tests.plots.studies.study_example import study_of_periods
+
+
+@pytest.fixture(autouse=True)
+def with_periods(monkeypatch: pytest.MonkeyPatch) -> None:
+    """List the study of the example in docs/extending.md as well."""
+    monkeypatch.setattr(command, "STUDIES", {**command.STUDIES, "periods": study_of_periods()})
+
+
+def test_a_study_is_printed_and_written(run: Run, tmp_path: Path) -> None:
+    code, out, err = run("study", "periods", "II", "--json", "--output", tmp_path / "found")
+    assert (code, err) == (0, "")
+    last = json.loads(out)["points"][-1]
+    assert last["longest"] == max(orbit.period for orbit in find_lyapunov_orbits(CASES["II"], last["h"]))
+    with (tmp_path / "found.csv").open() as file:
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    assert float(rows[-1]["longest"]) == last["longest"]
+    assert (tmp_path / "found.nc").exists()
+
+
+def test_the_charts_of_a_study_are_drawn(run: Run, tmp_path: Path) -> None:
+    _, out, _ = run("study", "periods", "II", "--output", tmp_path / "found.svg")
+    assert "The periods of the Lyapunov orbits at 9 energies" in out
+    assert "Periods of the Lyapunov orbits" in (tmp_path / "found.svg").read_text()
+
+
+def test_an_axis_that_a_study_does_not_have_is_refused(run: Run) -> None:
+    code, _, err = run("study", "periods", "II", "--against", "epsilon")
+    assert code == 2
+    assert "against='epsilon': must be one of h" in err
