@@ -21,7 +21,7 @@ from engine import (
     compute_wada_test,
     fit_decay_laws,
 )
-from engine.measures.starts import exit_labels
+from engine.measures.basins.starts import exit_labels
 
 SIDE = 224
 SIDES = (SIDE, 2 * SIDE, 4 * SIDE)

@@ -6,7 +6,7 @@ from cli.execution import RunContext
 from cli.layer_options import LayerOptions
 from engine import EscapeMap, MapSpec, compute_map
 from engine.jobs.job import run_job
-from engine.sweeps.map_jobs import map_job
+from engine.maps.map_jobs import map_job
 from plots.layers.layer import Analyses
 
 

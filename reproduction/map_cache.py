@@ -22,8 +22,8 @@ from engine import (
     compute_uncertainty_exponent,
 )
 from engine.foundations.execution import DEFAULT_EXECUTION
+from engine.measures.compute import compute_point
 from engine.results import RegularityMap, Sweep, UncertaintyExponent
-from engine.sweeps.measures import compute_point
 from reproduction.analyses.super_sticky import SuperStickySearch, find_super_sticky_orbits
 from reproduction.paper_ranges import STICKY_CASE, STICKY_ENERGY, curve_energies
 from reproduction.quality import Quality

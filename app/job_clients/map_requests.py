@@ -11,8 +11,8 @@ from app.state.view_state import ViewState
 from engine import EscapeMap, MapSpec
 from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job, Queue
-from engine.sweeps.map_jobs import map_job, members_job
-from engine.sweeps.warmup import is_ready_for_maps, prepare_for_maps
+from engine.maps.map_jobs import map_job, members_job
+from engine.maps.warmup import is_ready_for_maps, prepare_for_maps
 from plots.layers.map_images import layer_columns
 from plots.pictures.image_columns import draw_over, map_columns
 

@@ -17,7 +17,7 @@ from app.views.components.texts import TextPane
 from app.views.maps.map_plots import MapsView
 from engine import MEASURES, EscapeMap, MapSpec
 from engine.jobs.job import Job
-from engine.sweeps.map_jobs import measure_job
+from engine.measures.compute import measure_job
 from plots.layers.layer import NO_ANALYSES, Layer
 from plots.layers.table import LAYERS
 

@@ -10,7 +10,7 @@ from app.session.context import History, SessionContext
 from app.state.system_review import PageReview, is_known, review_catalogue_entry, review_job
 from app.views.analysis.potential_panel import NEW_INTEGRATOR, PotentialPanel
 from engine import System
-from engine.sweeps.warmup import is_ready_for_maps
+from engine.maps.warmup import is_ready_for_maps
 from engine.systems.system import TYPED
 
 

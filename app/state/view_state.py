@@ -25,8 +25,8 @@ from app.state.watched_starts import WatchedStarts
 from engine import Fate, MapSpec, Orbit, ParameterAxis, Potential, Slice, System, Window, integrate_orbit, start_states
 from engine.foundations.validation import LARGEST_NUMBER
 from engine.jobs.job import Job, Queue
+from engine.maps.warmup import is_ready_for_maps
 from engine.propagation.fates import describe_fate
-from engine.sweeps.warmup import is_ready_for_maps
 from engine.systems.catalogue.entry import EnergyRange
 from engine.systems.catalogue.table import PAPER_ENERGIES
 from engine.systems.system import TYPED

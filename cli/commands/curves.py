@@ -25,8 +25,8 @@ from cli.options import with_options
 from cli.output_files import Content, Stem, name_files, reserve_output, write_files
 from cli.printing import AsJson, Table, list_rows, print_result
 from engine import ParameterAxis, Potential, Slice, SweepSpec, System, compute_sweep
+from engine.measures.table import CURVES, QUICK_CURVES
 from engine.results import Sweep
-from engine.sweeps.measures import CURVES, QUICK_CURVES
 from engine.systems.parameters import WELL_PARAMETERS
 from plots.printed.figure_files import study_figure_bytes
 from plots.printed.figure_style import FigureFormat, FigureStyle

@@ -24,7 +24,7 @@ from cli.option_marks import OptionChanges
 from cli.options import with_options
 from cli.printing import AsJson, print_result
 from engine import MEASURES, MapSpec, Result
-from engine.sweeps.measures import measure_map
+from engine.measures.compute import measure_map
 
 DESCRIBED = {name: measure for name, measure in MEASURES.items() if measure.sentence is not None}
 """The measures that this command can describe in a sentence, by name."""

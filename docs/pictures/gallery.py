@@ -25,8 +25,8 @@ from engine import (
 )
 from engine.foundations.execution import DEFAULT_EXECUTION
 from engine.jobs.job import run_job
+from engine.maps.map_jobs import map_job
 from engine.slices.limiting_curves import trace_equipotentials
-from engine.sweeps.map_jobs import map_job
 from plots.layers.layer import Analyses, Stroke
 from plots.layers.map_images import picture_pixels
 from plots.layers.table import LAYERS

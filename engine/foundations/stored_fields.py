@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import fields, is_dataclass
 from enum import Enum
 from types import NoneType, UnionType
@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Union, get_args, get_origin, get_type_hin
 import numpy as np
 
 from engine.foundations.arrays import read_only
+from engine.foundations.validation import short_repr
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -25,6 +26,32 @@ def with_present_names(dataset: xr.Dataset) -> xr.Dataset:
     renamed = dataset.rename({old: new for old, new in FORMER_FIELDS.items() if old in dataset.variables})
     renamed.attrs = {FORMER_FIELDS.get(name, name): value for name, value in dataset.attrs.items()}
     return renamed
+
+
+def checked_dataset(name: str, value: Any, arrays: Collection[str], legal: str) -> xr.Dataset:
+    """Return the dataset of one map, or of any orbits, with the present names; ValueError unless it has these arrays.
+
+    Parameters
+    ----------
+    name
+        Name of the parameter, for messages.
+    value
+        The dataset, of any version, or what was given instead of a dataset.
+    arrays
+        The names of the required arrays, among them "fate".
+    legal
+        Description of what is legal, for messages.
+    """
+    # Any other value counts as a dataset without arrays.
+    dataset: Any = with_present_names(value) if hasattr(value, "data_vars") else {}
+    if "fate" not in dataset:
+        raise ValueError(f"{name}={short_repr(value)}: must be {legal}")
+    missing = [array for array in arrays if array not in dataset]
+    if missing:
+        raise ValueError(f"{name}: a dataset of a map without {', '.join(missing)}; must have all arrays of the map")
+    if dataset["fate"].ndim > 2:
+        raise ValueError(f"{name}: a dataset of several maps; must be one of them, such as dataset.sel(h=…)")
+    return dataset
 
 
 def write_field(value: Any) -> Any:

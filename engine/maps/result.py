@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from engine.foundations.result import MapResult, Result
+from engine.foundations.stored_fields import checked_dataset
 from engine.foundations.validation import checked_flag
 from engine.foundations.wording import describe_codes
 from engine.maps.spec import MapSpec, read_spec
-from engine.measures.starts import checked_dataset
 from engine.propagation.batch import OrbitBatch
 from engine.propagation.fates import Evidence, Fate, name_fate
 from engine.slices.window import Window

@@ -14,8 +14,8 @@ from engine.foundations.wording import format_count
 from engine.maps.compute import compute_map
 from engine.maps.result import PIXEL_ARRAYS
 from engine.maps.spec import MapSpec
+from engine.maps.warmup import prepare_for_evidence, prepare_for_maps
 from engine.sweeps.spec import SweepSpec
-from engine.sweeps.warmup import prepare_for_evidence, prepare_for_maps
 
 # Sides in pixels of the coarse maps on which plans are based. From two sizes follows the cost that does not depend on the size.
 _COARSE_SIDES = (48, 96)

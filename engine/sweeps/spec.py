@@ -11,6 +11,8 @@ import numpy as np
 
 from engine.foundations.validation import LARGEST_NUMBER, check_type, checked_count, short_repr
 from engine.maps.spec import DEFAULT_RESOLUTION, MapSpec
+from engine.measures.measured_map import SweepPoint
+from engine.measures.table import MEASURES
 from engine.slices.axes import Coordinate, ParameterAxis
 from engine.slices.default_window import map_window
 from engine.slices.parameter_family import parameter_family
@@ -18,8 +20,6 @@ from engine.slices.planes import checked_slice
 from engine.slices.slice import Slice
 from engine.slices.slice_text import write_slice
 from engine.slices.window import GivenWindow
-from engine.sweeps.measured_map import SweepPoint
-from engine.sweeps.measures import MEASURES
 from engine.systems.outcomes import Outcome, write_outcomes
 from engine.systems.potential import Potential
 

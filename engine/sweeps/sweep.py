@@ -16,8 +16,8 @@ from engine.exits.lyapunov_orbits import find_lyapunov_orbits
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.result import Result
 from engine.foundations.validation import checks_types
-from engine.sweeps.measured_map import SweepPoint
-from engine.sweeps.measures import compute_point
+from engine.measures.compute import compute_point
+from engine.measures.measured_map import SweepPoint
 from engine.sweeps.spec import VALUE_ATTRIBUTES, SweepSpec
 from engine.sweeps.store import SweepStore, check_same_sweep, open_store
 from engine.systems.outcomes import Outcome, read_outcomes

@@ -9,8 +9,8 @@ import numpy as np
 from engine import EscapeMap, Fate, MapSpec, TimeDirection, compute_lagrangian_descriptor
 from engine.jobs.job import Job
 from engine.maps.analyses.descriptors import DEFAULT_DURATION, checked_choices
+from engine.maps.map_jobs import map_job
 from engine.results import DescriptorMap
-from engine.sweeps.map_jobs import map_job
 from plots.layers.layer import Layer, Pixels, Setting, Settings
 from plots.layers.picture import ColourScale, Legend, Picture, ShownMap
 from plots.pictures.image_columns import FIRST_CLASS, pixel_codes

@@ -9,9 +9,9 @@ import numpy as np
 
 from engine import EscapeMap, MapSpec, Outcome
 from engine.jobs.job import Job
+from engine.maps.map_jobs import map_job
 from engine.maps.origin_fates import join_origin_fates
 from engine.results import OriginFateMap
-from engine.sweeps.map_jobs import map_job
 from plots.layers.layer import Layer, Pixels, Settings
 from plots.layers.picture import ColourTable, Legend, Picture, ShownMap
 from plots.pictures.image_columns import FIRST_CLASS, at_places, end_numbers, pixel_codes

@@ -8,8 +8,8 @@ import numpy as np
 
 from engine import EscapeMap, Evidence, Fate, MapSpec, Regularity, compute_regularity
 from engine.jobs.job import Job
+from engine.maps.map_jobs import map_job
 from engine.results import RegularityMap
-from engine.sweeps.map_jobs import map_job
 from plots.layers.layer import Code, Layer, Pixels, Settings, occurring_entries
 from plots.layers.picture import Legend, Picture, ShownMap
 from plots.pictures.image_columns import FIRST_CLASS, pixel_codes

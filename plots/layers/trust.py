@@ -6,8 +6,8 @@ import numpy as np
 
 from engine import EscapeMap, MapSpec, Trust, compute_trust
 from engine.jobs.job import Job
+from engine.maps.map_jobs import map_job
 from engine.results import TrustMap
-from engine.sweeps.map_jobs import map_job
 from plots.layers.layer import Code, Layer, Over, Pixels, Settings, occurring_entries
 from plots.pictures.palette import CLEAR, Entry, Mark, Palette
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from engine import SweepSpec
 from engine.foundations.wording import format_number
 from engine.jobs.job import Job
+from engine.measures.table import CURVES
 from engine.results import Sweep
-from engine.sweeps.map_jobs import sweep_job
-from engine.sweeps.measures import CURVES
+from engine.sweeps.sweep_job import sweep_job
 from plots.studies.axes import changes_at, energy_and_parameters, parameter_axis, section_of, spaced_values
 from plots.studies.study import Study, Subject
 from plots.studies.sweep_charts import CURVE_PANELS, SHARES, measure_frame, sweep_charts

@@ -30,8 +30,8 @@ from engine import (
     find_lyapunov_orbits,
     fit_decay_laws,
 )
-from engine.measures.starts import exit_labels
-from engine.sweeps.measures import QUICK_CURVES
+from engine.measures.basins.starts import exit_labels
+from engine.measures.table import QUICK_CURVES
 from tests.cli.conftest import Run
 
 MAP = ("II", "--energy", 0.2, "--resolution", 25, "--t-max", 100)

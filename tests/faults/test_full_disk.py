@@ -16,7 +16,7 @@ import xarray as xr
 
 from cli.main import FAILED, main
 from engine import CASES
-from engine.sweeps.warmup import prepare_for_evidence, prepare_for_maps
+from engine.maps.warmup import prepare_for_evidence, prepare_for_maps
 from tests.forked import Finished, run
 
 

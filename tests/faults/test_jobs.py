@@ -14,7 +14,7 @@ from app.job_clients.error_messages import error_sentence
 from engine import CASES, MapSpec, Plane, compute_map
 from engine.jobs.job import Job, Queue
 from engine.jobs.manager import Jobs
-from engine.sweeps.map_jobs import map_job
+from engine.maps.map_jobs import map_job
 from tests.engine.jobs.inbox import Inbox, wait_until_idle
 from tests.waiting import SECONDS
 

@@ -34,7 +34,7 @@ from engine import (
     start_states,
 )
 from engine.foundations.validation import LONGEST_TIME
-from engine.measures.power_law_fit import fit_uncertainty
+from engine.measures.basins.power_law_fit import fit_uncertainty
 from engine.trajectories.birkhoff_digits import compute_birkhoff_digits
 from tests.fuzz.hostile import anything, floats, mostly, result_or_error
 

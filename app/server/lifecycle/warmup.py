@@ -17,14 +17,14 @@ from engine import CASES, Potential, integrate_orbit, start_states
 from engine.foundations.execution import DEFAULT_EXECUTION
 from engine.integrator.portable_kernels import kernel_module
 from engine.jobs.job import run_job
-from engine.slices.planes import SECTION
-from engine.sweeps.warmup import (
+from engine.maps.warmup import (
     call_after_maps,
     prepare_for_evidence,
     prepare_for_maps,
     reserve_catalogue,
     small_map,
 )
+from engine.slices.planes import SECTION
 from plots.layers.table import LAYERS
 
 # A child of Bokeh's logger, so that `panel serve` shows the messages.

@@ -27,8 +27,8 @@ from app.state.watched_starts import (
 from engine import compute_flux
 from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job
+from engine.maps.warmup import is_ready_for_maps
 from engine.results import EscapeFlux
-from engine.sweeps.warmup import is_ready_for_maps
 
 _STYLE = """
 :host { display: block; color: var(--ui-ink) }

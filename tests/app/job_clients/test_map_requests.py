@@ -17,8 +17,8 @@ from engine.jobs.client import JobClient
 from engine.jobs.job import Job, Queue
 from engine.jobs.manager import Jobs
 from engine.jobs.subscription import Subscription
+from engine.maps.warmup import prepare_for_maps
 from engine.slices.slice_text import read_slice
-from engine.sweeps.warmup import prepare_for_maps
 from engine.systems.system import TYPED
 from tests.waiting import SECONDS
 

@@ -14,7 +14,7 @@ from app.state.system_review import review_for_page
 from app.state.view_state import ViewState
 from engine import CASES, System
 from engine.jobs.manager import Jobs
-from engine.sweeps.warmup import prepare_for_maps
+from engine.maps.warmup import prepare_for_maps
 from engine.systems.parameters import WELL_PARAMETERS
 from engine.systems.system import TYPED
 from tests.app.browser_messages import send

@@ -65,7 +65,7 @@ def begin() -> Iterator[Callable[..., Session]]:
 @pytest.fixture
 def wide_intervals(monkeypatch: pytest.MonkeyPatch) -> None:
     """Limit the work for each exponent of the curves, which widens the intervals."""
-    monkeypatch.setattr("engine.sweeps.measures.WORK", 1e7)
+    monkeypatch.setattr("engine.measures.table.WORK", 1e7)
 
 
 def test_a_study_of_one_entry_is_computed_stored_and_opens_the_clicked_energy(begin: Callable[..., Session]) -> None:

@@ -8,7 +8,7 @@ from engine import CASES, MapSpec, Plane, integrate_orbit
 from engine.jobs.client import JobClient
 from engine.jobs.job import Job, Queue
 from engine.jobs.manager import Jobs
-from engine.sweeps.map_jobs import map_job
+from engine.maps.map_jobs import map_job
 from tests.engine.jobs.inbox import Inbox, wait_until_idle
 from tests.waiting import SECONDS
 

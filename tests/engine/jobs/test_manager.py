@@ -27,7 +27,7 @@ from engine.foundations.execution import Execution
 from engine.jobs.job import Job, Queue
 from engine.jobs.manager import Jobs
 from engine.jobs.map_priority import CROWDED_REST_SECONDS
-from engine.sweeps.map_jobs import map_job
+from engine.maps.map_jobs import map_job
 from tests.app.clock import Clock
 from tests.engine.jobs.inbox import Inbox, wait_until_idle
 from tests.waiting import SECONDS, wait_until

@@ -24,10 +24,11 @@ from engine import (
     compute_wada_test,
     fit_decay_laws,
 )
+from engine.measures.compute import compute_point
+from engine.measures.measured_map import SweepPoint
+from engine.measures.table import QUICK_CURVES
 from engine.results import Sweep
 from engine.slices.default_window import default_window
-from engine.sweeps.measured_map import SweepPoint
-from engine.sweeps.measures import QUICK_CURVES, compute_point
 from tests.engine.slices.test_parameter_family import THIRD_EXIT
 
 SPEC = SweepSpec(CASES["II"], Plane.X_PX, (0.3, 0.1, 0.2, 0.25, 0.2), (40, 40), t_max=500.0, measures=QUICK_CURVES)
@@ -79,7 +80,7 @@ def test_the_law_of_late_escapes_is_that_of_the_map() -> None:
 
 
 def test_exponent_is_computed_where_exits_are_open(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("engine.sweeps.measures.WORK", 1e7)
+    monkeypatch.setattr("engine.measures.table.WORK", 1e7)
     found = compute_sweep(
         SweepSpec(CASES["III"], Plane.X_PX, (0.2, 0.6), (40, 40), t_max=500.0, measures=["uncertainty_exponent"])
     )

@@ -14,8 +14,8 @@ import xarray as xr
 from engine import CASES, EscapeMap, Execution, MapSpec, Plane, compute_map, open_result
 from engine.foundations.arrays import read_only
 from engine.jobs.job import Job, run_job
+from engine.maps.map_jobs import map_job
 from engine.maps.pixels import PixelAnalysis
-from engine.sweeps.map_jobs import map_job
 from plots.layers import layer, map_images, table
 from plots.layers.map_images import picture_pixels
 from plots.layers.picture import ShownMap

@@ -19,7 +19,7 @@ from engine import (
     compute_sweep,
     integrate_orbit,
 )
-from engine.sweeps.measures import CURVES
+from engine.measures.table import CURVES
 from plots.pictures.orbit_curves import compute_orbit_curves
 from plots.pictures.palette import PAPER
 from plots.printed.figure_axes import MOST_PIXELS

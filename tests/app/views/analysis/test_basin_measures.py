@@ -10,7 +10,7 @@ import pytest
 from app.state.view_state import ViewState
 from app.views.analysis.basin_measures import BasinMeasuresView
 from engine import CASES, MapSpec, Window, compute_basin_entropy, compute_map
-from engine.sweeps.measures import measure_map
+from engine.measures.compute import measure_map
 from tests.results import result_of
 
 

@@ -9,8 +9,8 @@ from app.state.view_state import ViewState
 from app.views.analysis.study_view import StudyView
 from app.views.components.plots import FigurePane
 from engine import CASES, Plane, SweepSpec, compute_sweep
+from engine.measures.table import CURVES
 from engine.results import Sweep
-from engine.sweeps.measures import CURVES
 from plots.studies.against import AGAINST
 
 

@@ -15,7 +15,7 @@ from app.state.watched_starts import StartsFrom, WatchedStarts
 from app.views.orbits.ensemble_player import EnsemblePlayer
 from engine import CASES, Coordinate, ParameterAxis, Plane, Slice, System, compute_flux
 from engine.jobs.manager import Jobs
-from engine.sweeps.warmup import prepare_for_maps
+from engine.maps.warmup import prepare_for_maps
 from tests.app.browser_messages import send
 from tests.app.session.session_lock import context_of
 from tests.disc import disc_map

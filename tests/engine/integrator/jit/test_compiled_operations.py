@@ -21,7 +21,7 @@ from engine.integrator.source.series import Setting
 from engine.jobs.client import JobClient
 from engine.jobs.job import Job, Queue
 from engine.jobs.manager import Jobs
-from engine.sweeps.warmup import reserve_catalogue
+from engine.maps.warmup import reserve_catalogue
 from tests.engine.jobs.inbox import Inbox
 from tests.waiting import SECONDS
 

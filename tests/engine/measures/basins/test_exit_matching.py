@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from engine import Fate, Potential, classify_orbits, compute_exit_matching, sample_entrances, sample_entrances_by_exit
-from engine.measures.starts import Starts, wilson_interval
+from engine.measures.basins.starts import Starts, wilson_interval
 from engine.results import ExitMatching
 
 UNEQUAL = Potential("unequal", ((2, 0, 0.5), (0, 2, 0.6), (1, 2, -1.0), (3, 0, 0.3)))

@@ -10,7 +10,7 @@ import numpy as np
 from engine.foundations.result import RecordedResult
 from engine.foundations.validation import checked_array, checked_integers, short_repr
 from engine.foundations.wording import format_count, format_decimals
-from engine.measures.starts import wilson_interval
+from engine.measures.basins.starts import wilson_interval
 from engine.systems.well_units import LENGTH, TIME
 
 MIN_EXPECTED_PAIRS = 5.0

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from engine import CASES, MapSpec, Plane, compute_map
-from engine.measures.starts import exit_labels
-from engine.measures.wada import COUNTS_BOUNDED, WadaTest, compute_wada_test
+from engine.measures.basins.starts import exit_labels
+from engine.measures.basins.wada import COUNTS_BOUNDED, WadaTest, compute_wada_test
 
 
 def stripes(width: int, number: int = 3, rows: int = 10) -> np.ndarray:

@@ -9,7 +9,7 @@ import numpy as np
 
 from engine.foundations.root_finding import find_root
 from engine.foundations.validation import checked_array, checked_t_max, short_repr
-from engine.measures.decay_laws import (
+from engine.measures.basins.decay_laws import (
     MIN_ESCAPES,
     MIN_P_VALUE,
     DecayLaw,
@@ -19,8 +19,8 @@ from engine.measures.decay_laws import (
     to_unit_time,
     window_length,
 )
-from engine.measures.escape_statistics import EscapeStatistics, compute_statistics, compute_survival
-from engine.measures.starts import Measurable, Starts, read_starts
+from engine.measures.basins.escape_statistics import EscapeStatistics, compute_statistics, compute_survival
+from engine.measures.basins.starts import Measurable, Starts, read_starts
 
 # Half-width of the 95 % interval of a normal distribution, in standard deviations.
 _HALF_WIDTH_95 = 1.96

@@ -8,7 +8,7 @@ from engine import Potential
 from engine.integrator.bound_kernels import load_kernels
 from engine.integrator.jit.compiled_operations import compiled_operations
 from engine.integrator.source.series import Setting
-from engine.sweeps.warmup import Compilations, is_ready_for_maps, prepare_for_evidence, prepare_for_maps
+from engine.maps.warmup import Compilations, is_ready_for_maps, prepare_for_evidence, prepare_for_maps
 from tests.waiting import SECONDS
 
 # A structure that no other test compiles.

@@ -11,7 +11,7 @@ import numpy as np
 
 from engine.foundations.result import Chart, RecordedResult
 from engine.foundations.wording import format_count
-from engine.measures.starts import checked_labels, describe_labels
+from engine.measures.basins.starts import checked_labels, describe_labels
 
 MIN_BASINS = 3
 """Smallest number of basins for the Wada property; two basins always share their boundary."""

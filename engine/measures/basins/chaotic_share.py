@@ -10,7 +10,7 @@ import numpy as np
 from engine.foundations.result import Result
 from engine.foundations.validation import short_repr
 from engine.foundations.wording import format_share, format_share_range
-from engine.measures.starts import wilson_interval
+from engine.measures.basins.starts import wilson_interval
 from engine.propagation.fates import JUDGEMENTS, Regularity
 
 

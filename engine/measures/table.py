@@ -4,35 +4,31 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from concurrent.futures import CancelledError
 from operator import attrgetter, methodcaller
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.foundations.wording import describe_codes
-from engine.maps.analyses.uncertain_pairs import WORK, compute_uncertainty_exponent
-from engine.maps.compute import compute_map
 from engine.maps.result import EscapeMap
-from engine.measures.basin_entropy import compute_basin_entropy
-from engine.measures.chaotic_share import ChaoticShare, compute_chaotic_share
-from engine.measures.decay_law_fits import fit_decay_laws
-from engine.measures.decay_laws import DecayLaws
-from engine.measures.escape_statistics import EscapeStatistics
-from engine.measures.islands import MIN_ISLAND_PIXELS, compute_islands
+from engine.measures.basins.basin_entropy import compute_basin_entropy
+from engine.measures.basins.chaotic_share import ChaoticShare, compute_chaotic_share
+from engine.measures.basins.decay_law_fits import fit_decay_laws
+from engine.measures.basins.decay_laws import DecayLaws
+from engine.measures.basins.escape_statistics import EscapeStatistics
+from engine.measures.basins.islands import MIN_ISLAND_PIXELS, compute_islands
+from engine.measures.basins.power_law_fit import UncertaintyExponent
+from engine.measures.basins.wada import compute_wada_test
+from engine.measures.flux import EscapeFlux, compute_flux
 from engine.measures.measure import HIGH_TEMPLATE, LOW_TEMPLATE, NO_CURVE, Bars, Curve, Measure, Quantity, Variables
-from engine.measures.power_law_fit import UncertaintyExponent
-from engine.measures.wada import compute_wada_test
+from engine.measures.measured_map import MeasuredMap, SweepPoint
+from engine.measures.uncertain_pairs import WORK, compute_uncertainty_exponent
 from engine.propagation.fates import Fate, renumber
 from engine.slices.axes import highest_energy
-from engine.slices.window import Window
-from engine.sweeps.measured_map import MeasuredMap, SweepPoint
-from engine.trajectories.flux import EscapeFlux, compute_flux
 
 if TYPE_CHECKING:
-    import xarray as xr
+    pass
 
 _describe = methodcaller("describe")
 
@@ -267,50 +263,3 @@ CURVES = tuple(name for name, measure in MEASURES.items() if measure.curve != NO
 
 QUICK_CURVES = tuple(name for name in CURVES if not MEASURES[name].slow)
 """Names of the measures in `CURVES` that take little time in addition to the map."""
-
-
-# Number of additional orbits of a measure as a share of the usual number, small because a sweep measures many maps.
-_SWEEP_EFFORT = 0.1
-
-
-def measure_map(escape_map: EscapeMap, name: str, box: Window | None = None, *, execution: Execution = DEFAULT_EXECUTION) -> Any:
-    """Return the result of the measure `name` for a complete map, or for a box in it; None if it is not defined there."""
-    return MEASURES[name].compute(MeasuredMap(escape_map, box, execution))
-
-
-def compute_point(
-    point: SweepPoint, *, escape_map: EscapeMap | None = None, execution: Execution = DEFAULT_EXECUTION
-) -> xr.Dataset:
-    """Measure the map at one value of a sweep.
-
-    Parameters
-    ----------
-    point
-        The request.
-    escape_map
-        The map of `point.map_spec`; None to compute it.
-    execution
-        How the computation runs.
-
-    Returns
-    -------
-    The dataset of the measures. Its first dimension, of size 1, has the name of the varied quantity.
-
-    Raises
-    ------
-    concurrent.futures.CancelledError
-        When cancelled.
-    """
-    # This import is slow.
-    import xarray as xr
-
-    if escape_map is None:
-        escape_map = compute_map(point.map_spec, execution=execution.part(0, 2))
-    if not escape_map.complete:
-        raise CancelledError
-    measured = MeasuredMap(escape_map, execution=execution.part(1, 2), effort=_SWEEP_EFFORT)
-    variables: dict[str, Any] = {}
-    for name in point.measures:
-        variables |= MEASURES[name].variables(point, MEASURES[name].compute(measured))
-    value = ((), point.value, {"long_name": point.name, "units": "1"})
-    return xr.Dataset(variables, {point.name: value}).expand_dims(point.name)

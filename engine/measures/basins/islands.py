@@ -8,7 +8,7 @@ import numpy as np
 
 from engine.foundations.result import RecordedResult
 from engine.foundations.wording import format_count
-from engine.measures.starts import Measurable, Starts, read_complete_starts
+from engine.measures.basins.starts import Measurable, Starts, read_complete_starts
 from engine.propagation.fates import Fate
 
 MIN_ISLAND_PIXELS = 4

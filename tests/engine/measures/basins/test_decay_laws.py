@@ -17,8 +17,8 @@ from engine import (
     fit_decay_laws,
     sample_starts,
 )
-from engine.measures.decay_laws import DecayLaw, LawFit
-from engine.measures.escape_statistics import MAX_SURVIVAL_POINTS, compute_survival
+from engine.measures.basins.decay_laws import DecayLaw, LawFit
+from engine.measures.basins.escape_statistics import MAX_SURVIVAL_POINTS, compute_survival
 from engine.results import DecayLaws, EscapeStatistics
 
 T_LOW, T_HIGH = 2.0, 1e4

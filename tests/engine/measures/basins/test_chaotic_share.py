@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from engine import Regularity, compute_chaotic_share
-from engine.measures.starts import wilson_interval
+from engine.measures.basins.starts import wilson_interval
 
 
 def test_orbits_that_escape_or_are_not_judged_do_not_count() -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from engine.measures.power_law_fit import UncertaintyExponent, fit_uncertainty
+from engine.measures.basins.power_law_fit import UncertaintyExponent, fit_uncertainty
 
 SEPARATIONS = np.geomspace(1e-2, 1e-10, 17)
 TRIALS = 100

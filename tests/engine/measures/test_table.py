@@ -22,8 +22,9 @@ from engine import (
     compute_regularity,
     compute_sweep,
 )
-from engine.sweeps.measured_map import MeasuredMap, SweepPoint
-from engine.sweeps.measures import CURVES, compute_point, measure_map
+from engine.measures.compute import compute_point, measure_map
+from engine.measures.measured_map import MeasuredMap, SweepPoint
+from engine.measures.table import CURVES
 from tests.extending import run_example
 
 ROOT = Path(__file__).parents[3]
@@ -44,7 +45,7 @@ def example() -> Measure:
 def test_the_example_of_the_guide_is_measured_like_any_other(
     sea: EscapeMap, example: Measure, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("engine.sweeps.measures.MEASURES", {example.name: example})
+    monkeypatch.setattr("engine.measures.compute.MEASURES", {example.name: example})
     found = measure_map(sea, example.name)
     assert 0.0 < found.low < found.share < found.high < 1.0
     assert example.sentence is not None
@@ -89,7 +90,7 @@ def test_the_exponent_of_a_map_over_energies_is_measured_where_an_exit_opens_amo
 
 
 def test_curves_have_the_numbers_of_the_table(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("engine.sweeps.measures.WORK", 1e7)
+    monkeypatch.setattr("engine.measures.table.WORK", 1e7)
     sweep = compute_sweep(SweepSpec(CASES["II"], Plane.X_PX, (0.2,), (30, 30), t_max=100.0, measures=CURVES))
     wanted = {quantity.name for name in CURVES for quantity in MEASURES[name].quantities}
     assert wanted <= set(sweep.to_pandas().columns)

@@ -11,7 +11,7 @@ import pytest
 from scipy.stats import binomtest
 
 from engine import CASES, EscapeMap, Fate, MapSpec, Plane, compute_basin_entropy, compute_map, compute_wada_test
-from engine.measures.starts import exit_labels, wilson_interval
+from engine.measures.basins.starts import exit_labels, wilson_interval
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,7 @@ import numpy as np
 from engine.foundations.result import RecordedResult
 from engine.foundations.validation import checked_count
 from engine.foundations.wording import format_count
-from engine.measures.starts import checked_labels, describe_labels
+from engine.measures.basins.starts import checked_labels, describe_labels
 
 DEFAULT_BOX = 5
 """Default side of a box in pixels; a box has 25 starts, as in Daza et al. (2016)."""

@@ -10,7 +10,7 @@ import pytest
 
 from engine import ParameterAxis, Plane, SweepSpec, System
 from engine.jobs.manager import Jobs
-from engine.sweeps.map_jobs import sweep_job
+from engine.sweeps.sweep_job import sweep_job
 from engine.systems.system import TYPED
 from tests.engine.jobs.inbox import Inbox
 from tests.waiting import SECONDS

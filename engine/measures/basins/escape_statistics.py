@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 
 from engine.foundations.arrays import read_only
-from engine.measures.starts import Measurable, Starts, read_starts, wilson_interval
+from engine.measures.basins.starts import Measurable, Starts, read_starts, wilson_interval
 from engine.propagation.fates import Fate, OrbitResult
 from engine.slices.window import GivenWindow, checked_window
 from engine.systems.outcomes import Outcome

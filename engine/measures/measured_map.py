@@ -12,8 +12,8 @@ from engine.maps.analyses.regularity import compute_regularity
 from engine.maps.pixels import MirrorPixels
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
-from engine.measures.escape_statistics import EscapeStatistics, compute_statistics
-from engine.measures.starts import Starts, read_starts
+from engine.measures.basins.escape_statistics import EscapeStatistics, compute_statistics
+from engine.measures.basins.starts import Starts, read_starts
 from engine.propagation.fates import Fate
 from engine.slices.window import Window
 from engine.systems.outcomes import Outcome

@@ -11,9 +11,9 @@ import pytest
 
 from engine import CASES
 from engine.foundations.execution import Execution, SerialExecutor
-from engine.maps.analyses.uncertain_pairs import compute_uncertainty_exponent
 from engine.maps.spec import MapSpec
-from engine.measures.power_law_fit import UncertaintyExponent
+from engine.measures.basins.power_law_fit import UncertaintyExponent
+from engine.measures.uncertain_pairs import compute_uncertainty_exponent
 from engine.propagation.classification import classify_orbits
 from engine.slices.planes import Plane
 from engine.systems.potential import Potential

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from engine import CASES, MapSpec, Plane, compute_map
-from engine.measures.basin_entropy import COUNTS_BOUNDED, compute_basin_entropy
-from engine.measures.starts import exit_labels
+from engine.measures.basins.basin_entropy import COUNTS_BOUNDED, compute_basin_entropy
+from engine.measures.basins.starts import exit_labels
 
 LN2 = math.log(2.0)
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from engine import CASES, MapSpec, Plane, compute_islands, compute_map
-from engine.measures.islands import Islands
-from engine.measures.starts import Starts
+from engine.measures.basins.islands import Islands
+from engine.measures.basins.starts import Starts
 
 
 def measure(bounded: np.ndarray) -> Islands:

@@ -11,7 +11,7 @@ from engine.exits.exit_rows import exit_curves_at
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.validation import checked_count, checks_types, short_repr
 from engine.maps.spec import MapSpec
-from engine.measures.power_law_fit import MIN_EXPECTED_PAIRS, UncertaintyExponent, fit_uncertainty, predict_shares
+from engine.measures.basins.power_law_fit import MIN_EXPECTED_PAIRS, UncertaintyExponent, fit_uncertainty, predict_shares
 from engine.propagation.batch import OrbitBatch, propagate_batch
 from engine.propagation.fates import Evidence, Fate
 

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from engine.foundations.arrays import read_only
-from engine.foundations.stored_fields import plain_attributes, with_present_names
+from engine.foundations.stored_fields import checked_dataset, plain_attributes
 from engine.foundations.validation import checked_array, short_repr
 from engine.propagation.fates import Fate
 from engine.slices.window import Window
@@ -138,32 +138,6 @@ def read_complete_starts(name: str, value: Any) -> Starts:
     if not starts.complete:
         raise ValueError(f"{name}: the map is not complete; must be a complete map, only `compute_statistics` counts the others")
     return starts
-
-
-def checked_dataset(name: str, value: Any, arrays: Collection[str], legal: str) -> xr.Dataset:
-    """Return the dataset of one map, or of any orbits, with the present names; ValueError unless it has these arrays.
-
-    Parameters
-    ----------
-    name
-        Name of the parameter, for messages.
-    value
-        The dataset, of any version, or what was given instead of a dataset.
-    arrays
-        The names of the required arrays, among them "fate".
-    legal
-        Description of what is legal, for messages.
-    """
-    # Any other value counts as a dataset without arrays.
-    dataset: Any = with_present_names(value) if hasattr(value, "data_vars") else {}
-    if "fate" not in dataset:
-        raise ValueError(f"{name}={short_repr(value)}: must be {legal}")
-    missing = [array for array in arrays if array not in dataset]
-    if missing:
-        raise ValueError(f"{name}: a dataset of a map without {', '.join(missing)}; must have all arrays of the map")
-    if dataset["fate"].ndim > 2:
-        raise ValueError(f"{name}: a dataset of several maps; must be one of them, such as dataset.sel(h=…)")
-    return dataset
 
 
 def _read_dataset(dataset: xr.Dataset) -> Starts:

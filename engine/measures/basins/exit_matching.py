@@ -10,7 +10,7 @@ import numpy as np
 
 from engine.foundations.validation import checked_integers
 from engine.foundations.wording import format_share
-from engine.measures.starts import Measurable, Starts, read_starts, wilson_interval
+from engine.measures.basins.starts import Measurable, Starts, read_starts, wilson_interval
 from engine.propagation.fates import Fate, OrbitResult, name_fate
 from engine.systems.outcomes import Outcome
 

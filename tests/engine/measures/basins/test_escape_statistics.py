@@ -25,7 +25,7 @@ from engine import (
     fit_decay_laws,
     sample_starts,
 )
-from engine.measures.escape_statistics import compute_survival
+from engine.measures.basins.escape_statistics import compute_survival
 from engine.results import EscapeStatistics
 
 SIDE = 60
