@@ -83,7 +83,7 @@ def _tabulate_windows(potential: Potential, plane: Slice, energies: tuple[float,
 
 def _tabulated_energies(potential: Potential, low: float, high: float) -> np.ndarray:
     """Return the energies at which windows are tabulated, in ascending order."""
-    if potential.escape_radius is not None:
+    if not potential.escapes_over_saddles:
         # A system with an escape circle has no escape energy.
         return np.linspace(low, high, _ENERGIES_BELOW + _ENERGIES_ABOVE)
     escape = min(max(potential.escape_energy, low), high)

@@ -153,7 +153,7 @@ class PotentialPresenter:
         previous, energies = self._state.reviewed, reviewed.energies
         if reviewed.system.case not in (TYPED, previous.system.case):
             return None
-        if previous.potential.escape_radius is not None or reviewed.potential.escape_radius is not None:
+        if not previous.potential.escapes_over_saddles or not reviewed.potential.escapes_over_saddles:
             # Without exits the depth is undefined, so the energy itself is kept.
             return self._state.energy if energies.low <= self._state.energy <= energies.high else None
         well = previous.potential.well

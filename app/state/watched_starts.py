@@ -47,7 +47,7 @@ EXPLANATIONS = {
 def places_for(potential: Potential) -> dict[StartsFrom, str]:
     """Return the places of a system, with their phrases. Exits need saddles; tubes also need a frame that does not rotate."""
     missing_places = set[StartsFrom]()
-    if potential.escape_radius is not None:
+    if not potential.escapes_over_saddles:
         missing_places |= {StartsFrom.EXITS, StartsFrom.TUBES}
     if potential.rotation:
         missing_places.add(StartsFrom.TUBES)

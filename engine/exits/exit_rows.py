@@ -21,7 +21,7 @@ def closed_exits(potential: Potential) -> np.ndarray:
     ValueError
         With an escape radius: if V is not defined somewhere within this radius.
     """
-    if potential.escape_radius is not None:
+    if not potential.escapes_over_saddles:
         check_defined(potential)
     rows = [
         *(closed_channel(saddle_axes(potential, k + 1), saddle) for k, saddle in enumerate(potential.saddles)),

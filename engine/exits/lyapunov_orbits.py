@@ -131,7 +131,7 @@ def _find_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ..
     orbits = _find_all_orbits(potential, energy)
     well = potential.well
     # Above the escape energy, the energy up to which the well is closed need not be found.
-    if well.escape_radius is not None or (energy <= well.escape_energy and energy <= well.closed_energy):
+    if not well.escapes_over_saddles or (energy <= well.escape_energy and energy <= well.closed_energy):
         return orbits
     if well.exits_unknown:
         raise OrbitSearchError(f"the exits are not known: {well.exits_unknown}")

@@ -127,12 +127,12 @@ def small_map(potential: Potential, energy: float) -> MapSpec:
 
 def _open_energy(potential: Potential) -> float:
     """Return an energy at which orbits can escape: just above the escape energy, or any with an escape radius."""
-    return potential.well.energy_at(1.01) if potential.escape_radius is None else potential.well.bottom + potential.units.energy
+    return potential.well.energy_at(1.01) if potential.escapes_over_saddles else potential.well.bottom + potential.units.energy
 
 
 def _start_state(potential: Potential) -> np.ndarray:
     """Return a state of low energy in the middle of a well or, without a well, at the typical radius, of shape (1, 4)."""
-    if potential.well.is_convex_at_origin and potential.escape_radius is None:
+    if potential.well.is_convex_at_origin and potential.escapes_over_saddles:
         return SECTION.states(potential, potential.well.energy_at(0.5), np.zeros(1), np.zeros(1))
     return SECTION.states(potential, _open_energy(potential), np.array([potential.well.typical_radius]), np.zeros(1))
 

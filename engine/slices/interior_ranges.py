@@ -173,7 +173,7 @@ def _interior_interval(potential: Potential, energy: float, axis: Coordinate, fi
     line = np.linspace(-radius, radius, 4 * _SCAN_POINTS)
     x, y = (line if axis is coordinate else np.full_like(line, fixed[coordinate]) for coordinate in POSITIONS)
     inside = _without_outside(potential, energy, x, y, _is_allowed(potential, energy, x, y))
-    return line[inside if potential.escape_radius is not None else _run_around_middle(inside)]
+    return line[inside if not potential.escapes_over_saddles else _run_around_middle(inside)]
 
 
 def _is_allowed(potential: Potential, energy: float, x: np.ndarray, y: np.ndarray) -> np.ndarray:
@@ -213,7 +213,7 @@ def _interior_on_rays(potential: Potential, energy: float, farthest: float) -> t
     radius = np.linspace(0.0, farthest, _SCAN_POINTS // 2)
     x, y = radius * np.cos(angle)[:, None], radius * np.sin(angle)[:, None]
     allowed = _is_allowed(potential, energy, x, y)
-    if potential.escape_radius is not None:
+    if not potential.escapes_over_saddles:
         return x, y, _without_outside(potential, energy, x, y, allowed)
     # The accumulation ends each ray, first at its first forbidden point, then at its first point outside.
     allowed = np.logical_and.accumulate(allowed, axis=1)

@@ -159,6 +159,11 @@ class Potential(Motion):
         return self.well.escape_radius
 
     @property
+    def escapes_over_saddles(self) -> bool:
+        """Whether orbits escape through exits over saddles, if at all, and not beyond an escape radius."""
+        return self.well.escapes_over_saddles
+
+    @property
     def gaps(self) -> tuple[End, ...]:
         """The ends that are gaps in the interior, such as the discs of centres. V may be singular there."""
         return tuple(end for end in self.ends if end.side < 0)

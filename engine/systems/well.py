@@ -90,7 +90,7 @@ class Well(WellScales):
         test without the square of V_xy, a misprint. With an escape radius, there are no exit saddles; if they are not known, see
         `exits_unknown`, the array is empty.
         """
-        if self.escape_radius is not None or self.exits_unknown:
+        if not self.escapes_over_saddles or self.exits_unknown:
             return read_only(np.empty((0, 2)))
         exits = np.unique(self._exit_places[:, 0].astype(int))
         return read_only(in_channel_order(self.critical_points[exits], self.mirrors))
@@ -133,7 +133,7 @@ class Well(WellScales):
 
         With an escape radius, the value is −∞, because orbits can start outside the saddles at every energy.
         """
-        if self.escape_radius is not None:
+        if not self.escapes_over_saddles:
             return -np.inf
         return float(self.saddle_energies.min(initial=np.inf))
 

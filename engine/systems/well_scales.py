@@ -29,6 +29,11 @@ class WellScales(ReadOnlyArrays):
         raise NotImplementedError
 
     @property
+    def escapes_over_saddles(self) -> bool:
+        """Whether orbits escape through exits over saddles, if at all, and not beyond an escape radius."""
+        return self.escape_radius is None
+
+    @property
     def channels(self) -> int:
         """The number of exit channels."""
         raise NotImplementedError
@@ -104,7 +109,7 @@ class WellScales(ReadOnlyArrays):
 
     @property
     def _length_unit(self) -> float:
-        if self.escape_radius is not None:
+        if not self.escapes_over_saddles:
             return nearest_power_of_two(self.typical_radius)
         if not self.channels:
             return self.form.length
@@ -129,7 +134,7 @@ class WellScales(ReadOnlyArrays):
     @property
     def depth(self) -> float:
         """The height of the escape energy above the bottom; in a well without exits, the unit of energy."""
-        has_exits = self.channels or self.escape_radius is not None
+        has_exits = self.channels or not self.escapes_over_saddles
         return self.escape_energy - self.bottom if has_exits else self.units.energy
 
     def energy_at(self, multiple: float) -> float:

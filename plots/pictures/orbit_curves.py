@@ -87,7 +87,7 @@ def find_well_window(potential: Potential, energy: float) -> Window:
     try:
         return default_window(potential, SPACE, energy)
     except ValueError:
-        if potential.escape_radius is not None:
+        if not potential.escapes_over_saddles:
             raise
         return default_window(potential, SPACE, well_energy(potential))
 

@@ -258,7 +258,7 @@ def _draw_lyapunov(result: LyapunovOrbit, axes: Axes, palette: Palette) -> None:
 
 @_draw.register
 def _draw_potential(result: Potential, axes: Axes, palette: Palette) -> None:
-    if result.escape_radius is not None:
+    if not result.escapes_over_saddles:
         raise NoPictureError(f"the potential {result.name} has an escape radius and therefore no well to draw")
     window = enlarge(default_window(result, SPACE, well_energy(result)))
     draw_equipotentials(axes, result, window)

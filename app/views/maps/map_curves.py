@@ -122,7 +122,7 @@ class MapCurves:
         """Return the legend entries of the curves of a map."""
         entries = [Entry(spec.plane.limiting_curve(spec.potential.mass), theme_colour("limiting_curve"))]
         if spec.common_energy is not None:
-            is_well, has_exits = spec.potential.escape_radius is None, bool(spec.potential.channels)
+            is_well, has_exits = spec.potential.escapes_over_saddles, bool(spec.potential.channels)
             if has_exits or not is_well:
                 entries.append(Entry("escape energy" if has_exits else "through saddles", theme_colour("critical_equipotential")))
             if is_well:

@@ -74,7 +74,7 @@ def find_new_origin(potential: Potential, points: tuple[CriticalPoint, ...]) -> 
     Axes can be moved only once, and neither in a rotating frame nor with an escape radius.
     """
     nearest = next(iter(minima_of(points)), None)
-    can_move = not any(potential.origin) and not potential.rotation and potential.escape_radius is None
+    can_move = not any(potential.origin) and not potential.rotation and potential.escapes_over_saddles
     if not can_move or nearest is None or nearest is point_at_origin(points):
         return None
     return nearest.x, nearest.y

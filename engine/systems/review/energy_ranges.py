@@ -48,7 +48,7 @@ def energy_range(
     critical_energies
         The energies of all critical points.
     """
-    if potential.escape_radius is not None:
+    if not potential.escapes_over_saddles:
         return _range_around(potential, np.array(critical_energies or [potential.well.bottom]))
     if not potential.channels:
         return _closed_range(potential, closed_energy, critical_energies)
@@ -65,7 +65,7 @@ def energy_range(
 
 def depth_levels(potential: Potential, multiples: Sequence[float]) -> list[float]:
     """Return energies at multiples of the depth of the well; empty with an escape radius, where the depth is not defined."""
-    return [potential.well.energy_at(multiple) for multiple in multiples] if potential.escape_radius is None else []
+    return [potential.well.energy_at(multiple) for multiple in multiples] if potential.escapes_over_saddles else []
 
 
 def _closed_range(potential: Potential, closed_energy: float, critical_energies: Sequence[float]) -> EnergyRange:

@@ -152,8 +152,8 @@ def review_potential(potential: Potential) -> PotentialReview:
         potential=potential,
         formula=write_formula(potential),
         critical_points=points,
-        escape_energy=potential.escape_energy if points or potential.escape_radius is not None else float("inf"),
-        closed_energy=-np.inf if refusal or potential.escape_radius is not None else potential.well.closed_energy,
+        escape_energy=potential.escape_energy if points or not potential.escapes_over_saddles else float("inf"),
+        closed_energy=-np.inf if refusal or not potential.escapes_over_saddles else potential.well.closed_energy,
         channels=potential.channels if points else 0,
         highest_energy=potential.well.channel_mergers[0].energy if points and potential.well.channel_mergers else float("inf"),
         mirror_in_x=potential.form.mirror_in_x,
@@ -168,7 +168,7 @@ def review_potential(potential: Potential) -> PotentialReview:
 def _remarks(potential: Potential, points: tuple[CriticalPoint, ...]) -> tuple[str, ...]:
     """Return the unusual properties of a potential that can be used, one sentence each."""
     remarks = [_SHIFT_REMARK.format(*potential.origin)] if any(potential.origin) else []
-    if potential.escape_radius is not None:
+    if not potential.escapes_over_saddles:
         return tuple(remarks)
     energies, closed_energy = potential.well.saddle_energies, potential.well.closed_energy
     exits_unknown = potential.well.exits_unknown
@@ -237,7 +237,7 @@ def critical_energies(potential: Potential) -> tuple[float, ...]:
 
     With exits, this is the energy of the lowest exit; with an escape radius, the energies of all saddles.
     """
-    if potential.escape_radius is None:
+    if potential.escapes_over_saddles:
         return (potential.escape_energy,)
     points = review_potential(potential).critical_points
     return tuple(sorted({point.energy for point in points if point.kind is PointKind.SADDLE}))

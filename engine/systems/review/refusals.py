@@ -34,7 +34,7 @@ def find_points_or_refusal(potential: Potential) -> tuple[tuple[CriticalPoint, .
     refusal = potential.form.limits_refusal() or singularity_refusal(potential)
     if refusal is not None:
         return (), refusal
-    if potential.escape_radius is not None:
+    if not potential.escapes_over_saddles:
         return _known_points(potential), None
     try:
         # Both statements need the ends of lines of steepest descent or ascent, which may not be found.
