@@ -10,8 +10,9 @@ programs of this repository, and may change with any version.
   `sample_entrances`, `sample_entrances_by_exit`
 - orbits: `integrate_orbit`, `Orbit`, `sample_orbits`, `classify_orbits`, `find_lyapunov_orbits`, `LyapunovOrbit`, `judge_orbit`,
   `compute_separation`, `find_divergent_start`, `compute_flux`
-- maps of escapes: `MapSpec`, `compute_map`, `EscapeMap`, `Fate`, `Evidence`, `compute_regularity`, `Regularity`, `compute_trust`,
-  `Trust`, `compute_origin_fates`, `find_stable_manifolds`, `compute_lagrangian_descriptor`, `TimeDirection`
+- maps of escapes: `MapSpec`, `compute_map`, `EscapeMap`, `Fate`, `Evidence`, `compute_returns`, `compute_regularity`,
+  `Regularity`, `compute_trust`, `Trust`, `compute_origin_fates`, `find_stable_manifolds`, `compute_lagrangian_descriptor`,
+  `TimeDirection`
 - measures: `MEASURES`, `Measure`; of basins and statistics `compute_basin_entropy`, `compute_wada_test`,
   `compute_uncertainty_exponent`, `compute_statistics`, `compute_islands`, `compute_chaotic_share`, `compute_exit_matching`,
   `fit_decay_laws`
@@ -34,6 +35,7 @@ from engine.maps.analyses.trust import compute_trust as compute_trust
 from engine.maps.compute import compute_map as compute_map
 from engine.maps.origin_fates import compute_origin_fates as compute_origin_fates
 from engine.maps.result import EscapeMap as EscapeMap
+from engine.maps.returns import compute_returns as compute_returns
 from engine.maps.spec import MapSpec as MapSpec
 from engine.measures.basins.basin_entropy import compute_basin_entropy as compute_basin_entropy
 from engine.measures.basins.chaotic_share import compute_chaotic_share as compute_chaotic_share

@@ -6,6 +6,7 @@ from engine.maps.analyses.descriptors import DescriptorMap as DescriptorMap
 from engine.maps.analyses.regularity import RegularityMap as RegularityMap
 from engine.maps.analyses.trust import TrustMap as TrustMap
 from engine.maps.origin_fates import OriginFateMap as OriginFateMap
+from engine.maps.returns import Returns as Returns
 from engine.measures.basins.basin_entropy import BasinEntropy as BasinEntropy
 from engine.measures.basins.chaotic_share import ChaoticShare as ChaoticShare
 from engine.measures.basins.decay_laws import DecayLaws as DecayLaws

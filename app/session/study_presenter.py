@@ -36,6 +36,9 @@ class StudyPresenter:
         self._shown_run: _Run | None = None
         self.view = StudyView(study, self._state, self._toggle, self.click, context.latest)
         self._request = LatestRequest(context.jobs, self._show, self._fail, context.locked)
+        if study.follows_map:
+            self._state.param.watch(lambda event: self._follow_map(), "analysis")
+            self._results.param.watch(lambda event: self._follow_map(), "frame")
         self._state.param.watch(lambda *events: self._stop(), ["system", "plane", "t_max"])
         self._state.param.watch(lambda *events: self._show(None), "system")
 
@@ -44,7 +47,19 @@ class StudyPresenter:
         if self.view.running:
             self._stop()
             return
+        self._start(_Run(self._state.subject, self.view.axis))
+
+    def _follow_map(self) -> None:
+        """Start the study of a complete map, unless it is known, while its tab is open."""
         run = _Run(self._state.subject, self.view.axis)
+        is_open = self._state.analysis == self._study.name and self._results.whole_map is not None
+        if is_open and (run != self._run or not (self.view.running or self._is_shown(run))):
+            self._start(run)
+
+    def _is_shown(self, run: _Run) -> bool:
+        return run == self._shown_run and self.view.shown is not None
+
+    def _start(self, run: _Run) -> None:
         try:
             job = self._study.job(*run)
         except ValueError as error:

@@ -14,6 +14,7 @@ from engine.exits.periodic_orbits import monodromy_matrix
 from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.integrator.kernels.dense_output import sample_path, trace_steps
+from engine.integrator.kernels.propagate import Exits
 from engine.integrator.source.recurrence import TOLERANCE
 from engine.propagation.tiles import map_tiles
 from engine.systems.potential import Potential
@@ -185,5 +186,6 @@ def _find_passages_of_tile(
     passages = np.full((tile.shape[1], count, 3), np.nan)
     counts = np.zeros(tile.shape[1], np.int64)
     # The kernel writes the passages of each orbit and their number.
-    potential.well.kernels.find_section_passages(TOLERANCE, duration, gates, curves, tile, passages, counts)
+    exits = Exits(gates, curves[None], np.zeros(tile.shape[1], np.int64))
+    potential.well.kernels.find_section_passages(TOLERANCE, duration, -1.0, exits, tile, passages, counts)
     return passages

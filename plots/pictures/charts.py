@@ -19,12 +19,16 @@ Limits = tuple[float, float]
 
 
 class Shape(Enum):
-    """How a series is drawn. Dashed lines are in front of other lines. Steps keep the y of a point until the next x."""
+    """How a series is drawn. Dashed lines are in front of other lines. Steps keep the y of a point until the next x.
+
+    Dots are small points.
+    """
 
     LINE = auto()
     DASHED = auto()
     STEPS = auto()
     POINTS = auto()
+    DOTS = auto()
     JOINED_POINTS = auto()
     BARS = auto()
 
@@ -83,11 +87,13 @@ class Frame:
         Text of the line, point or bar under the mouse, see `app.views.components.plots.chart_hover`. The columns are x, y, low,
         high and label; those of a bar are left, right and top.
     described
-        The shape that the text describes: all lines, all points, or all bars.
+        The shape that the text describes: all lines, points, dots, or bars.
     logarithmic
         Letters of the logarithmic axes, such as "xy".
     level
         Value of a marked horizontal line with its label; None for no line.
+    is_square
+        Whether the chart is as high as wide, as a picture of a plane.
     """
 
     name: str
@@ -98,6 +104,7 @@ class Frame:
     described: Shape = Shape.POINTS
     logarithmic: str = ""
     level: tuple[float, str] | None = None
+    is_square: bool = False
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,10 +22,14 @@ from plots.studies.study import Study
 
 # Heights of a row of charts in figures with two columns and with one, in units of the width.
 _ROW_HEIGHT, _ONE_COLUMN_ROW_HEIGHT = 0.24, 0.5
+# Height of a square chart with its axis and title, in units of the width of its column.
+_SQUARE = 1.02
 # Line styles of shapes without solid lines.
-_LINES = {Shape.DASHED: (0, (4.0, 3.0)), Shape.POINTS: ""}
+_LINES = {Shape.DASHED: (0, (4.0, 3.0)), Shape.POINTS: "", Shape.DOTS: ""}
 # Markers of shapes with points.
-_MARKERS = {Shape.POINTS: "o", Shape.JOINED_POINTS: "o"}
+_MARKERS = {Shape.POINTS: "o", Shape.JOINED_POINTS: "o", Shape.DOTS: "o"}
+# Diameter of points and of dots, in points of typography.
+_POINT, _DOT = 2.5, 0.9
 
 
 def draw_study_figure(study: Study[Any], found: Result, style: FigureStyle) -> Figure:
@@ -39,21 +43,22 @@ def draw_study_figure(study: Study[Any], found: Result, style: FigureStyle) -> F
     charts = study.charts(found, PAPER)
     if not charts:
         raise ValueError(f"{study.files}: there must be at least one point")
-    rows = math.ceil(len(study.frames) / style.columns(2))
-    height = style.width * (_ROW_HEIGHT if style.columns(2) == 2 else _ONE_COLUMN_ROW_HEIGHT) * rows
-    return _draw_figure(charts, new_figure(style, height, study.caption(found)), style)
+    columns = min(style.columns(2), len(study.frames))
+    is_square = any(frame.is_square for frame in study.frames)
+    row_height = _SQUARE / columns if is_square else _ROW_HEIGHT if columns == 2 else _ONE_COLUMN_ROW_HEIGHT
+    height = style.width * row_height * math.ceil(len(study.frames) / columns)
+    return _draw_figure(charts, new_figure(style, height, study.caption(found)), style, columns)
 
 
 def draw_statistics_figure(statistics: EscapeStatistics, style: FigureStyle) -> Figure:
     """Draw the histogram of escape times, and the probability of escape after each number of crossings."""
     height = style.width * (0.45 if style.columns(2) == 2 else 1.6)
     figure = new_figure(style, height, "Statistics of the escapes")
-    return _draw_figure([times_chart(statistics), probabilities_chart(statistics)], figure, style)
+    return _draw_figure([times_chart(statistics), probabilities_chart(statistics)], figure, style, style.columns(2))
 
 
-def _draw_figure(charts: Sequence[Chart], figure: Figure, style: FigureStyle) -> Figure:
+def _draw_figure(charts: Sequence[Chart], figure: Figure, style: FigureStyle, columns: int) -> Figure:
     """Draw charts with their titles, in one or two columns."""
-    columns = style.columns(2)
     grid = np.ravel(figure.subplots(math.ceil(len(charts) / columns), columns)).tolist()
     for axes, chart in zip(grid, charts, strict=False):
         draw_chart(axes, chart, style)
@@ -86,10 +91,10 @@ def _draw_series(axes: Axes, series: Series) -> None:
         return
     # Matplotlib typesets a subscript such as S_b between dollar signs.
     label = re.sub(r"_(\w+)", r"$_{\1}$", series.label)
-    is_dashed = series.shape is Shape.DASHED
+    is_dashed, size = series.shape is Shape.DASHED, _DOT if series.shape is Shape.DOTS else _POINT
     axes.plot(
         *series.curve, color=series.colour, linewidth=1.5, linestyle=_LINES.get(series.shape, "-"),
-        marker=_MARKERS.get(series.shape, ""), markersize=2.5, label=label, zorder=3 if is_dashed else 2,
+        marker=_MARKERS.get(series.shape, ""), markersize=size, label=label, zorder=3 if is_dashed else 2,
     )  # fmt: skip
     if series.bars is not None:
         axes.vlines(series.x, *series.bars, color=series.colour, alpha=0.6, linewidth=1.0)

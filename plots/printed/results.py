@@ -17,9 +17,9 @@ from matplotlib.figure import Figure
 from engine import EscapeMap, LyapunovOrbit, Orbit, Potential, Result, Window
 from engine.foundations.extras import require_package
 from engine.maps.pixels import PixelAnalysis
-from engine.results import DecayLaws, EscapeStatistics, PotentialReview, SampledOrbits, Sweep, UncertaintyExponent
+from engine.results import DecayLaws, EscapeStatistics, PotentialReview, Returns, SampledOrbits, Sweep, UncertaintyExponent
 from engine.slices.default_window import default_window
-from engine.slices.planes import SPACE
+from engine.slices.planes import SECTION, SPACE
 from plots.layers.layer import Layer
 from plots.layers.picture import ShownMap
 from plots.layers.table import LAYERS, map_legend
@@ -35,6 +35,7 @@ from plots.printed.potential_figure import draw_equipotentials, enlarge
 from plots.printed.window_axes import draw_limits, draw_pixels, draw_strokes, show_window
 from plots.studies.escape_charts import probabilities_chart, times_chart
 from plots.studies.measure_charts import pairs_chart, survival_chart
+from plots.studies.section import section_charts
 from plots.studies.sweep_charts import sweep_charts
 
 # Width and height of a picture, in inches.
@@ -279,6 +280,14 @@ def _draw_review(result: PotentialReview, axes: Axes, palette: Palette) -> None:
     if result.refusal is not None:
         raise NoPictureError("a potential that cannot be used has no picture")
     _draw_potential(result.potential, axes, palette)
+
+
+@_draw.register
+def _draw_returns(result: Returns, axes: Axes, palette: Palette) -> None:
+    if result.spec.plane != SECTION:
+        raise NoPictureError(f"returns of starts on {result.spec.plane.title} have no window to draw; give the plane x_px")
+    for chart in section_charts(result, palette):
+        draw_chart(axes, chart)
 
 
 @_draw.register

@@ -69,6 +69,8 @@ class Study[Found: Result]:
         Returns the job, given one of `axes`, or "" if there are none; raises ValueError for a subject that cannot be studied.
     progress
         Returns the computed share of a result, 0 to 1.
+    follows_map
+        Whether the study takes so little time that it is computed for each complete map while its tab is open, without a button.
     sentence
         Describes a result, complete or not.
     frames
@@ -99,6 +101,7 @@ class Study[Found: Result]:
     caption: Callable[[Found], str]
     axes: Callable[[System], Sequence[str]] = lambda system: ()
     progress: Callable[[Found], float] = lambda found: 1.0
+    follows_map: bool = False
 
     def is_complete(self, found: Found) -> bool:
         """Whether no further part of a result follows."""

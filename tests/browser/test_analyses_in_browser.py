@@ -60,6 +60,14 @@ def test_curves_are_drawn_and_a_click_opens_a_map(explorer: ExplorerPage) -> Non
     explorer.pick("Orbit")
 
 
+def test_the_section_follows_the_map_and_a_click_on_it_starts_an_orbit(open_explorer: OpenExplorer) -> None:
+    explorer = open_explorer(link="?case=II&h=0.15&t_max=100&resolution=112&analysis=section")
+    explorer.wait_for_data("section_dots", "data.x.length > 1000")
+    expect(explorer.page.get_by_text("at h = 0.15 to y = 0 upward")).to_be_visible()
+    explorer.click("section", 0.1, 0.05)
+    explorer.wait_for_view("orbits=0.")
+
+
 def test_a_bounded_orbit_is_judged_by_three_indicators(open_explorer: OpenExplorer) -> None:
     explorer = open_explorer(link="?case=I&h=0.05&t_max=10000&resolution=112&orbits=0.1,0.05")
     table = explorer.page.get_by_label("chaos indicators")

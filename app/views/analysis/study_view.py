@@ -62,12 +62,14 @@ class StudyView:
         self._start_time = 0.0
         # The axis of the charts that are shown.
         self._shown_axis = ""
-        self.button = button(study.start, on_button, width=180, align="end")
+        self.button = button(study.start, on_button, width=180, align="end", visible=not study.follows_map)
         self.against = pn.widgets.Select(label="Against", options=[], width=80, visible=False)
         self.text = TextPane(study.hint, name=study.name, margin=(4, 10), sizing_mode="stretch_width", css_classes=["whole-row"])
         self._mark_line = moving_line("height", location=0.0, line_dash="dotted")
         options: dict[str, Any] = {"x_range": Range1d(0.0, 1.0)} if study.axes(state.system) else {}
-        self._charts = {each.name: ChartView(each, aspect_ratio=_ASPECT, **options) for each in study.frames}
+        self._charts = {
+            each.name: ChartView(each, aspect_ratio=1.0 if each.is_square else _ASPECT, **options) for each in study.frames
+        }
         self._charts_in_turns = InTurns([partial(self._build_chart, chart) for chart in self._charts.values()], self._add, later)
         self._plots = pn.Column(sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=["curves"], visible=False)
         state.follow(self._follow_system, "system")

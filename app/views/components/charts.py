@@ -21,8 +21,10 @@ from plots.pictures.palette import THRESHOLD
 
 _POINT_COLUMNS = ("x", "y", "low", "high", "colour", "label")
 _LINE_COLUMNS = ("xs", "ys", "colour", "dash", "label")
+_DOT_COLUMNS = ("x", "y", "colour")
 _DASHES = {Shape.DASHED: "8 8"}
 _SHAPES_WITH_POINTS = (Shape.POINTS, Shape.JOINED_POINTS)
+_SHAPES_WITHOUT_LINES = (Shape.POINTS, Shape.DOTS)
 
 
 class ChartView:
@@ -72,6 +74,11 @@ class ChartView:
         return ColumnDataSource({name: [] for name in _POINT_COLUMNS}, name=f"{self.frame.name}_points")
 
     @cached_property
+    def dots(self) -> ColumnDataSource:
+        """The dots of the chart."""
+        return ColumnDataSource({name: [] for name in _DOT_COLUMNS}, name=f"{self.frame.name}_dots")
+
+    @cached_property
     def _legend(self) -> TextPane:
         return TextPane(margin=(0, 10))
 
@@ -81,6 +88,8 @@ class ChartView:
         if chart is None:
             return
         self.lines.data, self.points.data = _line_columns(chart.series), _point_columns(chart.series)
+        if self.frame.described is Shape.DOTS:
+            self.dots.data = _dot_columns(chart.series)
         for axis_range, limits in zip((self.x_range, self.y_range), chart.axis_limits, strict=True):
             set_range(axis_range, *limits)
         entries = chart.legend()
@@ -104,7 +113,10 @@ class ChartView:
         ends = {"x0": "x", "x1": "x", "y0": "low", "y1": "high"}
         plot.add_glyph(self.points, Segment(**ends, line_color="colour", line_alpha=0.6))
         points = plot.add_glyph(self.points, Scatter(x="x", y="y", size=6, fill_color="colour", line_color="colour"))
-        if frame.described is Shape.LINE:
+        if frame.described is Shape.DOTS:
+            dots = plot.add_glyph(self.dots, Scatter(x="x", y="y", size=2, fill_color="colour", line_color=None))
+            plot.add_tools(chart_hover(frame.text, [dots]))
+        elif frame.described is Shape.LINE:
             plot.add_tools(chart_hover(frame.text, [lines], line_policy="nearest"))
         else:
             plot.add_tools(chart_hover(frame.text, [points], mode="vline"))
@@ -120,10 +132,17 @@ class ChartView:
 
 def _line_columns(series: Sequence[Series]) -> dict[str, list[Any]]:
     # Dashed lines come last, so they are drawn over the other lines.
-    lines = sorted((one for one in series if one.shape is not Shape.POINTS), key=lambda one: one.shape is Shape.DASHED)
+    lines = sorted((one for one in series if one.shape not in _SHAPES_WITHOUT_LINES), key=lambda one: one.shape is Shape.DASHED)
     x, y = ([one.curve[axis] for one in lines] for axis in (0, 1))
     dashes = [_DASHES.get(one.shape, "solid") for one in lines]
     return {"xs": x, "ys": y, "colour": [one.colour for one in lines], "dash": dashes, "label": [one.label for one in lines]}
+
+
+def _dot_columns(series: Sequence[Series]) -> dict[str, Any]:
+    dots = [one for one in series if one.shape is Shape.DOTS]
+    # Numbers of 32 bits are as precise as a pixel, and half as long in a message.
+    x, y = (np.concatenate([np.zeros(0), *(getattr(one, axis) for one in dots)]).astype(np.float32) for axis in "xy")
+    return {"x": x, "y": y, "colour": np.repeat([one.colour for one in dots], [one.x.size for one in dots]).tolist()}
 
 
 def _point_columns(series: Sequence[Series]) -> dict[str, Any]:

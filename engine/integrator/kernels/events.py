@@ -153,7 +153,7 @@ def count_upward_crossings(y_jet, i, duration):
 
 @subroutine
 def append_crossings(x_jet, y_jet, i, direction, begin, duration, crossings, found, orbit):
-    """Append x, px and the time of each crossing of y = 0 within `duration` of the start of a step to `crossings` (n, m, 3).
+    """Append each crossing of y = 0 within `duration` of the start of a step to `crossings` (n, m, 3 or 4): x, px, time and py.
 
     direction: as in `crossing_between`; begin: time at the start of the step; found (n,): number of crossings of each orbit,
     increased in place. The row of `orbit` is filled from this index, until the row has m crossings.
@@ -169,6 +169,8 @@ def append_crossings(x_jet, y_jet, i, direction, begin, duration, crossings, fou
             crossings[orbit, found[orbit], 0] = series_value(x_jet, i, tau)
             crossings[orbit, found[orbit], 1] = series_slope(x_jet, i, tau)
             crossings[orbit, found[orbit], 2] = begin + tau
+            if crossings.shape[2] > 3:
+                crossings[orbit, found[orbit], 3] = series_slope(y_jet, i, tau)
             found[orbit] += 1
         low, y_low, slope_low = high, y_high, slope_high
 

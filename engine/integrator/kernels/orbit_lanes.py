@@ -12,7 +12,7 @@ import numpy as np
 from engine.integrator.jit.decorator import kernel, subroutine
 from engine.integrator.jit.function_pointers import call_jets, call_step
 from engine.integrator.kernels.events import append_crossings, crossed_exit, find_exit_time, passed_exit, series_slope
-from engine.integrator.kernels.propagate import fill_vectors
+from engine.integrator.kernels.propagate import fill_vectors, has_failed, make_buffer, passes_exit
 from engine.integrator.source.recurrence import LANES, ROWS, SIZE_ROW, TIME_ROW
 from engine.integrator.source.series import ORDER
 from engine.integrator.source.step_flags import GATE, HIDDEN, NEAR, OVERSHOOT
@@ -61,33 +61,37 @@ def fill_lanes(orbits):
 
 
 @kernel
-def find_section_passages(step, jets, coefficients, tolerance, horizon, gates, curves, state, passages, found):
-    """Find the first m downward passages of y = 0 of each orbit before it escapes through an exit or passes `horizon`.
+def find_section_passages(step, jets, coefficients, tolerance, horizon, direction, exits, state, passages, found):
+    """Find the first m passages of y = 0 of each orbit before it escapes through an exit or passes `horizon`.
 
-    A passage goes from y > 0 to y ≤ 0. gates (channels, 3); curves (channels, columns); state (4, lanes), lanes a multiple of
-    `propagate.VECTOR` up to `LANES`; passages (lanes, m, 3): set to x, px and time; found (lanes,): zeros, set to the numbers of
-    passages.
+    direction: 1 for passages from y < 0 to y ≥ 0, −1 for passages from y > 0 to y ≤ 0; exits: `propagate.Exits`; state (4,
+    lanes), lanes a multiple of `propagate.VECTOR` up to `LANES`; passages (lanes, m, 3 or 4): set to x, px, time and py; found
+    (lanes,): zeros, set to the numbers of passages.
     """
     lanes = state.shape[1]
     most_passages = passages.shape[1]
     now, new, flag, crossed, lane_orbit = fill_lanes(state)
     buffer = _PassageBuffer(np.zeros((6, lanes)), np.zeros(lanes, np.int64), np.zeros(lanes, np.int64))
+    single = make_buffer(2)
     buffered = 0
     active = lanes
     while active > 0:
         width = fill_vectors(active)
-        call_step(step, coefficients, width, tolerance, horizon, gates, now, new, flag, crossed)
+        call_step(step, coefficients, width, tolerance, horizon, exits.gates, now, new, flag, crossed)
         for i in range(active - 1, -1, -1):
             orbit = lane_orbit[i]
+            curves = exits.curves[exits.curve_row[orbit]]
             is_full = found[orbit] == most_passages
-            passes = now[1, i] > 0.0 and new[1, i] <= 0.0
+            passes = direction * now[1, i] < 0.0 and direction * new[1, i] >= 0.0
             if flag[i] == 0 and not passes and not is_full:
                 continue
-            is_late = flag[i] & OVERSHOOT != 0
+            fails = has_failed(new, i)
             channel = 0
-            if not is_late and flag[i] & GATE != 0:
-                channel = crossed_exit(now[0, i], now[1, i], new[0, i], new[1, i], curves, gates)
-            if not is_late and not is_full and (passes or channel > 0 or flag[i] & HIDDEN != 0):
+            if not fails and flag[i] & (GATE | NEAR) != 0:
+                channel = crossed_exit(now[0, i], now[1, i], new[0, i], new[1, i], curves, exits.gates)
+            if not fails and channel == 0 and flag[i] & NEAR != 0:
+                channel = passes_exit(jets, coefficients, now, i, new[SIZE_ROW, i], curves, single)
+            if not fails and not is_full and (passes or channel > 0 or flag[i] & HIDDEN != 0):
                 for c in range(5):
                     buffer.start[c, buffered] = now[c, i]
                 buffer.start[SIZE_ROW, buffered] = new[SIZE_ROW, i]
@@ -95,21 +99,21 @@ def find_section_passages(step, jets, coefficients, tolerance, horizon, gates, c
                 buffer.channel[buffered] = channel
                 buffered += 1
                 if buffered == lanes:
-                    _locate_passages(jets, coefficients, buffer, buffered, curves, passages, found)
+                    _locate_passages(jets, coefficients, horizon, direction, buffer, buffered, exits, passages, found)
                     buffered = 0
-            if is_late or is_full or channel > 0:
+            if fails or is_full or channel > 0 or flag[i] & OVERSHOOT != 0:
                 # The last active lane takes the place of the lane whose orbit has ended.
                 active -= 1
                 for c in range(ROWS):
                     new[c, i] = new[c, active]
                 lane_orbit[i] = lane_orbit[active]
         now, new = new, now
-    _locate_passages(jets, coefficients, buffer, buffered, curves, passages, found)
+    _locate_passages(jets, coefficients, horizon, direction, buffer, buffered, exits, passages, found)
 
 
 @subroutine
-def _locate_passages(jets, coefficients, buffer, n, curves, passages, found):
-    """Append the downward passages in each of the first `n` buffered steps to the passages of the orbit of the step."""
+def _locate_passages(jets, coefficients, horizon, direction, buffer, n, exits, passages, found):
+    """Append the passages in a direction in each of the first `n` buffered steps to the passages of the orbit of the step."""
     start = buffer.start
     x_jet = np.empty((ORDER + 1, start.shape[1]))
     y_jet = np.empty((ORDER + 1, start.shape[1]))
@@ -117,8 +121,10 @@ def _locate_passages(jets, coefficients, buffer, n, curves, passages, found):
     for i in range(n):
         duration = start[SIZE_ROW, i]
         if buffer.channel[i] > 0:
-            duration = find_exit_time(x_jet, y_jet, i, duration, curves[buffer.channel[i] - 1])
-        append_crossings(x_jet, y_jet, i, -1.0, start[TIME_ROW, i], duration, passages, found, buffer.orbit[i])
+            exit_curve = exits.curves[exits.curve_row[buffer.orbit[i]], buffer.channel[i] - 1]
+            duration = find_exit_time(x_jet, y_jet, i, duration, exit_curve)
+        duration = min(duration, horizon - start[TIME_ROW, i])
+        append_crossings(x_jet, y_jet, i, direction, start[TIME_ROW, i], duration, passages, found, buffer.orbit[i])
 
 
 @kernel

@@ -113,7 +113,7 @@ def fill_vectors(count):
 
 
 @subroutine
-def _make_buffer(lanes):
+def make_buffer(lanes):
     """Return an empty buffer for as many steps as there are lanes."""
     h, orbit, channel = np.zeros(lanes), np.zeros(lanes, np.int64), np.zeros(lanes, np.int64)
     return _StepBuffer(np.zeros((4, lanes)), h, orbit, channel, np.zeros((ORDER + 1, lanes)), np.zeros((ORDER + 1, lanes)))
@@ -133,9 +133,9 @@ def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget,
     # Only `np.zeros` is used: Numba takes about 0.1 s to compile each function that makes arrays, for each type of array.
     now, new = np.zeros((ROWS, LANES)), np.zeros((ROWS, LANES))
     flag, crossed, lane_orbit = np.zeros(LANES, np.int64), np.zeros(LANES, np.int64), np.zeros(LANES, np.int64)
-    buffer, buffered = _make_buffer(LANES), 0
+    buffer, buffered = make_buffer(LANES), 0
     # A buffer for one step; it has two lanes, because WebAssembly computes the series of pairs.
-    single = _make_buffer(2)
+    single = make_buffer(2)
     active = min(LANES, todo.shape[0])
     next_orbit, taken, traced, left = active, 0, 0, budget
     _begin_lanes(orbits, todo, active, now, lane_orbit, crossed)
@@ -213,21 +213,27 @@ def _judge_step(jets, coefficients, flags, now, new, i, final, exits, orbit, sin
 
     now, new: lanes at the start and the end of the step; i: lane of the orbit; single: buffer for one step.
     """
-    fails = not (np.isfinite(new[0, i]) and np.isfinite(new[1, i]) and new[SIZE_ROW, i] > 0.0)
+    fails = has_failed(new, i)
     is_late = flags & OVERSHOOT != 0
     curves = exits.curves[exits.curve_row[orbit]]
     channel = 0
     if not is_late and flags & (GATE | NEAR) != 0:
         channel = crossed_exit(now[0, i], now[1, i], new[0, i], new[1, i], curves, exits.gates)
     if flags & NEAR != 0 and not is_late and channel == 0 and not fails:
-        channel = _passes_exit(jets, coefficients, now, i, new[SIZE_ROW, i], curves, single)
+        channel = passes_exit(jets, coefficients, now, i, new[SIZE_ROW, i], curves, single)
     ends = is_late or channel > 0 or fails
     has_events = channel > 0 or (is_late and final) or (not is_late and flags & HIDDEN != 0)
     return ends, channel, fails, has_events and not fails
 
 
 @subroutine
-def _passes_exit(jets, coefficients, now, i, h, curves, buffer):
+def has_failed(new, i):
+    """Return whether the step of lane i has not led to a finite position at a later time."""
+    return not (np.isfinite(new[0, i]) and np.isfinite(new[1, i]) and new[SIZE_ROW, i] > 0.0)
+
+
+@subroutine
+def passes_exit(jets, coefficients, now, i, h, curves, buffer):
     """Return the number of the exit that the orbit of lane i crosses and recrosses within the step of size h; 0 for none."""
     start = buffer.start
     for c in range(4):

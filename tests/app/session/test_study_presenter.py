@@ -12,9 +12,10 @@ import pytest
 
 from app.session.study_presenter import StudyPresenter
 from app.state.view_state import ViewState
-from engine import Plane, System, find_lyapunov_orbits
+from engine import CASES, MapSpec, Plane, System, compute_map, find_lyapunov_orbits
 from engine.jobs.manager import Jobs
 from plots.studies.against import AGAINST, REFINED_VALUES, SWEPT_VALUES
+from plots.studies.section import SECTION
 from plots.studies.study import Study
 from tests.app.session.session_lock import context_of
 from tests.plots.studies.study_example import study_of_periods
@@ -91,6 +92,27 @@ def test_a_study_that_its_subject_does_not_allow_says_why(begin: Callable[..., S
     refused.press()
     assert refused.view.text.object == "h=0.25: must be less"
     assert not refused.view.running
+
+
+def test_a_quick_study_follows_each_complete_map_while_its_tab_is_open(begin: Callable[..., Session]) -> None:
+    session = begin(SECTION)
+    assert not session.view.button.visible
+    maps = {h: compute_map(MapSpec(CASES["II"], Plane.X_PX, h, (9, 9), t_max=1e3)) for h in (0.25, 0.15)}
+    session.context.results.frame = maps[0.25]
+    assert session.jobs.in_flight == 0
+    session.state.analysis = "section"
+    session.wait_for(lambda: session.view.shown is not None and not session.view.running)
+    assert "at h = 0.25" in session.view.text.object
+    with session.changed:
+        session.state.energy = 0.15
+        session.context.results.frame = replace(maps[0.15], complete=False)
+        assert not session.view.running
+        session.context.results.frame = maps[0.15]
+    session.wait_for(lambda: "at h = 0.15" in session.view.text.object)
+    session.wait_for(lambda: not session.view.running)
+    # The same map needs no other computation.
+    session.context.results.frame = replace(maps[0.15])
+    assert not session.view.running
 
 
 @pytest.mark.usefixtures("wide_intervals")

@@ -1,0 +1,236 @@
+"""Returns of orbits to the surface of section: their first upward crossings of y = 0, for all starts of a map."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from engine.exits.exit_rows import exit_curves_at
+from engine.exits.exit_shapes import exit_gates
+from engine.foundations.arrays import read_only
+from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
+from engine.foundations.result import Result
+from engine.foundations.validation import check_type, checked_count, checks_types
+from engine.foundations.wording import format_count
+from engine.integrator.kernels.propagate import Exits
+from engine.integrator.source.recurrence import TOLERANCE
+from engine.maps.spec import MapSpec
+from engine.propagation.batch import OrbitBatch
+from engine.propagation.fates import Fate
+from engine.propagation.tiles import map_tiles
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+MOST_RETURNS = 100_000
+"""Largest number of returns of an orbit."""
+
+# Largest number of returns of all orbits, which take 5 numbers each.
+_MOST_POINTS = 20_000_000
+# Number of parts of the starts. Progress is reported, and the computation can be cancelled, after each part.
+_PARTS = 16
+# Columns of a return that the kernel writes.
+_X, _PX, _TIME, _PY = range(4)
+# Names of the variables in files, in the order of the columns of `Returns.states`, and of the times.
+_VARIABLES = {"return_x": "x", "return_y": "y", "return_px": "px", "return_py": "py"}
+_TIME_VARIABLE = "return_time"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Returns(Result):
+    """The first upward crossings of y = 0 of the orbits of a map, not counting the starts.
+
+    Attributes
+    ----------
+    spec
+        The request of the starts.
+    states
+        (returns, rows, columns, 4) x, y, px, py at each crossing; y is 0. NaN where an orbit has escaped or reached t_max before,
+        and for starts that are forbidden or outside. Read-only.
+    time
+        (returns, rows, columns) time of each crossing, in the units of the potential; NaN as for `states`. Read-only.
+    complete
+        Whether the orbits of all starts were followed.
+    """
+
+    spec: MapSpec
+    states: np.ndarray
+    time: np.ndarray
+    complete: bool = True
+    held_as: ClassVar[dict[str, str]] = {"spec": "terms", "states": "return_x", "time": _TIME_VARIABLE}
+
+    @property
+    def count(self) -> np.ndarray:
+        """(rows, columns) number of returns of each start."""
+        return np.isfinite(self.time).sum(axis=0)
+
+    def points(self) -> list[np.ndarray]:
+        """Return x and px of the returns of each orbit that returns, (n, 2), in the order of the pixels and of time."""
+        states = self.states.reshape(len(self.states), -1, 4)
+        counts = self.count.ravel()
+        return [states[: counts[k], k][:, [0, 2]] for k in np.flatnonzero(counts)]
+
+    def describe(self) -> str:
+        """Return the numbers of orbits and of returns in one sentence."""
+        counts = self.count[self.count > 0]
+        orbits, returns = format_count(int(counts.size), "orbit"), format_count(int(counts.sum()), "return")
+        energy = self.spec.common_energy
+        place = "" if energy is None else f" at h = {energy:.6g}"
+        return f"{returns} of {orbits}{place} to y = 0 upward{'' if self.complete else ' so far'}."
+
+    def columns(self) -> Mapping[str, np.ndarray]:
+        """Return a table with a row for each return: pixel, number of the return from 1, time, x, y, px and py."""
+        order, rows, columns = np.nonzero(np.isfinite(self.time))
+        by_orbit = np.lexsort((order, columns, rows))
+        order, rows, columns = order[by_orbit], rows[by_orbit], columns[by_orbit]
+        states = self.states[order, rows, columns]
+        return {
+            "row": rows,
+            "column": columns,
+            "return": order + 1,
+            "time": self.time[order, rows, columns],
+            **{name: states[:, k] for k, name in enumerate(_VARIABLES.values())},
+        }
+
+    def to_xarray(self) -> xr.Dataset:
+        """Return the states and times as a dataset with the dimensions "return" and the axes of the map."""
+        # The import is slow and seldom needed.
+        import xarray as xr
+
+        x, ordinate = self.spec.pixel_centres()
+        names = ("return", *self.spec.plane.axis_names[::-1])
+        coordinates = {"return": np.arange(1, len(self.time) + 1), names[1]: ordinate, names[2]: x}
+        arrays = {name: self.states[..., k] for k, name in enumerate(_VARIABLES)} | {_TIME_VARIABLE: self.time}
+        variables = {
+            name: (names, values, {"units": "1", "long_name": f"{_VARIABLES.get(name, 'time')} at the return"})
+            for name, values in arrays.items()
+        }
+        attributes = {"result": type(self).__name__, **self.spec.provenance(), "complete": int(self.complete)}
+        return xr.Dataset(variables, coordinates, attributes)
+
+    @classmethod
+    def read_parts(cls, dataset: xr.Dataset) -> dict[str, Any]:
+        """Return the states and times, which files store as variables."""
+        states = np.stack([dataset[name].values for name in _VARIABLES], axis=-1)
+        return {"states": read_only(states), "time": read_only(dataset[_TIME_VARIABLE].values)}
+
+
+@shows_progress("returns")
+@checks_types(execution=Execution)
+def compute_returns(
+    spec: MapSpec,
+    returns: int = 1,
+    *,
+    on_frame: Callable[[Returns], None] | None = None,
+    execution: Execution = DEFAULT_EXECUTION,
+) -> Returns:
+    """Follow the orbits of all starts of a map to their first upward crossings of y = 0.
+
+    A crossing goes from y < 0 to y ≥ 0, as in the maps (Zotos 2014). The start is not counted. For a map backward in time, the
+    crossings are those of the reversed orbit.
+
+    Parameters
+    ----------
+    spec
+        The starts, on a slice without a parameter as axis; `use_evidence` is not used.
+    returns
+        Largest number of returns of each orbit, 1 to 100 000; at most 20 million of all orbits.
+    on_frame
+        Called in this thread with the returns so far.
+    execution
+        How the computation runs. When it is cancelled, orbits not followed yet have no returns.
+
+    Returns
+    -------
+    The `Returns`. Those of an orbit end where it escapes or collides, or at t_max. Equal to the bit for every executor.
+
+    Raises
+    ------
+    ValueError
+        If `returns` is out of range, or the slice has a parameter as axis.
+
+    Examples
+    --------
+    >>> from escape_explorer import CASES, MapSpec, Plane, compute_returns
+    >>> found = compute_returns(MapSpec(CASES["II"], Plane.X_PX, 0.15, (9, 9), t_max=100.0), returns=3)
+    >>> found.states.shape, round(float(found.time[2, 4, 4]), 3)
+    ((3, 9, 9, 4), 18.368)
+    """
+    check_type("spec", spec, MapSpec)
+    if spec.plane.parameter is not None:
+        raise ValueError(f"spec: its plane {spec.plane.title} has a parameter as axis; must be a slice of one potential")
+    columns, rows = spec.resolution
+    checked_count("returns", returns, 1, min(MOST_RETURNS, _MOST_POINTS // (columns * rows)))
+    run = _ReturnsRun(spec, returns)
+    for part in np.array_split(run.inside(execution), _PARTS):
+        if execution.is_cancelled:
+            break
+        run.follow(part, execution)
+        execution.report(run.share_done)
+        if on_frame is not None and part.size:
+            on_frame(run.frame())
+    return run.frame()
+
+
+class _ReturnsRun:
+    """Follows the orbits of a map in units of the well."""
+
+    def __init__(self, spec: MapSpec, returns: int) -> None:
+        self._spec, self._well_spec = spec, spec.in_well_units()
+        columns, rows = spec.resolution
+        x, ordinate = (grid.ravel() for grid in np.meshgrid(*self._well_spec.pixel_centres()))
+        energies, self._curve_row = np.unique(self._well_spec.energies(x, ordinate), return_inverse=True)
+        self._curves = exit_curves_at(self._well_spec.potential, energies)
+        self._starts = self._well_spec.start_states(x, ordinate)
+        self._found = np.full((rows * columns, returns, 4), np.nan)
+        self._pending = -1
+
+    def inside(self, execution: Execution) -> np.ndarray:
+        """Return the numbers of the pixels whose starts are inside all exits."""
+        batch = OrbitBatch.from_starts(self._starts, self._curve_row)
+        allowed = np.flatnonzero(batch.fate == Fate.NOT_COMPUTED)
+        tested = batch.mark_outside(self._well_spec.potential, allowed, self._curves, execution=execution)
+        pixels = tested[batch.fate[tested] == Fate.NOT_COMPUTED]
+        self._pending = pixels.size
+        return pixels
+
+    def follow(self, pixels: np.ndarray, execution: Execution) -> None:
+        """Find the returns of the orbits of some pixels."""
+        orbits = np.column_stack([self._starts[pixels], self._curve_row[pixels]])
+        count = self._found.shape[1]
+        found = map_tiles(
+            _find_returns_of_tile, self._well_spec.potential, orbits, count, self._curves, exit_gates(self._curves),
+            self._well_spec.t_max, shape=(count, 4), execution=execution,
+        )  # fmt: skip
+        if not execution.is_cancelled:
+            self._found[pixels] = found
+            self._pending -= pixels.size
+
+    def share_done(self) -> float:
+        """Return the share of the pixels whose orbits have been followed."""
+        return 1.0 - self._pending / max(len(self._found), 1)
+
+    def frame(self) -> Returns:
+        """Return the returns so far, in the units of the potential."""
+        units = self._spec.potential.units
+        columns, rows = self._spec.resolution
+        by_return = self._found.transpose(1, 0, 2).reshape(-1, rows, columns, 4)
+        x, px, time, py = (by_return[..., k] for k in (_X, _PX, _TIME, _PY))
+        states = np.stack([x, np.where(np.isfinite(x), 0.0, np.nan), px, py], axis=-1) * units.state
+        return Returns(self._spec, read_only(states), read_only(time * units.time), complete=self._pending == 0)
+
+
+def _find_returns_of_tile(
+    potential: Any, tile: np.ndarray, count: int, curves: np.ndarray, gates: np.ndarray, t_max: float
+) -> np.ndarray:
+    """Return the returns of the orbits in a tile (5, lanes), of shape (lanes, count, 4); called in a worker."""
+    found = np.full((tile.shape[1], count, 4), np.nan)
+    counts = np.zeros(tile.shape[1], np.int64)
+    exits = Exits(gates, curves, tile[4].astype(np.int64))
+    # The kernel writes the returns of each orbit and their number.
+    with np.errstate(invalid="ignore"):
+        potential.well.kernels.find_section_passages(TOLERANCE, t_max, 1.0, exits, tile[:4].copy(), found, counts)
+    return found

@@ -1,0 +1,54 @@
+"""The study of the section draws the returns of all orbits of an energy, and a click starts the orbit through a point."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from app.views.components.charts import ChartView
+from engine import CASES, Execution, Plane, System
+from engine.jobs.job import run_job
+from engine.results import Returns
+from engine.systems.review.potential_review import review_system
+from plots.pictures.charts import Shape
+from plots.pictures.palette import PAPER
+from plots.studies.section import RETURNS, SECTION
+from plots.studies.study import Subject
+
+SYSTEM = System("II")
+SUBJECT = Subject(SYSTEM, SYSTEM.potential, Plane.X_Y, 0.15, review_system(SYSTEM).energies, 1e4)
+
+
+@pytest.fixture(scope="module")
+def found() -> Returns:
+    result: Returns = run_job(SECTION.job(SUBJECT, ""), Execution(), {})
+    return result
+
+
+def test_bounded_orbits_have_all_their_returns_at_the_energy_of_the_view(found: Returns) -> None:
+    assert SUBJECT.energy < CASES["II"].escape_energy
+    assert set(np.unique(found.count)) == {0, RETURNS}
+    assert found.spec.plane is Plane.X_PX
+    assert "at h = 0.15" in SECTION.sentence(found)
+
+
+def test_every_return_is_a_dot_of_the_page_and_inside_the_limiting_curve(found: Returns) -> None:
+    (chart,) = SECTION.charts(found, PAPER)
+    assert {one.shape for one in chart.series} == {Shape.DOTS}
+    view = ChartView(chart.frame)
+    view.show(chart)
+    assert view.dots.data["x"].size == found.count.sum()
+    assert len(view.dots.data["colour"]) == view.dots.data["x"].size
+    assert view.points.data["x"] == []
+    x, px = (np.concatenate([getattr(one, axis) for one in chart.series]) for axis in "xy")
+    assert np.all(0.5 * px**2 + CASES["II"].value(x, np.zeros_like(x)) <= 0.15)
+
+
+def test_a_click_starts_the_orbit_through_the_point_on_the_section(found: Returns) -> None:
+    changes = SECTION.changes(SUBJECT, "", found, 0.1, 0.05)
+    assert changes == {"plane": Plane.X_PX, "energy": 0.15, "starts": ((0.1, 0.05),), "chosen": 0, "window": None}
+
+
+def test_an_energy_without_orbits_gives_no_chart(found: Returns) -> None:
+    empty = Returns(found.spec, np.full_like(found.states, np.nan), np.full_like(found.time, np.nan))
+    assert SECTION.charts(empty, PAPER) == []
