@@ -27,7 +27,7 @@ class LayerOptions:
     values: Mapping[str, Any] = field(default_factory=dict)
 
     @property
-    def layers(self) -> list[Layer]:
+    def layers(self) -> list[Layer[Any]]:
         """The layers that are switched on."""
         return [layer for name, layer in LAYERS.items() if self.values.get(name)]
 
@@ -55,7 +55,7 @@ def read_layers(**values: Any) -> LayerOptions:
     return LayerOptions(values)
 
 
-def _list_options(layers: Iterable[Layer]) -> list[inspect.Parameter]:
+def _list_options(layers: Iterable[Layer[Any]]) -> list[inspect.Parameter]:
     """Return the options of the layers and of their settings, as parameters."""
     options = []
     for layer in layers:
@@ -68,7 +68,7 @@ def _option(name: str, kind: Any, default: Any) -> inspect.Parameter:
     return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=kind)
 
 
-def _layer_option(layer: Layer) -> tuple[Any, Any]:
+def _layer_option(layer: Layer[Any]) -> tuple[Any, Any]:
     """Return the type and the default of the option that switches a layer on."""
     if layer.count is None:
         return Annotated[bool, typer.Option(help=layer.help)], False

@@ -90,11 +90,11 @@ class AnalysisPresenter:
         self.show_notes(**dict.fromkeys(LAYERS, ""))
         self._explain_refusals()
 
-    def _layer_follow_up(self, layer: Layer) -> FollowUp:
+    def _layer_follow_up(self, layer: Layer[Any]) -> FollowUp:
         """Return the analysis of a layer, which is requested while the layer is on."""
         return FollowUp(partial(self._layer_job, layer), partial(self._show_layer_result, layer), ("layers", "settings"))
 
-    def _layer_job(self, layer: Layer, frame: EscapeMap) -> Job[Any] | None:
+    def _layer_job(self, layer: Layer[Any], frame: EscapeMap) -> Job[Any] | None:
         is_shown = layer.name in self._state.layers and not layer.refusal(frame.spec)
         return layer.job(frame.spec, self._state.settings) if is_shown else None
 
@@ -109,7 +109,7 @@ class AnalysisPresenter:
 
     # Layers.
 
-    def _layers_on(self) -> list[Layer]:
+    def _layers_on(self) -> list[Layer[Any]]:
         return [layer for name, layer in LAYERS.items() if name in self._state.layers]
 
     def _switch_layers(self, event: Any) -> None:
@@ -148,7 +148,7 @@ class AnalysisPresenter:
         body = " ".join(escape(sentence) for sentence in self._sentences_by_name.values() if sentence)
         self.notes.object = with_terms(body)
 
-    def _show_layer_result(self, layer: Layer, frame: EscapeMap, result: Any) -> None:
+    def _show_layer_result(self, layer: Layer[Any], frame: EscapeMap, result: Any) -> None:
         self._results_by_layer[layer.name] = _LayerResult(frame, result, layer.job(frame.spec, self._state.settings))
         self._show_selection(layer)
         self._mark_computing()
@@ -162,7 +162,7 @@ class AnalysisPresenter:
                 self._remove_layer_result(name)
         self._mark_computing()
 
-    def _show_selection(self, layer: Layer) -> None:
+    def _show_selection(self, layer: Layer[Any]) -> None:
         """Show the part of a layer's result that the settings select."""
         frame, result, _ = self._results_by_layer[layer.name]
         selection = layer.select(result, self._state.settings)

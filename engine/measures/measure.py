@@ -37,7 +37,7 @@ _SUFFIXES: Mapping[Bars, Mapping[str, str]] = {
 
 
 @dataclass(frozen=True)
-class Quantity:
+class Quantity[Found]:
     """A number of a measure, dimensionless or in units of the axes.
 
     Attributes
@@ -56,11 +56,11 @@ class Quantity:
 
     name: str
     description: str
-    read: Callable[[Any], Any]
+    read: Callable[[Found], float | tuple[float, ...]]
     bars: Bars = Bars.NONE
     label: str = ""
 
-    def variables(self, result: Any) -> Variables:
+    def variables(self, result: Found | None) -> Variables:
         """Return the number and its errors as variables of a dataset; NaN if `result` is None."""
         suffixes = _SUFFIXES[self.bars]
         numbers = (math.nan,) * len(suffixes) if result is None else self.read(result)
@@ -103,7 +103,7 @@ NO_CURVE = Curve("")
 
 
 @dataclass(frozen=True)
-class Measure:
+class Measure[Found]:
     """A measure of a map: an entry of the table of measures.
 
     Attributes
@@ -137,15 +137,15 @@ class Measure:
     name: str
     title: str
     meaning: str
-    compute: Callable[[Any], Any]
-    quantities: tuple[Quantity, ...] = ()
+    compute: Callable[[Any], Found | None]
+    quantities: tuple[Quantity[Found], ...] = ()
     help: str = ""
     curve: Curve = NO_CURVE
-    sentence: Callable[[Any], str] | None = None
+    sentence: Callable[[Found], str] | None = None
     slow: bool = False
     place: str = ""
     terms: Mapping[str, str] = field(default_factory=dict)
-    other_variables: Callable[[Any, Any], Variables] | None = None
+    other_variables: Callable[[Any, Found], Variables] | None = None
 
     @property
     def labels(self) -> Mapping[str, str]:
@@ -157,9 +157,9 @@ class Measure:
         """Meaning of the error bars of the curves, which is the same for all of them."""
         return next((quantity.bars for quantity in self.quantities if quantity.label), Bars.NONE)
 
-    def variables(self, point: Any, result: Any) -> Variables:
+    def variables(self, point: Any, result: Found | None) -> Variables:
         """Return the variables of the measure in the dataset of a sweep; numbers are NaN if `result` is None."""
-        variables = {} if self.other_variables is None else dict(self.other_variables(point, result))
+        variables = {} if self.other_variables is None or result is None else dict(self.other_variables(point, result))
         for quantity in self.quantities:
             variables |= quantity.variables(result)
         return variables

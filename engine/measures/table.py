@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from operator import attrgetter, methodcaller
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 
@@ -26,9 +26,6 @@ from engine.measures.measured_map import MeasuredMap, SweepPoint
 from engine.measures.uncertain_pairs import WORK, compute_uncertainty_exponent
 from engine.propagation.fates import Fate, renumber
 from engine.slices.axes import highest_energy
-
-if TYPE_CHECKING:
-    pass
 
 _describe = methodcaller("describe")
 
@@ -255,7 +252,7 @@ _ENTRIES = (
     Measure("maps", "Maps", "the arrays of the maps", lambda measured: measured.escape_map, other_variables=_map_variables),
 )  # fmt: skip
 
-MEASURES: Mapping[str, Measure] = MappingProxyType({measure.name: measure for measure in _ENTRIES})
+MEASURES: Mapping[str, Measure[Any]] = MappingProxyType({measure.name: measure for measure in _ENTRIES})
 """The measures by name."""
 
 CURVES = tuple(name for name, measure in MEASURES.items() if measure.curve != NO_CURVE)

@@ -2,24 +2,16 @@
 
 from __future__ import annotations
 
-import functools
-
 import numpy as np
 
-from engine import EscapeMap, Fate, MapSpec, TimeDirection, compute_lagrangian_descriptor
+from engine import MapSpec, TimeDirection, compute_lagrangian_descriptor
 from engine.jobs.job import Job
 from engine.maps.analyses.descriptors import DEFAULT_DURATION, checked_choices
 from engine.maps.map_jobs import map_job
 from engine.results import DescriptorMap
 from plots.layers.layer import Layer, Pixels, Setting, Settings
-from plots.layers.picture import ColourScale, Legend, Picture, ShownMap
-from plots.pictures.image_columns import FIRST_CLASS, pixel_codes
-from plots.pictures.palette import Entry, Palette
-
-# Number of classes of equal width. Their codes and the codes of other pixels fit into uint8.
-_CLASSES = 240
-# Share of the values below the scale, and equal share above the scale. They are drawn in the colours of its ends.
-_CLIPPED_SHARE = 0.01
+from plots.layers.picture import Legend, Picture, ShownMap
+from plots.layers.value_scale import ValueScale
 
 DURATION = Setting(
     name="descriptor_time",
@@ -47,54 +39,18 @@ DIRECTION = Setting(
 )
 
 
-@functools.cache
-def _scale_colours() -> tuple[str, ...]:
-    # Matplotlib is slow to import, and only pictures need it.
-    from matplotlib import colormaps
-    from matplotlib.colors import to_hex
-
-    scale = colormaps["viridis"].resampled(_CLASSES)
-    return tuple(to_hex(scale(k)) for k in range(_CLASSES))
-
-
-def _colours(palette: Palette) -> list[str]:
-    return [*palette.outcome_colours, *_scale_colours()]
-
-
 def _job(spec: MapSpec, settings: Settings) -> Job[DescriptorMap]:
     duration = DURATION.value_in(settings) * spec.potential.units.time
     choices = checked_choices(spec.potential, duration, POWER.value_in(settings), DIRECTION.value_in(settings))
     return Job(compute_lagrangian_descriptor, (map_job(spec),), tuple(choices.items()))
 
 
-def _limits(result: DescriptorMap) -> tuple[float, float]:
-    """Return the ends of the scale. Few pixels have values beyond the ends."""
-    values = result.descriptor[np.isfinite(result.descriptor)]
-    if not values.size:
-        return 0.0, 1.0
-    low, high = np.quantile(values, (_CLIPPED_SHARE, 1.0 - _CLIPPED_SHARE)).tolist()
-    return (low, high) if low < high else (low, low + 1.0)
-
-
-def _codes(result: DescriptorMap, frame: EscapeMap | None) -> np.ndarray:
-    low, high = _limits(result)
-    is_known = np.isfinite(result.descriptor)
-    share = (np.clip(np.where(is_known, result.descriptor, low), low, high) - low) / (high - low)
-    fate = np.full(result.descriptor.shape, Fate.NOT_COMPUTED) if frame is None else frame.fate
-    fate_without_value = np.where((fate == Fate.FORBIDDEN) | (fate == Fate.OUTSIDE), fate, Fate.NOT_COMPUTED)
-    classes = np.minimum((share * _CLASSES).astype(int), _CLASSES - 1)
-    # `pixel_codes` keeps the classes of bounded pixels, so all pixels with a value are passed as bounded.
-    return pixel_codes(np.where(is_known, Fate.BOUNDED, fate_without_value), classes, bounded_too=True)
+SCALE: ValueScale[DescriptorMap] = ValueScale(lambda result: result.descriptor)
+"""The scale of the descriptors."""
 
 
 def _legend(shown: ShownMap) -> Legend:
-    result = shown.results.get("descriptor")
-    if result is None:
-        return Legend(sentence="…")
-    fates_without_orbit = {Fate.FORBIDDEN, Fate.OUTSIDE}
-    others: list[Entry] = [entry for fate, entry in shown.outcome_entries().items() if fate in fates_without_orbit]
-    low, high = (float(f"{end:.3g}") for end in _limits(result))
-    return Legend(others=others, scale=ColourScale(low, high, _scale_colours(), is_logarithmic=False))
+    return SCALE.legend(shown, shown.results.get("descriptor"))
 
 
 DESCRIPTORS = Layer(
@@ -107,12 +63,12 @@ DESCRIPTORS = Layer(
     settings=(DURATION, POWER, DIRECTION),
     pixels=Pixels(
         column="descriptor",
-        codes=_codes,
-        colours=_colours,
+        codes=SCALE.codes,
+        colours=SCALE.colours,
         entries=lambda result, palette: [],
         values=lambda result: result.descriptor.astype(np.float32),
         value_name="Lagrangian descriptor",
-        sentences=[""] * (FIRST_CLASS + _CLASSES),
+        sentences=SCALE.no_sentences,
     ),
     picture=Picture(
         name="descriptors",
@@ -124,7 +80,7 @@ DESCRIPTORS = Layer(
             "both directions on both. The integral ends at the exit, so it is small where orbits leave at once."
         ),
         column="descriptor",
-        colours=_colours,
+        colours=SCALE.colours,
         legend=_legend,
     ),
     variables=("descriptor",),

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from engine import EscapeMap, MapSpec
+from engine import EscapeMap, MapSpec, Result
 from engine.jobs.job import Job
 from plots.layers.picture import Picture
 from plots.pictures.palette import PALETTES, Entry, Palette
@@ -111,7 +111,7 @@ class Count:
 
 
 @dataclass(frozen=True)
-class Pixels:
+class Pixels[Found]:
     """How pixel codes are made from a result.
 
     Attributes
@@ -137,12 +137,12 @@ class Pixels:
     """
 
     column: str
-    codes: Callable[[Any, EscapeMap | None], np.ndarray]
+    codes: Callable[[Found, EscapeMap | None], np.ndarray]
     colours: Callable[[Palette], Sequence[str]]
-    entries: Callable[[Any, Palette], Sequence[Entry]]
+    entries: Callable[[Found, Palette], Sequence[Entry]]
     sentences: Sequence[str] = ()
-    own_sentences: Callable[[Any], Sequence[str]] | None = None
-    values: Callable[[Any], np.ndarray] | None = None
+    own_sentences: Callable[[Found], Sequence[str]] | None = None
+    values: Callable[[Found], np.ndarray] | None = None
     value_name: str = ""
     first_codes: Callable[[Mapping[str, np.ndarray]], np.ndarray] | None = None
 
@@ -163,7 +163,7 @@ class Pixels:
         words = () if self.own_sentences is None else (self.word_column,)
         return (self.column, *numbers, *words)
 
-    def columns(self, result: Any, frame: EscapeMap | None) -> dict[str, list[Any]]:
+    def columns(self, result: Found, frame: EscapeMap | None) -> dict[str, list[Any]]:
         """Return the columns of a result. `frame` is the map of the result, or None as in `codes`."""
         numbers: dict[str, list[Any]] = {} if self.values is None else {self.value_column: [self.values(result)]}
         words = {} if self.own_sentences is None else {self.word_column: [list(self.own_sentences(result))]}
@@ -194,7 +194,7 @@ class Stroke:
 
 
 @dataclass(frozen=True)
-class Over:
+class Over[Found]:
     """What a layer draws over other pictures.
 
     Attributes
@@ -210,13 +210,19 @@ class Over:
     """
 
     pictures: tuple[str, ...]
-    legend: Callable[[Any, Palette], Sequence[Entry]]
+    legend: Callable[[Found, Palette], Sequence[Entry]]
     pixel_colours: Sequence[str] | None = None
-    strokes: Callable[[Any], Sequence[Stroke]] | None = None
+    strokes: Callable[[Found], Sequence[Stroke]] | None = None
+
+
+def _spec_of(result: Any) -> MapSpec:
+    """Return the request of a result that has it as an attribute."""
+    spec: MapSpec = result.spec
+    return spec
 
 
 @dataclass(frozen=True, kw_only=True)
-class Layer:
+class Layer[Found: Result]:
     """A layer over the pictures of a map.
 
     Attributes
@@ -264,21 +270,21 @@ class Layer:
     title: str
     help: str
     stage: str
-    result: type
-    job: Callable[[MapSpec, Settings], Job[Any]]
+    result: type[Found]
+    job: Callable[[MapSpec, Settings], Job[Found]]
     refusal: Callable[[MapSpec], str] = lambda spec: ""
     count: Count | None = None
     settings: tuple[Setting, ...] = ()
-    select: Callable[[Any, Settings], Any] = lambda result, settings: result
-    spec_of: Callable[[Any], MapSpec] = lambda result: result.spec
-    pixels: Pixels | None = None
+    select: Callable[[Found, Settings], Found] = lambda result, settings: result
+    spec_of: Callable[[Found], MapSpec] = _spec_of
+    pixels: Pixels[Found] | None = None
     picture: Picture | None = None
-    over: Over | None = None
+    over: Over[Found] | None = None
     variables: tuple[str, ...] = ()
     has_table: bool = False
     is_empty: Callable[[EscapeMap], bool] = lambda frame: False
     is_offered: Callable[[EscapeMap], bool] = lambda frame: False
 
-    def over_picture(self, picture: str) -> Over | None:
+    def over_picture(self, picture: str) -> Over[Found] | None:
         """Return what the layer draws over a picture; None if it draws nothing."""
         return self.over if self.over is not None and picture in self.over.pictures else None

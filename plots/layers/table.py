@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
+from typing import Any
 
 from plots.layers.descriptors import DESCRIPTORS
 from plots.layers.escapes import BASINS, COMPARED, CROSSINGS, CURVES, DIFFERENCES, TIMES
@@ -17,11 +18,11 @@ from plots.layers.trust import TRUST
 from plots.pictures.palette import Entry
 
 
-def _by_name[Named: (Layer, Picture, Setting)](*entries: Named) -> Mapping[str, Named]:
+def _by_name[Named: (Layer[Any], Picture, Setting)](*entries: Named) -> Mapping[str, Named]:
     return MappingProxyType({entry.name: entry for entry in entries})
 
 
-LAYERS = _by_name(REGULARITY, TRUST, MANIFOLDS, ORIGINS, DESCRIPTORS)
+LAYERS: Mapping[str, Layer[Any]] = _by_name(REGULARITY, TRUST, MANIFOLDS, ORIGINS, DESCRIPTORS)
 """The layers by name, in the order of their switches."""
 
 SETTINGS = _by_name(*(setting for layer in LAYERS.values() for setting in layer.settings))

@@ -174,7 +174,7 @@ def _draw_columns(result: Result, axes: Axes, palette: Palette) -> None:
         set_title(axes, chart.title.format(**result.numbers()))
 
 
-def _draw_layer(layer: Layer, result: Result, axes: Axes, palette: Palette) -> None:
+def _draw_layer(layer: Layer[Any], result: Result, axes: Axes, palette: Palette) -> None:
     """Draw the result of a layer without the map."""
     spec = layer.spec_of(result)
     window = spec.find_window()

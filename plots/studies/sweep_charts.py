@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from engine import MEASURES, Measure
@@ -20,7 +22,7 @@ CURVE_PANELS = tuple(measure for measure in MEASURES.values() if measure.labels)
 _NUMBER_COLOURS = MEASURED, LAW_COLOURS["exponential"]
 
 
-def measure_frame(measure: Measure, symbol: str = "") -> Frame:
+def measure_frame(measure: Measure[Any], symbol: str = "") -> Frame:
     """Return the frame of a measure of sweeps along an axis with this symbol."""
     curve, is_shares = measure.curve, measure is SHARES
     bars = f", {measure.bars} @low{{number}} to @high{{number}}" if measure.bars else ""
@@ -47,7 +49,7 @@ def sweep_charts(curves: Sweep, palette: Palette) -> list[Chart]:
     return [*shares, *(_measure_chart(measure, curves) for measure in measures)]
 
 
-def _measure_chart(measure: Measure, curves: Sweep) -> Chart:
+def _measure_chart(measure: Measure[Any], curves: Sweep) -> Chart:
     """Return the chart of the numbers of a measure with their error bars, against the energy or a parameter."""
     series = [
         Series(label, colour, curves.values, curves[name], Shape.JOINED_POINTS, curves.interval(name))

@@ -22,11 +22,11 @@ from engine.measures.measure import Quantity
 from engine.results import DecayLaws, UncertaintyExponent
 from plots.studies.measure_charts import PAIRS, SURVIVAL, pairs_chart, survival_chart
 
-DESCRIBED_MEASURES: tuple[Measure, ...] = tuple(measure for measure in MEASURES.values() if measure.sentence is not None)
+DESCRIBED_MEASURES: tuple[Measure[Any], ...] = tuple(measure for measure in MEASURES.values() if measure.sentence is not None)
 """The measures that the page describes in words, in order."""
 
 
-def counts_in_box(measure: Measure) -> bool:
+def counts_in_box(measure: Measure[Any]) -> bool:
     """Whether a measure counts the starts in the box. The `place` of any other measure says what it counts."""
     return not measure.place
 
@@ -133,7 +133,7 @@ class BasinMeasuresView:
         self.text.object = with_terms(f"{table}{''.join(details)}")
 
 
-def _measure_section(measure: Measure, result: Any, sentence: str) -> str:
+def _measure_section(measure: Measure[Any], result: Any, sentence: str) -> str:
     """Return the title and meaning of a measure, and a row for each number; without numbers, the sentence about the result."""
     texts = [] if result is None else [(quantity.label, _format_quantity(quantity, result)) for quantity in measure.quantities]
     numbers = {label: text for label, text in texts if label and text}
@@ -145,7 +145,7 @@ def _measure_section(measure: Measure, result: Any, sentence: str) -> str:
     return f"<tbody><tr><th colspan=2>{head}</th></tr>{rows}</tbody>"
 
 
-def _format_quantity(quantity: Quantity, result: Any) -> str:
+def _format_quantity(quantity: Quantity[Any], result: Any) -> str:
     """Return a number with its error or its interval; empty if the number is not known."""
     value_and_bars = quantity.read(result)
     value, *bars = value_and_bars if isinstance(value_and_bars, tuple) else (value_and_bars,)

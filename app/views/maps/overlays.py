@@ -75,7 +75,7 @@ class Overlays:
     def _show_curves(self, name: str) -> None:
         self.curves[name].data = _curve_columns(self._strokes[name], self._state.colours)
 
-    def _make_glyphs(self, layer: Layer) -> SourcedGlyphs:
+    def _make_glyphs(self, layer: Layer[Any]) -> SourcedGlyphs:
         """Return the glyphs of the marked pixels and of the curves of a layer."""
         over = layer.over
         glyphs: list[tuple[ColumnDataSource, Glyph]] = []

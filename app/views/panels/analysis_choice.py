@@ -33,10 +33,10 @@ class LayerSwitches:
         """Return the switches; each switch that is on is followed by the choices of its layer."""
         return [part for layer in LAYERS.values() for part in (self.switches[layer.name], *self._choices_of(layer))]
 
-    def _choices_of(self, layer: Layer) -> list[SegmentedControl]:
+    def _choices_of(self, layer: Layer[Any]) -> list[SegmentedControl]:
         return [self._choice(setting) for setting in layer.settings] if layer.name in self._state.layers else []
 
-    def _make(self, layer: Layer) -> Switches:
+    def _make(self, layer: Layer[Any]) -> Switches:
         """Make the switch of a layer."""
         is_on = lambda layers: layer.name in layers  # noqa: E731
         turn = lambda on: self._state.switch_layer(layer.name, on=on)  # noqa: E731
