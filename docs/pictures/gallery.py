@@ -85,7 +85,7 @@ def _analyse(frame: EscapeMap, view: View) -> Analyses:
 
 def _draw_strokes(axes: Axes, strokes: Sequence[Stroke], window: Window) -> None:
     for stroke in strokes:
-        draw_curve(axes, stroke.lines, window, colors=PAPER.channels[stroke.channel - 1], linewidths=0.4 * stroke.width)
+        draw_curve(axes, stroke.lines, window, colors=stroke.colour(PAPER), linewidths=0.4 * stroke.width)
 
 
 def _draw_curves(axes: Axes, frame: EscapeMap, view: View) -> None:
