@@ -16,12 +16,12 @@ from app.runtime.process_state import process_state
 from app.session.context import History, SessionContext
 from app.state.navigation import DOUBLE_CLICK_ZOOM_FACTOR, zoom
 from app.state.view import Analysis, Start
+from app.state.view_state import STARTS_FULL
 from app.views.maps.map_plots import MapActions, MapsView, prepare_curves
 from app.views.maps.map_toolbar import MapToolbar
 from app.views.maps.progress import ProgressView
 from engine import EscapeMap, Fate, Window
 from engine.propagation.fates import describe_fate
-from plots.pictures.palette import MOST_ORBITS
 
 
 class MapPresenter:
@@ -129,7 +129,7 @@ class MapPresenter:
         state.analysis = Analysis.ORBIT
         self._added_start = (x, ordinate) if state.starts != before else None
         if not added:
-            self._notice.show(f"{MOST_ORBITS} orbits are shown already. Remove one first.")
+            self._notice.show(STARTS_FULL)
 
     def _count_in(self, box: Window) -> None:
         """Count the starts in a box, and show the statistics unless the measures are open."""

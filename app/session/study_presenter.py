@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 from app.job_clients.latest_request import LatestRequest
 from app.session.context import SessionContext
+from app.state.view_state import STARTS_FULL
 from app.views.analysis.study_view import StudyView
 from plots.studies.study import Study, Subject
 
@@ -30,12 +31,12 @@ class StudyPresenter:
 
     def __init__(self, study: Study[Any], context: SessionContext) -> None:
         self._study, self._state, self._results = study, context.state, context.results
-        self._open_view = context.open_view
+        self._open_view, self._notice = context.open_view, context.notice
         self._run: _Run | None = None
         # The run whose result is shown. It differs from `_run` until the first result of a new run arrives.
         self._shown_run: _Run | None = None
         self.view = StudyView(study, self._state, self._toggle, self.click, context.latest)
-        self._request = LatestRequest(context.jobs, self._show, self._fail, context.locked)
+        self._request = LatestRequest(context.jobs, self._show, self._fail, context.latest)
         if study.follows_map:
             self._state.param.watch(lambda event: self._follow_map(), "analysis")
             self._results.param.watch(lambda event: self._follow_map(), "frame")
@@ -51,18 +52,23 @@ class StudyPresenter:
 
     def _follow_map(self) -> None:
         """Start the study of a complete map, unless it is known, while its tab is open."""
+        whole_map = self._results.whole_map
+        if self._state.analysis != self._study.name or whole_map is None or whole_map.spec.potential != self._state.potential:
+            return
         run = _Run(self._state.subject, self.view.axis)
-        is_open = self._state.analysis == self._study.name and self._results.whole_map is not None
-        if is_open and (run != self._run or not (self.view.running or self._is_shown(run))):
+        if run != self._run or not (self.view.running or self._is_known(run)):
             self._start(run)
 
-    def _is_shown(self, run: _Run) -> bool:
-        return run == self._shown_run and self.view.shown is not None
+    def _is_known(self, run: _Run) -> bool:
+        """Whether the complete result of a run is shown."""
+        found = self.view.shown
+        return run == self._shown_run and found is not None and self._study.is_complete(found)
 
     def _start(self, run: _Run) -> None:
         try:
             job = self._study.job(*run)
         except ValueError as error:
+            self._stop()
             self.view.say(str(error))
             return
         self._run = run
@@ -82,7 +88,7 @@ class StudyPresenter:
         if found is not None and self._study.is_complete(found):
             self._stop()
         self._shown_run = self._run
-        self.view.show(found, "" if self._run is None else self._run.axis)
+        self.view.show(found, "" if self._run is None or found is None else self._run.axis)
         others = {name: result for name, result in self._results.studies.items() if name != self._study.name}
         self._results.studies = others if found is None else {**others, self._study.name: found}
 
@@ -91,8 +97,13 @@ class StudyPresenter:
         if self.view.shown is None or self._shown_run is None:
             return
         changes = dict(self._study.changes(*self._shown_run, self.view.shown, x, y))
-        system = changes.pop("system", None)
-        if system is None:
-            self._state.param.update(**changes)
-        else:
+        system, start = changes.pop("system", None), changes.pop("start", None)
+        if changes.get("plane", self._state.plane) != self._state.plane:
+            # Window and starts belong to the other slice.
+            changes = {"window": None, "starts": (), "chosen": 0, **changes}
+        if system is not None:
             self._open_view(system, changes)
+            return
+        self._state.param.update(**changes)
+        if start is not None and not self._state.add_start(start):
+            self._notice.show(STARTS_FULL)

@@ -38,6 +38,9 @@ from plots.studies.study import Subject
 WINDOW_UNKNOWN = "The window is not known before the first map."
 """Message while the default window is not known."""
 
+STARTS_FULL = f"{MOST_ORBITS} orbits are shown already. Remove one first."
+"""Message when no start can be added."""
+
 # Longest initial t_max of systems whose bounded orbits must all be integrated until t_max, in natural units of time.
 _LONGEST_FIRST_T_MAX = 1000.0
 

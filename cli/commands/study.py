@@ -32,7 +32,7 @@ from plots.studies.study import Study, Subject
 from plots.studies.table import STUDIES
 from plots.texts.exports import dataset_bytes, table_csv
 
-STUDY_HELP = f"{'; '.join(f'{name}: {study.title}. {study.hint}' for name, study in STUDIES.items())}"
+STUDY_HELP = " ".join(f"{name}: {study.hint}" for name, study in STUDIES.items())
 AGAINST_HELP = "h, or a parameter; by default the first quantity against which the study can be made."
 
 
@@ -57,7 +57,7 @@ def run(
     energies = review_system(system).energies
     subject = Subject(system, potential, plane, energies.first if energy is None else energy, energies, t_max)
     job = entry.job(subject, _choose_axis(entry, system, against))
-    stem = Path(f"{entry.files}-{file_name_part(case)}-{plane.key}")
+    stem = Path(f"{entry.files}-{file_name_part(case)}")
     paths = name_files(output, ["nc", "csv", *FigureFormat], ["nc", "csv"], stem)
     with reserve_output(output or stem):
         with place.run() as context:

@@ -29,7 +29,7 @@ MOST_RETURNS = 100_000
 """Largest number of returns of an orbit."""
 
 # Largest number of returns of all orbits, which take 5 numbers each.
-_MOST_POINTS = 20_000_000
+_MOST_POINTS = 5_000_000
 # Number of parts of the starts. Progress is reported, and the computation can be cancelled, after each part.
 _PARTS = 16
 # Columns of a return that the kernel writes.
@@ -48,8 +48,8 @@ class Returns(Result):
     spec
         The request of the starts.
     states
-        (returns, rows, columns, 4) x, y, px, py at each crossing; y is 0. NaN where an orbit has escaped or reached t_max before,
-        and for starts that are forbidden or outside. Read-only.
+        (returns, rows, columns, 4) x, y, px, py at each crossing; y is 0. NaN where an orbit has ended or reached t_max before,
+        for starts that are forbidden or outside, and for orbits that are not followed yet. Read-only.
     time
         (returns, rows, columns) time of each crossing, in the units of the potential; NaN as for `states`. Read-only.
     complete
@@ -74,12 +74,12 @@ class Returns(Result):
         return [states[: counts[k], k][:, [0, 2]] for k in np.flatnonzero(counts)]
 
     def describe(self) -> str:
-        """Return the numbers of orbits and of returns in one sentence."""
+        """Return the numbers of crossings and of orbits in one sentence."""
         counts = self.count[self.count > 0]
-        orbits, returns = format_count(int(counts.size), "orbit"), format_count(int(counts.sum()), "return")
+        crossings, orbits = format_count(int(counts.sum()), "upward crossing"), format_count(int(counts.size), "orbit")
         energy = self.spec.common_energy
         place = "" if energy is None else f" at h = {energy:.6g}"
-        return f"{returns} of {orbits}{place} to y = 0 upward{'' if self.complete else ' so far'}."
+        return f"{crossings} of y = 0 by {orbits}{place}{'' if self.complete else ' so far'}."
 
     def columns(self) -> Mapping[str, np.ndarray]:
         """Return a table with a row for each return: pixel, number of the return from 1, time, x, y, px and py."""
@@ -137,11 +137,12 @@ def compute_returns(
     spec
         The starts, on a slice without a parameter as axis; `use_evidence` is not used.
     returns
-        Largest number of returns of each orbit, 1 to 100 000; at most 20 million of all orbits.
+        Largest number of returns of each orbit, 1 to 100 000; at most 5 million of all orbits.
     on_frame
         Called in this thread with the returns so far.
     execution
-        How the computation runs. When it is cancelled, orbits not followed yet have no returns.
+        How the computation runs. When it is cancelled, orbits not followed yet have no returns. An orbit is not interrupted:
+        those that seldom return are followed until t_max.
 
     Returns
     -------
@@ -186,7 +187,8 @@ class _ReturnsRun:
         self._curves = exit_curves_at(self._well_spec.potential, energies)
         self._starts = self._well_spec.start_states(x, ordinate)
         self._found = np.full((rows * columns, returns, 4), np.nan)
-        self._pending = -1
+        # Number of pixels whose orbits have not been followed yet; unknown until `inside` is called.
+        self._pending = len(self._found)
 
     def inside(self, execution: Execution) -> np.ndarray:
         """Return the numbers of the pixels whose starts are inside all exits."""
@@ -194,7 +196,8 @@ class _ReturnsRun:
         allowed = np.flatnonzero(batch.fate == Fate.NOT_COMPUTED)
         tested = batch.mark_outside(self._well_spec.potential, allowed, self._curves, execution=execution)
         pixels = tested[batch.fate[tested] == Fate.NOT_COMPUTED]
-        self._pending = pixels.size
+        # A cancelled test leaves pixels of which it is not known whether they are inside.
+        self._pending = pixels.size + allowed.size - tested.size
         return pixels
 
     def follow(self, pixels: np.ndarray, execution: Execution) -> None:

@@ -18,7 +18,7 @@ def chart_elements(chart: Chart) -> list[hv.Element]:
         if series.shape is Shape.BARS:
             elements.append(_histogram(series, x, y))
             continue
-        kind = hv.Scatter if series.shape is Shape.POINTS else hv.Curve
+        kind = hv.Scatter if series.shape in (Shape.POINTS, Shape.DOTS) else hv.Curve
         elements.append(kind(series.curve, x, y, label=series.label))
         if series.bars is not None:
             low, high = series.bars

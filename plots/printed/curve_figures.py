@@ -43,10 +43,10 @@ def draw_study_figure(study: Study[Any], found: Result, style: FigureStyle) -> F
     charts = study.charts(found, PAPER)
     if not charts:
         raise ValueError(f"{study.files}: there must be at least one point")
-    columns = min(style.columns(2), len(study.frames))
-    is_square = any(frame.is_square for frame in study.frames)
+    columns = min(style.columns(2), len(charts))
+    is_square = any(chart.frame.is_square for chart in charts)
     row_height = _SQUARE / columns if is_square else _ROW_HEIGHT if columns == 2 else _ONE_COLUMN_ROW_HEIGHT
-    height = style.width * row_height * math.ceil(len(study.frames) / columns)
+    height = style.width * row_height * math.ceil(len(charts) / columns)
     return _draw_figure(charts, new_figure(style, height, study.caption(found)), style, columns)
 
 

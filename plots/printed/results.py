@@ -123,6 +123,8 @@ def _find_charts(result: Result, palette: Palette) -> list[Chart]:
             return [times_chart(result), probabilities_chart(result)]
         case UncertaintyExponent():
             return [pairs_chart(result)]
+        case Returns() if result.spec.plane == SECTION:
+            return section_charts(result, palette)
     return []
 
 
@@ -280,14 +282,6 @@ def _draw_review(result: PotentialReview, axes: Axes, palette: Palette) -> None:
     if result.refusal is not None:
         raise NoPictureError("a potential that cannot be used has no picture")
     _draw_potential(result.potential, axes, palette)
-
-
-@_draw.register
-def _draw_returns(result: Returns, axes: Axes, palette: Palette) -> None:
-    if result.spec.plane != SECTION:
-        raise NoPictureError(f"returns of starts on {result.spec.plane.title} have no window to draw; give the plane x_px")
-    for chart in section_charts(result, palette):
-        draw_chart(axes, chart)
 
 
 @_draw.register

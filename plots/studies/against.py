@@ -62,7 +62,7 @@ def sweep_caption(curves: Sweep) -> str:
 AGAINST = Study(
     name="energies",
     title="Against",
-    start="Compute the curves",
+    button="Compute the curves",
     hint=f"The shares and each measure at {SWEPT_VALUES + REFINED_VALUES} values, closer together where the shares change: "
     "a minute or more.",
     axes=energy_and_parameters,

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from engine import MapSpec, compute_returns
 from engine.jobs.job import Job
 from engine.results import Returns
-from engine.slices.planes import SECTION as SLICE
+from engine.slices.planes import SECTION
 from plots.pictures.charts import Chart, Frame, Series, Shape
 from plots.pictures.palette import Palette
 from plots.studies.study import Changes, Study, Subject
@@ -19,7 +21,7 @@ _STARTS = (13, 13)
 FRAME = Frame(
     "section",
     "Surface of section",
-    SLICE.axis_symbols,
+    SECTION.axis_symbols,
     "Where many orbits of this energy cross y = 0 upward, up to their exits, each in one of a few colours. A regular orbit stays "
     "on a curve: nested curves are an island, and chains of small islands are resonances. A chaotic orbit fills an area, or "
     "leaves a few points and escapes.",
@@ -30,7 +32,7 @@ FRAME = Frame(
 
 
 def _job(subject: Subject, axis: str) -> Job[Returns]:
-    spec = MapSpec(subject.potential, SLICE, subject.energy, _STARTS, t_max=subject.t_max)
+    spec = MapSpec(subject.potential, SECTION, subject.energy, _STARTS, t_max=subject.t_max)
     return Job(compute_returns, (spec,), (("returns", RETURNS),))
 
 
@@ -46,24 +48,31 @@ def section_charts(found: Returns, palette: Palette) -> list[Chart]:
 
 
 def _changes(subject: Subject, axis: str, found: Returns, x: float, y: float) -> Changes:
-    """Return the start at the clicked point, on the slice and at the energy of the section."""
-    start = {"plane": SLICE, "energy": subject.energy, "starts": ((x, y),), "chosen": 0}
-    return start if subject.plane == SLICE else {**start, "window": None}
+    """Return the start at the point nearest to the click, on the slice and at the energy of the section."""
+    window, points = found.spec.find_window(), np.concatenate(found.points())
+    distance = np.hypot((points[:, 0] - x) / window.width, (points[:, 1] - y) / window.height)
+    nearest_x, nearest_px = points[np.argmin(distance)].tolist()
+    return {"plane": SECTION, "energy": subject.energy, "start": (nearest_x, nearest_px)}
+
+
+def _sentence(found: Returns) -> str:
+    can_click = found.complete and bool(found.count.any())
+    return f"{found.describe()}{' Click a point to follow its orbit.' if can_click else ''}"
 
 
 def _caption(found: Returns) -> str:
     return f"{found.spec.potential.name}: {found.describe()}"
 
 
-SECTION = Study(
+SECTION_STUDY = Study(
     name="section",
     title="Section",
-    start="Draw the section",
     follows_map=True,
-    hint=f"The points at which many orbits cross y = 0 upward, up to {RETURNS} of each, follow when the map is complete.",
+    hint=f"The points at which many orbits cross y = 0 upward, up to {RETURNS} of each orbit.",
+    button="Draw the section",
     job=_job,
     progress=lambda found: 1.0 if found.complete else 0.0,
-    sentence=lambda found: f"{found.describe()}{' Click a point to follow its orbit.' if found.complete else ''}",
+    sentence=_sentence,
     frames=(FRAME,),
     charts=section_charts,
     changes=_changes,

@@ -17,7 +17,7 @@ from plots.pictures.charts import Chart, Frame
 from plots.pictures.palette import Palette
 
 Changes = Mapping[str, Any]
-"""New values of fields of a view, by name. A new `system` is reviewed before it is shown."""
+"""New values of fields of a view, by name. A new `system` is reviewed before it is shown; `start` is added to the starts."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Subject:
     plane
         The slice of the starts.
     energy
-        The energy h, in the units of the potential. Unused on a slice with an axis h.
+        The energy h, in the units of the potential; on a slice with an axis h, the last energy of another slice.
     energies
         The energies at which the system is explored.
     t_max
@@ -58,8 +58,8 @@ class Study[Found: Result]:
         Name in links and for the command ``study``. It must not change.
     title
         Label of the tab.
-    start
-        Label of the button that starts the job.
+    button
+        Label of the button that starts the job; unused for a study that follows the map.
     hint
         What the study computes, and how long this takes. The page shows it until there is a result.
     axes
@@ -89,7 +89,7 @@ class Study[Found: Result]:
 
     name: str
     title: str
-    start: str
+    button: str
     hint: str
     job: Callable[[Subject, str], Job[Found]]
     sentence: Callable[[Found], str]

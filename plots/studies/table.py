@@ -7,10 +7,10 @@ from types import MappingProxyType
 from typing import Any
 
 from plots.studies.against import AGAINST
-from plots.studies.section import SECTION
+from plots.studies.section import SECTION_STUDY
 from plots.studies.study import Study
 
-_ENTRIES: tuple[Study[Any], ...] = (SECTION, AGAINST)
+_ENTRIES: tuple[Study[Any], ...] = (SECTION_STUDY, AGAINST)
 
 STUDIES: Mapping[str, Study[Any]] = MappingProxyType({study.name: study for study in _ENTRIES})
 """The studies by name, in the order of their tabs."""

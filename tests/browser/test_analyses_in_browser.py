@@ -63,7 +63,7 @@ def test_curves_are_drawn_and_a_click_opens_a_map(explorer: ExplorerPage) -> Non
 def test_the_section_follows_the_map_and_a_click_on_it_starts_an_orbit(open_explorer: OpenExplorer) -> None:
     explorer = open_explorer(link="?case=II&h=0.15&t_max=100&resolution=112&analysis=section")
     explorer.wait_for_data("section_dots", "data.x.length > 1000")
-    expect(explorer.page.get_by_text("at h = 0.15 to y = 0 upward")).to_be_visible()
+    expect(explorer.page.get_by_text("upward crossings of y = 0 by")).to_be_visible()
     explorer.click("section", 0.1, 0.05)
     explorer.wait_for_view("orbits=0.")
 

@@ -62,19 +62,23 @@ class StudyView:
         self._start_time = 0.0
         # The axis of the charts that are shown.
         self._shown_axis = ""
-        self.button = button(study.start, on_button, width=180, align="end", visible=not study.follows_map)
+        self.button = button(study.button, on_button, width=180, align="end", visible=not study.follows_map)
         self.against = pn.widgets.Select(label="Against", options=[], width=80, visible=False)
-        self.text = TextPane(study.hint, name=study.name, margin=(4, 10), sizing_mode="stretch_width", css_classes=["whole-row"])
+        self.text = TextPane(self._hint, name=study.name, margin=(4, 10), sizing_mode="stretch_width", css_classes=["whole-row"])
         self._mark_line = moving_line("height", location=0.0, line_dash="dotted")
         options: dict[str, Any] = {"x_range": Range1d(0.0, 1.0)} if study.axes(state.system) else {}
         self._charts = {
             each.name: ChartView(each, aspect_ratio=1.0 if each.is_square else _ASPECT, **options) for each in study.frames
         }
         self._charts_in_turns = InTurns([partial(self._build_chart, chart) for chart in self._charts.values()], self._add, later)
-        self._plots = pn.Column(sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=["curves"], visible=False)
+        self._plots = pn.Column(sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=["charts"], visible=False)
         state.follow(self._follow_system, "system")
         state.follow(lambda energy: self._mark(), "energy")
         state.param.watch(lambda event: self._redraw(), "palette")
+
+    @property
+    def _hint(self) -> str:
+        return f"{self._study.hint}{' They follow when the map is complete.' if self._study.follows_map else ''}"
 
     @property
     def axis(self) -> str:
@@ -86,9 +90,7 @@ class StudyView:
             self.show(self.shown, self._shown_axis)
 
     def _follow_system(self, system: System) -> None:
-        """Remove the charts of the previous system, and offer the axes of the new system."""
-        if self.shown is not None:
-            self.show(None)
+        """Offer the axes of a system."""
         labels = {name: name if name == ENERGY else plain_symbol(symbol_of(name)) for name in self._study.axes(system)}
         options = {label: name for name, label in labels.items()}
         # A choice that the new system lacks is replaced by the first one.
@@ -105,7 +107,7 @@ class StudyView:
         if running and not self.running:
             self._start_time = time.monotonic()
         self.running = running
-        self.button.label = STOP if running else self._study.start
+        self.button.label = STOP if running else self._study.button
 
     def show(self, found: Any, axis: str = "") -> None:
         """Draw the charts of a result about the system in view; None removes them.
@@ -120,11 +122,12 @@ class StudyView:
         self.shown, self._shown_axis = found, axis
         self._plots.visible = found is not None
         if found is None:
-            self.text.object = escape(self._study.hint)
+            self.text.object = escape(self._hint)
             return
         self._charts_in_turns.begin()
-        for chart in self._study.charts(found, self._state.colours):
-            self._charts[chart.frame.name].show(chart)
+        charts = {chart.frame.name: chart for chart in self._study.charts(found, self._state.colours)}
+        for name, view in self._charts.items():
+            view.show(charts.get(name))
         self._mark()
         self.text.object = escape(self._describe(found))
 

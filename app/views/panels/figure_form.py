@@ -19,7 +19,6 @@ from app.views.components.widgets import SegmentedControl, Switches, button
 from engine import EscapeMap
 from engine.slices.axes import highest_energy
 from plots.layers.table import LAYERS_BY_PICTURE, TITLES
-from plots.pictures.palette import PAPER
 from plots.printed.figure_files import (
     map_figure_bytes,
     orbits_figure_bytes,
@@ -185,7 +184,7 @@ def figure_choices(shown: ShownResults, state: ViewState) -> dict[str, Make]:
     if frame is not None:
         choices[STATISTICS] = partial(statistics_figure_bytes, frame, state.box)
     for name, found in shown.studies.items():
-        if STUDIES[name].charts(found, PAPER):
+        if STUDIES[name].progress(found):
             choices[STUDIES[name].figure] = partial(study_figure_bytes, STUDIES[name], found)
     return choices
 

@@ -15,7 +15,7 @@ from app.state.view_state import ViewState
 from engine import CASES, MapSpec, Plane, System, compute_map, find_lyapunov_orbits
 from engine.jobs.manager import Jobs
 from plots.studies.against import AGAINST, REFINED_VALUES, SWEPT_VALUES
-from plots.studies.section import SECTION
+from plots.studies.section import SECTION_STUDY
 from plots.studies.study import Study
 from tests.app.session.session_lock import context_of
 from tests.plots.studies.study_example import study_of_periods
@@ -95,7 +95,7 @@ def test_a_study_that_its_subject_does_not_allow_says_why(begin: Callable[..., S
 
 
 def test_a_quick_study_follows_each_complete_map_while_its_tab_is_open(begin: Callable[..., Session]) -> None:
-    session = begin(SECTION)
+    session = begin(SECTION_STUDY)
     assert not session.view.button.visible
     maps = {h: compute_map(MapSpec(CASES["II"], Plane.X_PX, h, (9, 9), t_max=1e3)) for h in (0.25, 0.15)}
     session.context.results.frame = maps[0.25]

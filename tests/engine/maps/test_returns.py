@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -121,6 +123,23 @@ def test_frames_arrive_while_orbits_are_followed() -> None:
     assert frames[-1].time.tobytes() == found.time.tobytes()
 
 
+def test_a_cancelled_computation_is_not_complete() -> None:
+    class CancellingPool(ThreadPoolExecutor):
+        """Cancels all calls."""
+
+        def submit(self, *arguments: Any, **named: Any) -> Future[Any]:
+            future = Future[Any]()
+            future.cancel()
+            return future
+
+    cancel = threading.Event()
+    cancel.set()
+    for execution in (Execution(cancel=cancel), Execution(CancellingPool(), cancel=cancel)):
+        found = compute_returns(SPEC, returns=2, execution=execution)
+        assert not found.complete
+        assert not np.isfinite(found.time).any()
+
+
 def test_a_file_holds_the_returns_and_their_request(tmp_path: Path) -> None:
     found = compute_returns(SPEC, returns=3)
     found.save(tmp_path / "returns.nc")
@@ -143,8 +162,8 @@ def parameter_map() -> MapSpec:
 @pytest.mark.parametrize(
     ("request_of", "message"),
     [
-        (lambda: compute_returns(SPEC, returns=0), "returns=0: must be an integer from 1 to 100000"),
-        (lambda: compute_returns(replace(SPEC, resolution=(1000, 1000)), returns=21), "must be an integer from 1 to 20"),
+        (lambda: compute_returns(SPEC, returns=0), "returns=0: must be an integer from 1 to "),
+        (lambda: compute_returns(replace(SPEC, resolution=(1000, 1000)), returns=6), "must be an integer from 1 to 5"),
         (lambda: compute_returns(parameter_map()), "has a parameter as axis"),
     ],
 )

@@ -12,7 +12,7 @@ from engine.results import Returns
 from engine.systems.review.potential_review import review_system
 from plots.pictures.charts import Shape
 from plots.pictures.palette import PAPER
-from plots.studies.section import RETURNS, SECTION
+from plots.studies.section import RETURNS, SECTION_STUDY
 from plots.studies.study import Subject
 
 SYSTEM = System("II")
@@ -21,7 +21,7 @@ SUBJECT = Subject(SYSTEM, SYSTEM.potential, Plane.X_Y, 0.15, review_system(SYSTE
 
 @pytest.fixture(scope="module")
 def found() -> Returns:
-    result: Returns = run_job(SECTION.job(SUBJECT, ""), Execution(), {})
+    result: Returns = run_job(SECTION_STUDY.job(SUBJECT, ""), Execution(), {})
     return result
 
 
@@ -29,11 +29,11 @@ def test_bounded_orbits_have_all_their_returns_at_the_energy_of_the_view(found: 
     assert SUBJECT.energy < CASES["II"].escape_energy
     assert set(np.unique(found.count)) == {0, RETURNS}
     assert found.spec.plane is Plane.X_PX
-    assert "at h = 0.15" in SECTION.sentence(found)
+    assert "at h = 0.15" in SECTION_STUDY.sentence(found)
 
 
 def test_every_return_is_a_dot_of_the_page_and_inside_the_limiting_curve(found: Returns) -> None:
-    (chart,) = SECTION.charts(found, PAPER)
+    (chart,) = SECTION_STUDY.charts(found, PAPER)
     assert {one.shape for one in chart.series} == {Shape.DOTS}
     view = ChartView(chart.frame)
     view.show(chart)
@@ -45,10 +45,11 @@ def test_every_return_is_a_dot_of_the_page_and_inside_the_limiting_curve(found: 
 
 
 def test_a_click_starts_the_orbit_through_the_point_on_the_section(found: Returns) -> None:
-    changes = SECTION.changes(SUBJECT, "", found, 0.1, 0.05)
-    assert changes == {"plane": Plane.X_PX, "energy": 0.15, "starts": ((0.1, 0.05),), "chosen": 0, "window": None}
+    x, px = found.points()[7][3].tolist()
+    changes = SECTION_STUDY.changes(SUBJECT, "", found, x + 1e-6, px - 1e-6)
+    assert changes == {"plane": Plane.X_PX, "energy": 0.15, "start": (x, px)}
 
 
 def test_an_energy_without_orbits_gives_no_chart(found: Returns) -> None:
     empty = Returns(found.spec, np.full_like(found.states, np.nan), np.full_like(found.time, np.nan))
-    assert SECTION.charts(empty, PAPER) == []
+    assert SECTION_STUDY.charts(empty, PAPER) == []
