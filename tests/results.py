@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -19,6 +20,7 @@ from engine import (
     compute_map,
     compute_origin_fates,
     compute_regularity,
+    compute_returns,
     compute_separation,
     compute_statistics,
     compute_sweep,
@@ -65,6 +67,7 @@ _MAKERS: dict[str, Callable[[], Result | None]] = {
     "entropy": lambda: compute_basin_entropy(compute_map(SPEC)),
     "Wada test": lambda: compute_wada_test(compute_map(SPEC)),
     "exponent": lambda: compute_uncertainty_exponent(SPEC, pairs=20, separations=8, work=1e6),
+    "returns": lambda: compute_returns(replace(SPEC, resolution=(6, 5)), returns=4),
     "sweep": lambda: compute_sweep(SweepSpec(POTENTIAL, Plane.X_PX, (0.3, 0.36), (20, 20), t_max=100.0, measures="shares")),
 }
 

@@ -12,7 +12,7 @@ from engine.exits.exit_rows import exit_curves_at
 from engine.exits.exit_shapes import exit_gates
 from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
-from engine.foundations.result import Result
+from engine.foundations.result import MapResult
 from engine.foundations.validation import check_type, checked_count, checks_types
 from engine.foundations.wording import format_count
 from engine.integrator.kernels.propagate import Exits
@@ -40,7 +40,7 @@ _TIME_VARIABLE = "return_time"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Returns(Result):
+class Returns(MapResult):
     """The first upward crossings of y = 0 of the orbits of a map, not counting the starts.
 
     Attributes
@@ -102,7 +102,8 @@ class Returns(Result):
 
         x, ordinate = self.spec.pixel_centres()
         names = ("return", *self.spec.plane.axis_names[::-1])
-        coordinates = {"return": np.arange(1, len(self.time) + 1), names[1]: ordinate, names[2]: x}
+        places = {"return": np.arange(1, len(self.time) + 1), names[1]: ordinate, names[2]: x}
+        coordinates = {name: (name, values, {"units": "1"}) for name, values in places.items()}
         arrays = {name: self.states[..., k] for k, name in enumerate(_VARIABLES)} | {_TIME_VARIABLE: self.time}
         variables = {
             name: (names, values, {"units": "1", "long_name": f"{_VARIABLES.get(name, 'time')} at the return"})

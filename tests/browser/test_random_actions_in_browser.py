@@ -134,7 +134,7 @@ def expected_page(address: str) -> dict[str, Any]:
     assert not problems, problems
     shown = shown_in(state)
     layers = {layer.title: name in state.layers for name, layer in LAYERS.items()}
-    analyses = {label: state.analysis is analysis for analysis, label in ANALYSIS_LABELS.items()}
+    analyses = {label: state.analysis == analysis for analysis, label in ANALYSIS_LABELS.items()}
     cases = {case: state.system.case == case for case in CASES}
     planes = {plane.title: state.plane is plane for plane in PLANES}
     energy = {} if state.plane.energy_axis is not None else {"Exact h": state.energy}

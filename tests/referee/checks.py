@@ -102,8 +102,11 @@ def _review(formula: Formula, report: Report) -> PotentialReview | None:
 
 def _check_accepted(setting: Setting, energies: list[float], seed: int, checks: tuple[str, ...]) -> Iterator[Report]:
     if "exits" in checks:
-        report = Report()
-        check_exits(setting.potential, setting.system, setting.formula.text, report)
+        report, unknown = Report(), setting.potential.well.exits_unknown
+        if unknown:
+            report.add("exits", REFUSED, unknown)
+        else:
+            check_exits(setting.potential, setting.system, setting.formula.text, report)
         yield report
     below = setting.potential.well.energy_at(random.Random(f"below {seed}").uniform(*_BELOW))
     yield from _check_at(setting.at(below), seed, tuple(name for name in checks if name in ("openness", "verdicts")))

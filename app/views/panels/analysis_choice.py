@@ -16,6 +16,9 @@ from plots.layers.layer import Layer, Setting
 from plots.layers.table import LAYERS
 from plots.studies.table import STUDIES
 
+ANALYSIS_LABELS = {str(name): STUDIES[name].title if name in STUDIES else name.capitalize() for name in ANALYSES}
+"""Labels of the tabs beside the maps, by the name of the analysis."""
+
 
 class LayerSwitches:
     """Switches of the layers. They write to the view state and follow it.
@@ -91,6 +94,6 @@ class ComparisonSwitch:
 
 def analysis_tabs(state: ViewState) -> SegmentedControl:
     """Return the tabs of the analyses. They write to the view state and follow it."""
-    options = {STUDIES[name].title if name in STUDIES else name.capitalize(): str(name) for name in ANALYSES}
+    options = {label: name for name, label in ANALYSIS_LABELS.items()}
     tabs = SegmentedControl(label="Analysis", options=options, margin=(0, 10), css_classes=["segmented", "narrow", "tight"])
     return bind(tabs, state, "analysis")

@@ -147,9 +147,16 @@ def test_a_file_holds_the_returns_and_their_request(tmp_path: Path) -> None:
     assert opened.spec == SPEC
     np.testing.assert_array_equal(opened.states, found.states)
     np.testing.assert_array_equal(opened.time, found.time)
-    table = found.to_pandas()
-    assert len(table) == found.count.sum()
-    assert table[["row", "column", "return"]].apply(tuple, axis=1).is_monotonic_increasing
+    assert found.to_pandas()["return_time"].count() == found.count.sum()
+
+
+def test_the_table_has_a_row_for_each_return_in_the_order_of_the_orbits() -> None:
+    found = compute_returns(SPEC, returns=3)
+    table = found.columns()
+    assert table["time"].size == found.count.sum()
+    order = list(zip(table["row"], table["column"], table["return"], strict=True))
+    assert order == sorted(order)
+    assert np.array_equal(table["px"], found.states[table["return"] - 1, table["row"], table["column"], 2])
 
 
 def parameter_map() -> MapSpec:
