@@ -120,6 +120,10 @@ class ChartView:
             plot.add_tools(chart_hover(frame.text, [lines], line_policy="nearest"))
         else:
             plot.add_tools(chart_hover(frame.text, [points], mode="vline"))
+        if frame.is_square:
+            # The labels of the default number of ticks touch each other in a narrow column.
+            for axis in (*plot.below, *plot.left):
+                axis.ticker.desired_num_ticks = 4
         if frame.level is not None:
             style: dict[str, Any] = {"line_color": THRESHOLD, "line_dash": "dashed", "line_width": 1.5}
             plot.add_layout(Span(location=frame.level[0], dimension="width", **style))
