@@ -19,19 +19,18 @@ from typing import Annotated
 import typer
 
 from cli.arguments import Case, Slow, check_measures, file_name_part, space_values
+from cli.commands.study import study_content
 from cli.execution import THREADS_ONLY, Place
 from cli.option_marks import DocumentedBy
 from cli.options import with_options
-from cli.output_files import Content, Stem, name_files, reserve_output, write_files
+from cli.output_files import Stem, name_files, reserve_output, write_files
 from cli.printing import AsJson, Table, list_rows, print_result
 from engine import ParameterAxis, Potential, Slice, SweepSpec, System, compute_sweep
 from engine.measures.table import CURVES, QUICK_CURVES
 from engine.results import Sweep
 from engine.systems.parameters import WELL_PARAMETERS
-from plots.printed.figure_files import study_figure_bytes
 from plots.printed.figure_style import FigureFormat, FigureStyle
 from plots.studies.against import AGAINST
-from plots.texts.exports import dataset_bytes, table_csv
 
 AGAINST_HELP = f"h, or a parameter: {', '.join(WELL_PARAMETERS)} or a letter of the formula."
 MEASURE_HELP = f"{', '.join(CURVES)}; all by default. Can be repeated."
@@ -79,17 +78,8 @@ def run(
     with reserve_output(output or stem):
         with place.run() as context:
             curves = compute_sweep(spec, execution=context.start_stage("curves"))
-        files = write_files({path: _make_content(curves, ending, style) for ending, path in paths.items()})
+        files = write_files({path: study_content(AGAINST, curves, ending, style) for ending, path in paths.items()})
     _print(curves, files, as_json)
-
-
-def _make_content(curves: Sweep, ending: str, style: FigureStyle) -> Content:
-    """Return the content of the output file with an ending."""
-    if ending == "nc":
-        return dataset_bytes(curves.dataset)
-    if ending == "csv":
-        return table_csv(curves)
-    return study_figure_bytes(AGAINST, curves, FigureFormat(ending), style)
 
 
 def _print(curves: Sweep, files: Sequence[str], as_json: bool) -> None:

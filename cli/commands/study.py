@@ -62,7 +62,7 @@ def run(
     with reserve_output(output or stem):
         with place.run() as context:
             found = run_job(job, context.start_stage(entry.files), {})
-        files = write_files({path: _make_content(entry, found, ending, style) for ending, path in paths.items()})
+        files = write_files({path: study_content(entry, found, ending, style) for ending, path in paths.items()})
     _print(entry, found, files, as_json)
 
 
@@ -80,7 +80,7 @@ def _choose_axis(study: Study[Any], system: System, against: str | None) -> str:
     return against or next(iter(axes), "")
 
 
-def _make_content(study: Study[Any], found: Result, ending: str, style: FigureStyle) -> Content:
+def study_content(study: Study[Any], found: Result, ending: str, style: FigureStyle) -> Content:
     """Return the content of the output file with an ending."""
     if ending == "nc":
         return dataset_bytes(found.to_xarray())

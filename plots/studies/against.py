@@ -8,7 +8,7 @@ from engine.jobs.job import Job
 from engine.measures.table import CURVES
 from engine.results import Sweep
 from engine.sweeps.sweep_job import sweep_job
-from plots.studies.axes import changes_at, energy_and_parameters, parameter_axis, section_of, spaced_values
+from plots.studies.axes import changes_at, energy_and_parameters, parameter_axis, spaced_values, swept_slice
 from plots.studies.study import Study, Subject
 from plots.studies.sweep_charts import CURVE_PANELS, SHARES, measure_frame, sweep_charts
 
@@ -26,7 +26,7 @@ def _job(subject: Subject, axis: str) -> Job[Sweep]:
     along = parameter_axis(subject, axis)
     spec = SweepSpec(
         subject.potential,
-        section_of(subject).plane,
+        swept_slice(subject),
         spaced_values(subject, axis, SWEPT_VALUES),
         _RESOLUTION,
         t_max=subject.t_max,

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
-from engine import ParameterAxis, System
+from engine import ParameterAxis, Slice, System
 from engine.slices.planes import SECTION
 from engine.slices.slice_text import default_range
 from plots.studies.study import Changes, Subject
@@ -53,10 +52,10 @@ def spaced_values(subject: Subject, axis: str, count: int) -> tuple[float, ...]:
     return tuple(np.round(np.linspace(low, high, count), decimals).tolist())
 
 
-def section_of(subject: Subject) -> Subject:
-    """Return the subject on its slice, or on the surface of section if the slice has an axis of energies or of a parameter."""
+def swept_slice(subject: Subject) -> Slice:
+    """Return the slice of the subject, or the surface of section if the slice has an axis of energies or of a parameter."""
     plane = subject.plane
-    return subject if plane.energy_axis is None and plane.parameter is None else replace(subject, plane=SECTION)
+    return plane if plane.energy_axis is None and plane.parameter is None else SECTION
 
 
 def changes_at(subject: Subject, axis: str, values: np.ndarray, x: float) -> Changes:
@@ -76,7 +75,7 @@ def changes_at(subject: Subject, axis: str, values: np.ndarray, x: float) -> Cha
     if not values.size:
         return {}
     value = float(values[np.argmin(np.abs(values - x))])
-    plane = section_of(subject).plane
+    plane = swept_slice(subject)
     along = parameter_axis(subject, axis)
     if along is None:
         return {"energy": value, "plane": plane}

@@ -69,7 +69,6 @@ SECTION_STUDY = Study(
     title="Section",
     follows_map=True,
     hint=f"The points at which many orbits cross y = 0 upward, up to {RETURNS} of each orbit.",
-    button="Draw the section",
     job=_job,
     progress=lambda found: 1.0 if found.complete else 0.0,
     sentence=_sentence,

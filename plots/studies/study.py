@@ -59,7 +59,7 @@ class Study[Found: Result]:
     title
         Label of the tab.
     button
-        Label of the button that starts the job; unused for a study that follows the map.
+        Label of the button that starts the job; empty for a study that follows the map.
     hint
         What the study computes, and how long this takes. The page shows it until there is a result.
     axes
@@ -89,7 +89,6 @@ class Study[Found: Result]:
 
     name: str
     title: str
-    button: str
     hint: str
     job: Callable[[Subject, str], Job[Found]]
     sentence: Callable[[Found], str]
@@ -102,6 +101,7 @@ class Study[Found: Result]:
     axes: Callable[[System], Sequence[str]] = lambda system: ()
     progress: Callable[[Found], float] = lambda found: 1.0
     follows_map: bool = False
+    button: str = ""
 
     def is_complete(self, found: Found) -> bool:
         """Whether no further part of a result follows."""
