@@ -17,7 +17,7 @@ import typer
 
 from cli.layer_options import LayerOptions, read_layers
 from cli.option_marks import DocumentedBy
-from engine import MEASURES, POTENTIALS, Plane, Potential, Slice, System, review_potential
+from engine import MEASURES, POTENTIALS, Plane, Potential, Section, Slice, System, read_section, review_potential
 from engine.foundations.validation import checked_count
 from engine.slices.axes import Energy
 from engine.slices.slice_text import AXIS_NAMES, read_slice
@@ -119,6 +119,17 @@ def find_plane(
         repeated.
     """
     return None if plane is None else read_slice(plane, ",".join(fix or ()), system)
+
+
+def find_section(section: Annotated[str, typer.Option(metavar="SECTION")] = Section.Y_UP.text) -> Section:
+    """Return the surface of section.
+
+    Parameters
+    ----------
+    section
+        Where crossings are counted, such as "x = 0, px > 0", "y = 0.1 both", "angle = 30" or "apsis".
+    """
+    return read_section(section)
 
 
 type GivenEnergy = float | None
@@ -231,6 +242,7 @@ READERS: Mapping[Any, Callable[..., Any]] = {
     Potential: find_potential,
     Slice: find_plane,
     Slice | None: find_plane,
+    Section: find_section,
     Energy: choose_energy,
     GivenEnergy: find_energy,
     OneEnergy: require_energy,

@@ -6,8 +6,8 @@ programs of this repository, and may change with any version.
 
 - systems: `Potential`, `System`, `Centre`, `Outcome`, `CASES`, `POTENTIALS`, `parse_formula`, `FormulaError`, `write_formula`,
   `review_potential`
-- starts: `Plane`, `Slice`, `Coordinate`, `Direction`, `ParameterAxis`, `Window`, `start_states`, `sample_starts`,
-  `sample_entrances`, `sample_entrances_by_exit`
+- starts: `Plane`, `Slice`, `Coordinate`, `Direction`, `ParameterAxis`, `Window`, `Section`, `read_section`, `start_states`,
+  `sample_starts`, `sample_entrances`, `sample_entrances_by_exit`
 - orbits: `integrate_orbit`, `Orbit`, `sample_orbits`, `classify_orbits`, `find_lyapunov_orbits`, `LyapunovOrbit`, `judge_orbit`,
   `compute_separation`, `find_divergent_start`, `compute_flux`
 - maps of escapes: `MapSpec`, `compute_map`, `EscapeMap`, `Fate`, `Evidence`, `compute_returns`, `compute_regularity`,
@@ -59,6 +59,8 @@ from engine.slices.axes import ParameterAxis as ParameterAxis
 from engine.slices.planes import Plane as Plane
 from engine.slices.planes import start_states as start_states
 from engine.slices.sampling import sample_starts as sample_starts
+from engine.slices.sections.section import Section as Section
+from engine.slices.sections.section_text import read_section as read_section
 from engine.slices.slice import Slice as Slice
 from engine.slices.window import Window as Window
 from engine.sweeps.plan import plan_sweep as plan_sweep

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from engine import Execution, Plane, Potential, Slice
+from engine import Execution, Plane, Potential, Section, Slice
 from engine.slices.default_window import default_window
 from engine.slices.portable_system import PortableSystem, make_portable_system
 
@@ -53,17 +53,22 @@ class BrowserSystem:
         return {**self.portable.to_dict(), "key": self.key, "module": self.portable.module, **page_data}
 
 
-def system_key(potential: Potential) -> str:
-    """Return a hash of a potential, as 16 hexadecimal digits."""
-    definition = potential.form, potential.rotation, potential.ends
+def system_key(potential: Potential, section: Section = Section.Y_UP) -> str:
+    """Return a hash of a potential and the section at which crossings are counted, as 16 hexadecimal digits."""
+    definition = potential.form, potential.rotation, potential.ends, section
     return hashlib.sha256(repr(definition).encode()).hexdigest()[:16]
 
 
-def make_browser_system(potential: Potential, low: float, high: float, *, execution: Execution) -> BrowserSystem:
-    """Compile the module of a system, and tabulate its exits and windows for energies from `low` to `high`, dimensionless."""
+def make_browser_system(
+    potential: Potential, low: float, high: float, section: Section = Section.Y_UP, *, execution: Execution
+) -> BrowserSystem:
+    """Compile the module of a system, and tabulate its exits and windows for energies from `low` to `high`, dimensionless.
+
+    Crossings are counted at the section.
+    """
     planes = [plane for plane in Plane if plane.energy_axis is None]
     windows = {plane.key: _tabulate_windows(potential, plane, (low, high), execution) for plane in planes}
-    return BrowserSystem(system_key(potential), make_portable_system(potential, high), windows)
+    return BrowserSystem(system_key(potential, section), make_portable_system(potential, high, section), windows)
 
 
 def _tabulate_windows(potential: Potential, plane: Slice, energies: tuple[float, float], execution: Execution) -> dict[str, Any]:

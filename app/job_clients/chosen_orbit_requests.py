@@ -74,7 +74,7 @@ class DivergentStartRequests:
         self._origin: Start | None = None
         self._request = LatestRequest(jobs, self._on_result, notify, locked)
         # A search is for one system, plane, energy and t_max.
-        state.param.watch(lambda *events: self._request.cancel(), ["system", "plane", "energy", "t_max"])
+        state.param.watch(lambda *events: self._request.cancel(), ["system", "plane", "section", "energy", "t_max"])
 
     def search(self) -> None:
         """Search for the divergent start of the chosen start."""

@@ -87,7 +87,9 @@ class MapRequests:
         self._request = LatestRequest(
             jobs, self._show, listener.map_failed, locked, convert=self._with_columns, begin=self._begin
         )
-        state.param.watch(lambda *events: self.request_map(), ["system", "plane", "energy", "t_max", "resolution", "window"])
+        state.param.watch(
+            lambda *events: self.request_map(), ["system", "plane", "section", "energy", "t_max", "resolution", "window"]
+        )
 
     def request_map(self) -> None:
         """Cancel the current map, and request the map of the view state."""

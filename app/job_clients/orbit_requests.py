@@ -89,7 +89,7 @@ class OrbitRequests:
         self._orbits = RequestedResults(jobs, _curves_or_sentence, lambda arrived: self._update(), latest)
         self._digits = RequestedResults(jobs, _digits_or_sentence, self._take_digits, latest)
         self._shown_orbits: tuple[StartOrbit, ...] = ()
-        state.param.watch(lambda *events: self.follow(), ["starts", "system", "plane", "energy", "t_max"])
+        state.param.watch(lambda *events: self.follow(), ["starts", "system", "plane", "section", "energy", "t_max"])
 
     def follow(self) -> None:
         """Request the orbits of new starts, and cancel the requests of removed starts."""

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
 
+import numpy as np
 import panel as pn
 from param.parameterized import Event
 
@@ -22,11 +23,14 @@ from app.views.orbits.orbit_controls import OrbitActions, OrbitControls
 from app.views.orbits.orbit_plots import OrbitPlots
 from app.views.orbits.path_picture import path_picture
 from app.views.orbits.separation_plot import SeparationPlot
-from engine.slices.planes import SECTION
+from engine import Orbit, Section
 from plots.pictures.orbit_curves import OrbitCurves, restrict_curves
 
 ORBITS_REMOVED = "The orbits are removed, because they start on another slice. The Back button of the browser shows them again."
 """Message after a change of the slice."""
+
+# Largest difference of a start from the slice of a section, in units of the well.
+_ROUNDING = 1e-9
 
 Interval = tuple[float, float]
 """Start and end of a time interval, dimensionless."""
@@ -82,7 +86,7 @@ class OrbitPresenter:
         self._orbit_requests = OrbitRequests(state, jobs, self._show, self.controls.say, latest)
         self._divergent_start_requests = DivergentStartRequests(state, jobs, self.controls.say, locked)
         self._separation_requests = SeparationRequests(state, jobs, self._separation_plot.show, self.controls.say, locked)
-        state.param.watch(self._update_message, ["starts", "chosen", "system", "plane", "energy", "t_max"])
+        state.param.watch(self._update_message, ["starts", "chosen", "system", "plane", "section", "energy", "t_max"])
         state.param.watch(lambda *events: self._show(self._orbits), ["chosen", "palette"])
         state.param.watch(self._record_added_start, "starts")
 
@@ -116,13 +120,11 @@ class OrbitPresenter:
         if start is None:
             return
         orbit = self._orbits[state.chosen].orbit if state.chosen < len(self._orbits) else None
-        # A start is kept only if it lies on the section, y = 0, with the sign of py of the section.
-        is_kept = orbit is not None and orbit.y[0] == 0.0 and SECTION.sign * orbit.py[0] > 0.0
-        starts = ((float(orbit.x[0]), float(orbit.px[0])),) if orbit is not None and is_kept else ()
+        starts = () if orbit is None else _starts_on(state.section, orbit)
         energy = float(state.plane.energies(state.energy, *start))
         self._open_view(
             state.plane.system_at(state.system, *start),
-            {"plane": SECTION, "energy": energy, "window": None, "starts": starts, "chosen": 0},
+            {"plane": state.section.plane, "energy": energy, "window": None, "starts": starts, "chosen": 0},
         )
 
     def _show(self, orbits: Sequence[StartOrbit]) -> None:
@@ -151,7 +153,7 @@ class OrbitPresenter:
     def _mark(self) -> None:
         """Mark starts and sections on the maps."""
         self._marks.show_starts([orbit.start for orbit in self._orbits])
-        on_section = self._state.plane == SECTION
+        on_section = self._state.section.is_drawn_on(self._state.plane)
         all_curves = [orbit.curves for orbit in self._orbits]
         self._marks.show_sections([curves.section if curves is not None and on_section else NO_POINTS for curves in all_curves])
 
@@ -204,3 +206,14 @@ class OrbitPresenter:
 
 def _restrict_all(all_curves: Sequence[OrbitCurves | None], interval: Interval) -> list[OrbitCurves | None]:
     return [restrict_curves(curves, *interval) if curves is not None else None for curves in all_curves]
+
+
+def _starts_on(section: Section, orbit: Orbit) -> tuple[Start, ...]:
+    """Return the start of an orbit on the slice of a section, if it lies there; otherwise nothing."""
+    start = np.array([orbit.x[0], orbit.y[0], orbit.px[0], orbit.py[0]])
+    point = section.axes.points(start)
+    if orbit.potential is None or not section.is_drawn_on(section.plane):
+        return ()
+    (on_slice,) = section.plane.states(orbit.potential, orbit.energy, *point[:, None])
+    is_kept = np.allclose(on_slice / orbit.potential.units.state, start / orbit.potential.units.state, rtol=0.0, atol=_ROUNDING)
+    return ((float(point[0]), float(point[1])),) if is_kept else ()

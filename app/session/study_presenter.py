@@ -40,7 +40,7 @@ class StudyPresenter:
         if study.follows_map:
             self._state.param.watch(lambda event: self._follow_map(), "analysis")
             self._results.param.watch(lambda event: self._follow_map(), "frame")
-        self._state.param.watch(lambda *events: self._stop(), ["system", "plane", "t_max"])
+        self._state.param.watch(lambda *events: self._stop(), ["system", "plane", "section", "t_max"])
         self._state.param.watch(lambda *events: self._show(None), "system")
 
     def _toggle(self) -> None:

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from app.state.watched_starts import COUNTS, StartsFrom, WatchedStarts
-from engine import Window
+from engine import Window, read_section
+from engine.slices.sections.section_text import LEGAL_SECTIONS
 from plots.pictures.palette import MOST_ORBITS
 from plots.pictures.time_scale import TimeScale
 
@@ -142,6 +143,9 @@ WINDOW = Format(
     lambda: "four numbers x_low,x_high,ordinate_low,ordinate_high, each low below its high",
 )
 """Text form of a window or a box."""
+
+SECTION = Format(lambda section: section.text, read_section, lambda: f"a section, such as {LEGAL_SECTIONS}")
+"""Text form of a surface of section."""
 
 TIMES = Format(
     lambda times: f"{times.low:g},{times.high:g}",

@@ -7,6 +7,7 @@ from typing import Any
 from urllib.parse import urlencode
 
 from app.state.link_formats import (
+    SECTION,
     STARTS,
     SWITCH,
     TIMES,
@@ -59,6 +60,7 @@ def _sides() -> dict[str, int]:
 # Link parameters of attributes of the view state with one parameter each, in the order of links: fields of `View`, then the
 # visitor's own choices.
 _LINKED: dict[str, LinkParameter] = {
+    "section": LinkParameter("section", SECTION),
     "t_max": LinkParameter("t_max", number_choice_format(allowed_t_max), always=True),
     "resolution": LinkParameter("resolution", number_choice_format(_sides), always=True),
     "window": LinkParameter("window", WINDOW, of_system=True),

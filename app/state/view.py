@@ -8,7 +8,7 @@ from typing import Any
 
 from app.runtime.process_state import process_state
 from app.state.watched_starts import WatchedStarts
-from engine import MapSpec, Plane, Slice, System, Window
+from engine import MapSpec, Plane, Section, Slice, System, Window
 from engine.slices.axes import Energy
 from engine.systems.review.potential_review import SystemReview
 from plots.layers.layer import Settings
@@ -77,6 +77,8 @@ class View:
         The system, which may not be reviewed yet.
     plane
         The slice.
+    section
+        The surface of section at which crossings are counted.
     energy
         h, in the units of the potential; None for the initial energy of the system. Unused on a slice with an axis h.
     t_max
@@ -101,6 +103,7 @@ class View:
 
     system: System = _FIRST_SYSTEM
     plane: Slice = Plane.X_PX
+    section: Section = Section.Y_UP
     energy: float | None = None
     t_max: float = 1e5
     resolution: int = MapSpec.resolution[0]
@@ -142,7 +145,8 @@ class View:
             The review of the view's system.
         """
         side = self.resolution
-        return MapSpec(reviewed.potential, self.plane, self._map_energy(reviewed), (side, side), self.window, self.t_max)
+        energy = self._map_energy(reviewed)
+        return MapSpec(reviewed.potential, self.plane, energy, (side, side), self.window, self.t_max, section=self.section)
 
     def _map_energy(self, reviewed: SystemReview) -> Energy:
         """Return the energy of all starts, or the range of an axis h."""

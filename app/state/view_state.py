@@ -22,7 +22,19 @@ from app.state.view import (
     allowed_t_max,
 )
 from app.state.watched_starts import WatchedStarts
-from engine import Fate, MapSpec, Orbit, ParameterAxis, Potential, Slice, System, Window, integrate_orbit, start_states
+from engine import (
+    Fate,
+    MapSpec,
+    Orbit,
+    ParameterAxis,
+    Potential,
+    Section,
+    Slice,
+    System,
+    Window,
+    integrate_orbit,
+    start_states,
+)
 from engine.foundations.validation import LARGEST_NUMBER
 from engine.jobs.job import Job, Queue
 from engine.maps.warmup import is_ready_for_maps
@@ -103,12 +115,12 @@ def _start_state(potential: Potential, plane: Slice, energy: float, start: Start
     return tuple(state.tolist()) if np.isfinite(state).all() else None
 
 
-def _integrate_start(reviewed: PageReview, line: Slice, energy: float, start: Start, t_max: float) -> Orbit:
+def _integrate_start(reviewed: PageReview, line: Slice, energy: float, start: Start, t_max: float, section: Section) -> Orbit:
     """Return the orbit of a start on a slice of a reviewed system; ValueError if the start is forbidden."""
     state = _start_state(reviewed.potential, line, energy, start)
     if state is None:
         raise ValueError(describe_fate(Fate.FORBIDDEN))
-    return integrate_orbit(reviewed.potential, state, t_max)
+    return integrate_orbit(reviewed.potential, state, t_max, section=section)
 
 
 class ViewState(param.Parameterized):
@@ -119,6 +131,7 @@ class ViewState(param.Parameterized):
 
     system = param.ClassSelector(class_=System, default=FIRST_VIEW.system)
     plane = param.ClassSelector(class_=Slice, default=FIRST_VIEW.plane)
+    section = param.ClassSelector(class_=Section, default=FIRST_VIEW.section)
     energy = param.Number(default=PAPER_ENERGIES["I"].first, bounds=(-LARGEST_NUMBER, LARGEST_NUMBER))
     window = param.ClassSelector(class_=Window, default=FIRST_VIEW.window, allow_None=True)
     t_max = param.Selector(default=FIRST_VIEW.t_max, objects=list(T_MAX_CHOICES.values()))
@@ -187,7 +200,7 @@ class ViewState(param.Parameterized):
     @property
     def subject(self) -> Subject:
         """What the studies of the view are about."""
-        return Subject(self.system, self.potential, self.plane, self.energy, self.energies, self.t_max)
+        return Subject(self.system, self.potential, self.plane, self.section, self.energy, self.energies, self.t_max)
 
     @property
     def colours(self) -> Palette:
@@ -227,9 +240,11 @@ class ViewState(param.Parameterized):
         axis_index = self.plane.parameter_axis
         if axis_index is not None:
             review, line = review_job(self.plane.system_at(self.system, *start)), self.plane.line(start[axis_index])
-            return Job(_integrate_start, (review, line, self.energy, start, self.t_max), queue=Queue.LONG_CALL)
+            return Job(_integrate_start, (review, line, self.energy, start, self.t_max, self.section), queue=Queue.LONG_CALL)
         state = self.start_state(start)
-        return None if state is None else Job(integrate_orbit, (self.potential, state, self.t_max), queue=Queue.LONG_CALL)
+        if state is None:
+            return None
+        return Job(integrate_orbit, (self.potential, state, self.t_max), (("section", self.section),), queue=Queue.LONG_CALL)
 
     def start_state(self, start: Start) -> tuple[float, ...] | None:
         """Return x, y, px, py of a start on a slice of one potential; None for a forbidden start."""
@@ -273,6 +288,13 @@ class ViewState(param.Parameterized):
     def show_slice(self, plane: Slice) -> None:
         """Set a slice, and remove window and starts."""
         self.param.update(plane=plane, window=None, starts=(), chosen=0)
+
+    def show_section(self, section: Section, *, with_slice: bool) -> None:
+        """Set the section at which crossings are counted and, with `with_slice`, show a slice of starts on it."""
+        if with_slice and self.plane != section.plane:
+            self.param.update(section=section, plane=section.plane, window=None, starts=(), chosen=0)
+        else:
+            self.section = section
 
     def show_system(self, reviewed: PageReview, energy: float | None = None) -> None:
         """Set a reviewed system at an energy, by default its initial energy, and remove window and starts."""

@@ -24,7 +24,7 @@ from cli.option_marks import DocumentedBy
 from cli.options import with_options
 from cli.output_files import Content, Stem, name_files, reserve_output, write_files
 from cli.printing import AsJson, print_result
-from engine import Fate, Orbit, Potential, Slice, integrate_orbit, judge_orbit
+from engine import Fate, Orbit, Potential, Section, Slice, integrate_orbit, judge_orbit
 from engine.results import OrbitVerdict
 from engine.trajectories.birkhoff_digits import compute_birkhoff_digits
 from engine.trajectories.chaos_indicators import IndicatorVerdict, evaluate_indicators
@@ -47,6 +47,7 @@ def run(
     start: Annotated[tuple[float, float] | None, typer.Option(metavar="X ORDINATE")] = None,
     state: Annotated[State | None, typer.Option(metavar="X Y PX PY")] = None,
     t_max: Annotated[float, DocumentedBy(integrate_orbit)],
+    section: Section,
     most_rows: Annotated[int, DocumentedBy(orbits_csv)],
     palette: Palette,
     style: FigureStyle,
@@ -74,7 +75,7 @@ def run(
     with reserve_output(output):
         with Place().run() as context:
             context.start_stage("orbit")
-            orbit = integrate_orbit(potential, initial_state, t_max, execution=context.execution)
+            orbit = integrate_orbit(potential, initial_state, t_max, section=section, execution=context.execution)
             digits = None
             if orbit.fate == Fate.BOUNDED:
                 digits = compute_birkhoff_digits(potential, initial_state, t_max, execution=context.execution)

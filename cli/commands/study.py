@@ -23,7 +23,7 @@ from cli.option_marks import DocumentedBy
 from cli.options import with_options
 from cli.output_files import Content, Stem, name_files, reserve_output, write_files
 from cli.printing import AsJson, list_rows, print_result
-from engine import Potential, Result, Slice, SweepSpec, System
+from engine import Potential, Result, Section, Slice, SweepSpec, System
 from engine.jobs.job import run_job
 from engine.systems.review.potential_review import review_system
 from plots.printed.figure_files import study_figure_bytes
@@ -44,6 +44,7 @@ def run(
     system: System,
     potential: Potential,
     plane: Slice,
+    section: Section,
     energy: GivenEnergy,
     t_max: Annotated[float, DocumentedBy(SweepSpec)],
     against: Annotated[str | None, typer.Option(help=AGAINST_HELP)] = None,
@@ -55,7 +56,8 @@ def run(
     """Compute, write and print the study. Without --energy, it is made at the first energy of the page."""
     entry = _find_study(study)
     energies = review_system(system).energies
-    subject = Subject(system, potential, plane, energies.first if energy is None else energy, energies, t_max)
+    chosen_energy = energies.first if energy is None else energy
+    subject = Subject(system, potential, plane, section, chosen_energy, energies, t_max)
     job = entry.job(subject, _choose_axis(entry, system, against))
     stem = Path(f"{entry.files}-{file_name_part(case)}")
     paths = name_files(output, ["nc", "csv", *FigureFormat], ["nc", "csv"], stem)

@@ -14,6 +14,7 @@ from numpy.polynomial import chebyshev
 from engine.exits.brake_orbits import Axes, saddle_axes
 from engine.foundations.root_finding import bisect
 from engine.integrator.kernels import exit_geometry as geometry
+from engine.integrator.source.section_numbers import UPWARD, SectionNumbers
 from engine.systems.landscape.closed_energy import ridge_bend
 from engine.systems.landscape.mirror_images import Signs
 from engine.systems.potential import Potential
@@ -156,18 +157,19 @@ def find_reach(potential: Potential, energy: float, curve: np.ndarray) -> float:
     return float(reach)
 
 
-def exit_gates(curves: np.ndarray) -> np.ndarray:
-    """Return the gates of exits (…, outcomes, columns), of shape (outcomes, 3). No orbit ends before it passes a gate.
+def exit_gates(curves: np.ndarray, section: SectionNumbers = UPWARD) -> np.ndarray:
+    """Return the gates of exits (…, outcomes, columns), of shape (outcomes + rows, 3). No orbit ends before it passes a gate.
 
     A gate is cheap to test. For a channel, it is the line a x + b y = c slightly inside the exits at all energies; for a circle,
-    it is the centre and the radius.
+    it is the centre and the radius. The rows of the section at which crossings are counted follow, see
+    `engine.integrator.kernels.propagate.Exits`.
     """
     outcomes, columns = curves.shape[-2:]
     rows = curves.reshape(math.prod(curves.shape[:-2]), outcomes, columns)
     gates = np.ascontiguousarray(rows[0][:, [geometry.ORIGIN_X, geometry.ORIGIN_Y, geometry.HALF_WIDTH]])
     is_line = rows[0, :, geometry.SHAPE] <= geometry.LINE
     gates[is_line] = _lines_inside(rows[:, is_line])
-    return gates
+    return np.concatenate([gates, np.reshape(section.rows, (len(section.rows), 3))]) if section.rows else gates
 
 
 def _lines_inside(rows: np.ndarray) -> np.ndarray:

@@ -59,8 +59,12 @@ def load_kernels(definition: Definition, setting: Setting, rotation: float = 0.0
     first use of a kernel for this structure loads the generated functions that it calls from the disk cache, or compiles them,
     which takes seconds.
     """
-    outline, functions = _find_or_generate(find_structure(definition, setting))
+    outline, functions = _find_or_generate(find_structure(definition, setting._replace(section=None)))
     coefficients = outline.tabulate(definition, rotation)
+    if setting.section is not None:
+        # The section has an influence on the step alone, which reads the same coefficients.
+        _, own = _find_or_generate(find_structure(definition, setting))
+        functions = functions | own
     bound_module = ModuleType(_module_name(outline))
     for name, function in functions.items():
         setattr(bound_module, name, _BoundKernel(function, (), coefficients))

@@ -61,13 +61,15 @@ class MirrorPixels:
     Attributes
     ----------
     symmetric
-        Whether the potential and the pixels are symmetric under x → −x.
+        Whether the potential, the pixels and the section are symmetric under x → −x.
     partner
         (n,) mirror image of each pixel; without this symmetry, the pixel itself.
     """
 
     def __init__(self, spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> None:
-        partner = spec.plane.find_mirror_images(spec.potential, x, ordinate)
+        # Crossings of a section that is not symmetric differ from those of mirror images.
+        is_symmetric = spec.section.is_mirrored
+        partner = spec.plane.find_mirror_images(spec.potential, x, ordinate) if is_symmetric else None
         self.symmetric = partner is not None
         self.partner = np.arange(x.size * ordinate.size) if partner is None else partner
 

@@ -227,7 +227,7 @@ class EscapeMap(MapResult):
         variables = {
             "fate": (self.fate, {"long_name": "exit channel (k >= 1) or outcome code", **fates}),
             "escape_time": (self.escape_time, {"long_name": "escape time", "units": "1"}),
-            "crossings": (self.crossings, {"long_name": "upward crossings of y = 0 before escape"}),
+            "crossings": (self.crossings, {"long_name": f"{self.spec.section.crossings_name} before escape"}),
             "energy_error": (self.energy_error, {"long_name": "relative energy error", "units": "1"}),
             "outside": (self.outside, {"long_name": "exit beyond which the start lies, 0 inside"}),
             "evidence": (self.evidence, {"long_name": "why the orbit is bounded", **describe_codes(Evidence)}),

@@ -1,4 +1,4 @@
-"""Returns of orbits to the surface of section: their first upward crossings of y = 0, for all starts of a map."""
+"""Returns of orbits to the surface of section: their first crossings of it, for all starts of a map."""
 
 from __future__ import annotations
 
@@ -9,18 +9,15 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from engine.exits.exit_rows import exit_curves_at
-from engine.exits.exit_shapes import exit_gates
 from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.result import MapResult
 from engine.foundations.validation import check_type, checked_count, checks_types
 from engine.foundations.wording import format_count
-from engine.integrator.kernels.propagate import Exits
-from engine.integrator.source.recurrence import TOLERANCE
 from engine.maps.spec import MapSpec
 from engine.propagation.batch import OrbitBatch
 from engine.propagation.fates import Fate
-from engine.propagation.tiles import map_tiles
+from engine.propagation.passages import find_passages
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -32,8 +29,8 @@ MOST_RETURNS = 100_000
 _MOST_POINTS = 5_000_000
 # Number of parts of the starts. Progress is reported, and the computation can be cancelled, after each part.
 _PARTS = 16
-# Columns of a return that the kernel writes.
-_X, _PX, _TIME, _PY = range(4)
+# Numbers of a return: x, y, px, py and the time.
+_COLUMNS = 5
 # Names of the variables in files, in the order of the columns of `Returns.states`, and of the times.
 _VARIABLES = {"return_x": "x", "return_y": "y", "return_px": "px", "return_py": "py"}
 _TIME_VARIABLE = "return_time"
@@ -41,15 +38,15 @@ _TIME_VARIABLE = "return_time"
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Returns(MapResult):
-    """The first upward crossings of y = 0 of the orbits of a map, not counting the starts.
+    """The first crossings of the surface of section by the orbits of a map, not counting the starts.
 
     Attributes
     ----------
     spec
         The request of the starts.
     states
-        (returns, rows, columns, 4) x, y, px, py at each crossing; y is 0. NaN where an orbit has ended or reached t_max before,
-        for starts that are forbidden or outside, and for orbits that are not followed yet. Read-only.
+        (returns, rows, columns, 4) x, y, px, py at each crossing of `spec.section`. NaN where an orbit has ended or reached t_max
+        before, for starts that are forbidden or outside, and for orbits that are not followed yet. Read-only.
     time
         (returns, rows, columns) time of each crossing, in the units of the potential; NaN as for `states`. Read-only.
     complete
@@ -68,18 +65,18 @@ class Returns(MapResult):
         return np.isfinite(self.time).sum(axis=0)
 
     def points(self) -> list[np.ndarray]:
-        """Return x and px of the returns of each orbit that returns, (n, 2), in the order of the pixels and of time."""
-        states = self.states.reshape(len(self.states), -1, 4)
+        """Return the returns of each orbit that returns, (n, 2), in the order of the pixels and of time, see `Section.axes`."""
+        points = self.spec.section.axes.points(self.states).reshape(len(self.states), -1, 2)
         counts = self.count.ravel()
-        return [states[: counts[k], k][:, [0, 2]] for k in np.flatnonzero(counts)]
+        return [points[: counts[k], k] for k in np.flatnonzero(counts)]
 
     def describe(self) -> str:
         """Return the numbers of crossings and of orbits in one sentence."""
         counts = self.count[self.count > 0]
-        crossings, orbits = format_count(int(counts.sum()), "upward crossing"), format_count(int(counts.size), "orbit")
+        crossings, orbits = self.spec.section.count(int(counts.sum())), format_count(int(counts.size), "orbit")
         energy = self.spec.common_energy
         place = "" if energy is None else f" at h = {energy:.6g}"
-        return f"{crossings} of y = 0 by {orbits}{place}{'' if self.complete else ' so far'}."
+        return f"{crossings} by {orbits}{place}{'' if self.complete else ' so far'}."
 
     def columns(self) -> Mapping[str, np.ndarray]:
         """Return a table with a row for each return: pixel, number of the return from 1, time, x, y, px and py."""
@@ -128,10 +125,10 @@ def compute_returns(
     on_frame: Callable[[Returns], None] | None = None,
     execution: Execution = DEFAULT_EXECUTION,
 ) -> Returns:
-    """Follow the orbits of all starts of a map to their first upward crossings of y = 0.
+    """Follow the orbits of all starts of a map to their first crossings of its section.
 
-    A crossing goes from y < 0 to y ≥ 0, as in the maps (Zotos 2014). The start is not counted. For a map backward in time, the
-    crossings are those of the reversed orbit.
+    A crossing of the default section goes from y < 0 to y ≥ 0, as in the maps (Zotos 2014). The start is not counted. For a map
+    backward in time, the crossings are those of the reversed orbit.
 
     Parameters
     ----------
@@ -187,7 +184,7 @@ class _ReturnsRun:
         energies, self._curve_row = np.unique(self._well_spec.energies(x, ordinate), return_inverse=True)
         self._curves = exit_curves_at(self._well_spec.potential, energies)
         self._starts = self._well_spec.start_states(x, ordinate)
-        self._found = np.full((rows * columns, returns, 4), np.nan)
+        self._found = np.full((rows * columns, returns, _COLUMNS), np.nan)
         # Number of pixels whose orbits have not been followed yet; unknown until `inside` is called.
         self._pending = len(self._found)
 
@@ -203,11 +200,10 @@ class _ReturnsRun:
 
     def follow(self, pixels: np.ndarray, execution: Execution) -> None:
         """Find the returns of the orbits of some pixels."""
-        orbits = np.column_stack([self._starts[pixels], self._curve_row[pixels]])
-        count = self._found.shape[1]
-        found = map_tiles(
-            _find_returns_of_tile, self._well_spec.potential, orbits, count, self._curves, exit_gates(self._curves),
-            self._well_spec.t_max, shape=(count, 4), execution=execution,
+        spec = self._well_spec
+        found = find_passages(
+            spec.potential, self._starts[pixels], self._curve_row[pixels], self._curves, self._found.shape[1], spec.t_max,
+            spec.section.numbers, execution=execution,
         )  # fmt: skip
         if not execution.is_cancelled:
             self._found[pixels] = found
@@ -221,20 +217,7 @@ class _ReturnsRun:
         """Return the returns so far, in the units of the potential."""
         units = self._spec.potential.units
         columns, rows = self._spec.resolution
-        by_return = self._found.transpose(1, 0, 2).reshape(-1, rows, columns, 4)
-        x, px, time, py = (by_return[..., k] for k in (_X, _PX, _TIME, _PY))
-        states = np.stack([x, np.where(np.isfinite(x), 0.0, np.nan), px, py], axis=-1) * units.state
-        return Returns(self._spec, read_only(states), read_only(time * units.time), complete=self._pending == 0)
-
-
-def _find_returns_of_tile(
-    potential: Any, tile: np.ndarray, count: int, curves: np.ndarray, gates: np.ndarray, t_max: float
-) -> np.ndarray:
-    """Return the returns of the orbits in a tile (5, lanes), of shape (lanes, count, 4); called in a worker."""
-    found = np.full((tile.shape[1], count, 4), np.nan)
-    counts = np.zeros(tile.shape[1], np.int64)
-    exits = Exits(gates, curves, tile[4].astype(np.int64))
-    # The kernel writes the returns of each orbit and their number.
-    with np.errstate(invalid="ignore"):
-        potential.well.kernels.find_section_passages(TOLERANCE, t_max, 1.0, exits, tile[:4].copy(), found, counts)
-    return found
+        by_return = self._found.transpose(1, 0, 2).reshape(-1, rows, columns, _COLUMNS)
+        states = self._spec.section.settle(by_return[..., :4] * units.state)
+        time = by_return[..., 4] * units.time
+        return Returns(self._spec, read_only(states), read_only(time), complete=self._pending == 0)

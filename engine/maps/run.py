@@ -82,6 +82,7 @@ class MapRun:
         self.stride = _coarsest_stride(self.shape) if coarse_first else 1
         self.horizon = min(_FIRST_HORIZON, spec.t_max)
         self._mirror = MirrorPixels(spec, self.x, self.ordinate)
+        self._section = spec.section.numbers
         rows_of_pixels, columns_of_pixels = np.divmod(np.arange(self.ordinate.size * self.x.size), self.x.size)
         self._energy = spec.energies(self.x[columns_of_pixels], self.ordinate[rows_of_pixels])
         # With an axis h, each row or column of pixels has its own energy, and its own exits in a row of `_curves`.
@@ -152,7 +153,7 @@ class MapRun:
         self._begin_stage(pixels, stride, horizon, execution)
         propagate_batch(
             self.spec.potential, self._curves, self._batch, pixels[self._started[pixels]], horizon,
-            final=horizon == self.spec.t_max, execution=execution, on_tiles=on_tiles,
+            final=horizon == self.spec.t_max, execution=execution, on_tiles=on_tiles, section=self._section,
         )  # fmt: skip
 
     def _begin_stage(self, pixels: np.ndarray, stride: int, horizon: float, execution: Execution) -> None:
@@ -213,7 +214,10 @@ class MapRun:
         first_images = self._mirror.select_first_images(untested)
         # Orbits stop before the step across `time`. On a map with t_max = `time`, an orbit can escape in this step, so the step
         # is also taken here.
-        propagate_batch(self.spec.potential, self._curves, batch, first_images, time, final=True, execution=execution)
+        propagate_batch(
+            self.spec.potential, self._curves, batch, first_images, time,
+            final=True, execution=execution, section=self._section,
+        )  # fmt: skip
         inside: np.ndarray = first_images[batch.fate[first_images] == Fate.BOUNDED]
         batch.reopen(inside)
         return inside

@@ -16,6 +16,8 @@ from engine.slices.default_window import map_window
 from engine.slices.limiting_curves import trace_zero_velocity_curve
 from engine.slices.parameter_family import parameter_family
 from engine.slices.planes import checked_slice
+from engine.slices.sections.section import Section
+from engine.slices.sections.section_text import checked_section
 from engine.slices.slice import Slice
 from engine.slices.slice_text import read_slice, write_slice
 from engine.slices.window import GivenWindow, Window, checked_window
@@ -67,7 +69,10 @@ class MapSpec:
     backward
         Whether to follow orbits into the past. This equals following (x, y, −px, −py) into the future, with −Ω for Ω. Fates are
         then the outcomes backward in time, such as the channels through which orbits entered. Escape times count backward from
-        the start. Crossings are the upward crossings of the reversed orbit.
+        the start. Crossings are those of the reversed orbit.
+    section
+        The surface of section at which crossings are counted: a `Section` or text, see `read_section`. The default is y = 0,
+        upward, as in Zotos (2014).
 
     Raises
     ------
@@ -94,6 +99,7 @@ class MapSpec:
     t_max: float = None  # type: ignore[assignment]
     use_evidence: bool = True
     backward: bool = False
+    section: Section = Section.Y_UP
 
     # `__init__` accepts more types than the fields have, and converts them. This declaration is for type checkers.
     if TYPE_CHECKING:
@@ -108,6 +114,7 @@ class MapSpec:
             t_max: float | None = None,
             use_evidence: bool = True,
             backward: bool = False,
+            section: Section | str = Section.Y_UP,
         ) -> None: ...
 
     def __post_init__(self) -> None:
@@ -121,6 +128,7 @@ class MapSpec:
             "t_max": self.potential.checked_t_max(self.t_max),
             "use_evidence": checked_flag("use_evidence", self.use_evidence),
             "backward": checked_flag("backward", self.backward),
+            "section": checked_section(self.section),
         }
         for name, value in checked.items():
             object.__setattr__(self, name, value)
@@ -178,6 +186,7 @@ class MapSpec:
             energy=scaled_energy(self.energy, 1.0 / units.energy),
             window=window.scaled(*(1.0 / unit for unit in self.plane.axis_units(units))),
             t_max=self.t_max / units.time,
+            section=self.section.in_well_units(units),
         )
 
     def pixel_centres(self) -> tuple[np.ndarray, np.ndarray]:
@@ -212,6 +221,7 @@ class MapSpec:
             t_max=self.t_max,
             use_evidence=int(self.use_evidence),
             backward=int(self.backward),
+            section=self.section.text,
         )
 
     def pixel_at(self, x: float, ordinate: float) -> tuple[int, int] | None:
@@ -268,6 +278,7 @@ def read_spec(dataset: xr.Dataset) -> MapSpec:
     return MapSpec(
         read_potential(attributes), plane, _plain_energy(energy), (columns, rows), window,  # type: ignore[arg-type]
         float(attributes["t_max"]), use_evidence=bool(attributes["use_evidence"]), backward=bool(attributes["backward"]),
+        section=str(attributes["section"]),
     )  # fmt: skip
 
 

@@ -14,6 +14,7 @@ from engine.exits.interior import find_outside_starts
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, run_parts
 from engine.integrator.kernels.propagate import NO_TRACE, VECTOR, Exits, Orbits, fill_vectors
 from engine.integrator.source.recurrence import LANES, TOLERANCE
+from engine.integrator.source.section_numbers import UPWARD, SectionForm, SectionNumbers
 from engine.propagation.fates import Evidence, Fate
 from engine.systems.potential import Potential
 
@@ -42,9 +43,9 @@ class OrbitBatch:
     t
         (n,) time reached; the escape time of an escaped orbit.
     crossings
-        (n,) upward crossings of y = 0 until `t`.
+        (n,) crossings of the section until `t`.
     last_crossings
-        (n,) upward crossings between `t` and t_max of a bounded orbit.
+        (n,) crossings between `t` and t_max of a bounded orbit.
     fate
         (n,) int8 codes, see `Fate`.
     curve_row
@@ -229,6 +230,7 @@ def _advance_tile(
     final: bool,
     tolerance: float,
     least_active: int,
+    section: SectionForm | None,
 ) -> Tile:
     """Propagate the orbits of a tile, in place, by `STEP_BUDGET` steps, or until fewer than `least_active` are active.
 
@@ -236,7 +238,7 @@ def _advance_tile(
     """
     exits = Exits(gates, curves, tile.batch.curve_row)
     orbits = tile.batch.for_kernels(tile.active)
-    potential.well.kernels.propagate(
+    potential.well.kernels_of(section).propagate(
         np.arange(tile.indices.size), horizon, final, tolerance, STEP_BUDGET, least_active, exits, orbits, NO_TRACE
     )
     return tile
@@ -288,6 +290,7 @@ def propagate_batch(
     execution: Execution = DEFAULT_EXECUTION,
     on_tiles: Callable[[], None] = lambda: None,
     tolerance: float = TOLERANCE,
+    section: SectionNumbers = UPWARD,
 ) -> bool:
     """Integrate undecided orbits until they escape or reach `horizon`; the batch is changed in place.
 
@@ -314,13 +317,15 @@ def propagate_batch(
         Called after each group of completed tiles.
     tolerance
         Tolerance of the Taylor steps, see `engine.integrator.source.recurrence.TOLERANCE`.
+    section
+        The surface of section at which crossings are counted, see `Section.numbers`.
 
     Returns
     -------
     Whether the propagation was completed; False if it was cancelled.
     """
     workers = execution.workers
-    gates = exit_gates(curves)
+    gates = exit_gates(curves, section)
     undecided = indices[(batch.fate[indices] == Fate.NOT_COMPUTED) & (batch.t[indices] < horizon)]
     pool = OrbitPool(undecided, workers)
     running: set[Future[Tile]] = set()
@@ -331,7 +336,8 @@ def propagate_batch(
             tile = Tile.copy_from(batch, pool.take())
             # Without other orbits to combine with, a worker keeps its orbits.
             least_active = _LEAST_ACTIVE if pool.waiting.size and tile.indices.size > _LEAST_ACTIVE else 0
-            running.add(execution.submit(_advance_tile, potential, curves, gates, tile, horizon, final, tolerance, least_active))
+            arguments = potential, curves, gates, tile, horizon, final, tolerance, least_active, section.form
+            running.add(execution.submit(_advance_tile, *arguments))
 
     keep_workers_busy()
     while running:

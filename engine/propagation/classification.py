@@ -14,6 +14,7 @@ from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_pro
 from engine.foundations.validation import checked_number, checked_states, checks_types
 from engine.integrator.kernels.dense_output import trace_orbit
 from engine.integrator.kernels.propagate import Exits
+from engine.integrator.source.section_numbers import UPWARD, SectionNumbers
 from engine.propagation.batch import OrbitBatch, propagate_batch
 from engine.propagation.fates import Fate, OrbitResult
 from engine.systems.outcomes import Outcome
@@ -173,7 +174,14 @@ class OrbitSteps:
     t_end: float
 
 
-def record_orbit(potential: Potential, start: np.ndarray, curves: np.ndarray, t_max: float, execution: Execution) -> OrbitSteps:
+def record_orbit(
+    potential: Potential,
+    start: np.ndarray,
+    curves: np.ndarray,
+    t_max: float,
+    execution: Execution,
+    section: SectionNumbers = UPWARD,
+) -> OrbitSteps:
     """Integrate one orbit until it escapes or reaches `t_max`, and keep its steps; all quantities are in units of the well.
 
     Parameters
@@ -188,6 +196,8 @@ def record_orbit(potential: Potential, start: np.ndarray, curves: np.ndarray, t_
         Largest integration time, above 0, dimensionless.
     execution
         How to cancel the computation. The orbit is integrated in this thread.
+    section
+        The surface of section at which crossings are counted, see `Section.numbers`.
 
     Raises
     ------
@@ -200,8 +210,8 @@ def record_orbit(potential: Potential, start: np.ndarray, curves: np.ndarray, t_
     batch.mark_outside(potential, np.arange(1), curve_rows, execution=execution.in_this_thread())
     pending = (batch.fate == Fate.NOT_COMPUTED).astype(np.uint8)
     orbits = batch.for_kernels(pending)
-    exits = Exits(exit_gates(curve_rows), curve_rows, batch.curve_row)
-    pieces = list(trace_orbit(potential.well.kernels, exits, orbits, t_max, execution))
+    exits = Exits(exit_gates(curve_rows, section), curve_rows, batch.curve_row)
+    pieces = list(trace_orbit(potential.well.kernels_of(section.form), exits, orbits, t_max, execution))
     execution.raise_if_cancelled()
     outcomes = collect_outcomes(potential, potential.energy(start[None]), batch)
     if not pieces:

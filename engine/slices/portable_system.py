@@ -18,6 +18,7 @@ from engine.integrator.kernels.random_starts import BEFORE_EXIT
 from engine.integrator.source.recurrence import ROWS, TOLERANCE
 from engine.integrator.source.series import ORDER
 from engine.slices.planes import ENERGY_SURFACE, SPACE
+from engine.slices.sections.section import Section
 from engine.systems.forms.polynomial_form import PolynomialForm
 from engine.systems.potential import Potential
 from engine.systems.well_units import WellUnits
@@ -46,6 +47,8 @@ class PortableSystem:
         (m,) the coefficients of the system backward in time, whose orbits have the opposite velocities.
     exits
         The exits of each channel.
+    section
+        The surface of section at which crossings are counted, in the units of the potential.
     """
 
     potential: Potential
@@ -53,6 +56,7 @@ class PortableSystem:
     table: np.ndarray
     backward_table: np.ndarray
     exits: tuple[ExitTable, ...]
+    section: Section = Section.Y_UP
 
     @property
     def nbytes(self) -> int:
@@ -80,6 +84,7 @@ class PortableSystem:
             "polynomial": _polynomial_data(scaled_potential.form),
             "innerRadius": find_inner_radius(scaled_potential),
             "exits": [*self._saddle_exits(), *_end_exits(scaled_potential)],
+            "section": [list(row) for row in self.section.in_well_units(units).numbers.rows],
             "mirror": mirror,
             "units": {"length": units.length, "time": units.time, "energy": units.energy},
             "space": SPACE.to_dict(units),
@@ -123,16 +128,20 @@ def _polynomial_data(form: Any) -> dict[str, object] | None:
     return {name: array.tolist() for name, array in tabulate_polynomial(form)._asdict().items()}
 
 
-def make_portable_system(potential: Potential, highest_energy: float) -> PortableSystem:
+def make_portable_system(potential: Potential, highest_energy: float, section: Section = Section.Y_UP) -> PortableSystem:
     """Return a potential as data, with exits for energies up to `highest_energy`, in units of the potential.
+
+    Crossings are counted at the section.
 
     This takes up to a second for the first potential of a structure, or if exits are not cached. Raises a ValueError if another
     process compiles and cannot.
     """
     scaled_potential = potential.in_well_units
     definition, outline = scaled_potential.form.definition, find_outline(scaled_potential.well.structure)
+    form = section.in_well_units(potential.units).numbers.form
+    section_outline = None if form is None else find_outline(scaled_potential.well.structure_of(form))
     # Backward in time, the frame rotates in the opposite direction.
     rotation = scaled_potential.rotation
     table, backward_table = outline.tabulate(definition, rotation), outline.tabulate(definition, -rotation)
     exits = tabulate_exits(scaled_potential, highest_energy / potential.units.energy)
-    return PortableSystem(potential, webassembly_module(outline), table, backward_table, exits)
+    return PortableSystem(potential, webassembly_module(outline, section_outline), table, backward_table, exits, section)

@@ -13,6 +13,7 @@ import numpy as np
 from engine.foundations.arrays import read_only
 from engine.integrator.bound_kernels import load_kernels
 from engine.integrator.source.recurrence import Structure, find_structure
+from engine.integrator.source.section_numbers import SectionForm
 from engine.integrator.source.series import Setting
 from engine.systems.forms.expression_form import Form
 from engine.systems.forms.form import DescentError, NotIsolatedError, UndecidedError, hessian_matrix
@@ -195,12 +196,20 @@ class Well(WellScales):
     @cached_property
     def structure(self) -> Structure:
         """The structure of the compiled functions, for a potential in units of its well. Finding it takes up to 0.2 s."""
-        return find_structure(self.form.definition, self.setting)
+        return self.structure_of(None)
+
+    def structure_of(self, section: SectionForm | None) -> Structure:
+        """Return the structure of the compiled functions that count crossings of a section with this form, see `kernels_of`."""
+        return find_structure(self.form.definition, self.setting._replace(section=section))
 
     @property
     def kernels(self) -> ModuleType:
         """The kernels, see `load_kernels`, for a potential in units of its well. The first use generates their code."""
-        return load_kernels(self.form.definition, self.setting, self.rotation)
+        return self.kernels_of(None)
+
+    def kernels_of(self, section: SectionForm | None) -> ModuleType:
+        """Return the kernels that count crossings of a section with this form; None for y = 0, upward."""
+        return load_kernels(self.form.definition, self.setting._replace(section=section), self.rotation)
 
     @property
     def sample_interval(self) -> float:

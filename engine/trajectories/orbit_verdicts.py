@@ -4,16 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from engine.evidence.birkhoff_averages import TORUS_DIGITS
 from engine.foundations.validation import checks_types
-from engine.foundations.wording import format_count, format_time
+from engine.foundations.wording import format_time
 from engine.propagation.fates import Evidence, Fate, OrbitResult, describe_evidence, describe_fate, name_fate, outcome_of
+from engine.slices.sections.section import Section
+from engine.slices.sections.section_text import read_section
 from engine.systems.outcomes import Outcome
 from engine.trajectories.birkhoff_digits import BirkhoffDigits
 from engine.trajectories.chaos_indicators import INDICATORS, IndicatorVerdict, Verdict, evaluate_indicators
 from engine.trajectories.trajectory import Orbit
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _DEVIATION_INDICATORS = {indicator.name for indicator in INDICATORS if indicator.of_deviations}
 
@@ -29,7 +34,7 @@ class OrbitVerdict(OrbitResult):
     t_end
         Time of the escape, or time until which the orbit is integrated, dimensionless.
     crossings
-        Upward crossings of y = 0 until `t_end`.
+        Crossings of `section` until `t_end`.
     evidence
         The reason why the orbit is called bounded: ``INTEGRATED`` holds only until `t_end`, ``CLOSED`` for ever, and
         ``QUASI_PERIODIC`` is evidence of a torus, on which the orbit would stay for ever. ``NONE`` for other orbits.
@@ -46,6 +51,8 @@ class OrbitVerdict(OrbitResult):
         What each indicator concludes: SALI, the Lyapunov exponent, the Birkhoff digits of both halves of a bounded orbit and, if
         given, the digits of windows. Each finding has a `name`, a `value` at the end of the orbit (NaN if not available), a
         `conclusion` (one of the words of `character`, or None) and a `sentence` with the reason.
+    section
+        The surface of section at which crossings are counted.
     """
 
     fate: int
@@ -57,7 +64,14 @@ class OrbitVerdict(OrbitResult):
     outcomes: tuple[Outcome, ...] = field(default=(), repr=False)
     exits_unknown: str = ""
     findings: tuple[IndicatorVerdict, ...] = field(default=(), repr=False, compare=False)
+    section: Section = Section.Y_UP
     codes: ClassVar = {"fate": Fate, "evidence": Evidence}
+    held_as: ClassVar = OrbitResult.held_as | {"section": "section"}
+
+    @classmethod
+    def read_parts(cls, dataset: xr.Dataset) -> dict[str, Any]:
+        """Return the section, which files hold as text."""
+        return {"section": read_section(dataset.attrs["section"])} if "section" in dataset.attrs else {}
 
     @property
     def is_bounded_for_ever(self) -> bool:
@@ -76,9 +90,9 @@ class OrbitVerdict(OrbitResult):
 
     def _describe_fate(self) -> str:
         """Describe the fate, the evidence and the character in one sentence."""
-        crossings, time = f"{format_count(self.crossings, 'upward crossing')} of y = 0", format_time(self.t_end)
+        crossings, time = self.section.count(self.crossings), format_time(self.t_end)
         if self.fate >= 1:
-            manner = f"after {crossings}" if self.crossings else "directly, without crossing y = 0 upward"
+            manner = f"after {crossings}" if self.crossings else f"directly, {self.section.words.absence}"
             return f"{outcome_of(self.fate, self.outcomes).past} at t = {time}, {manner}{self._character_inside}."
         if self.character is None:
             # The orbit neither escaped nor is bounded, as when its start is forbidden.
@@ -180,6 +194,7 @@ def judge_orbit(orbit: Orbit, digits: BirkhoffDigits | None = None) -> OrbitVerd
         orbit.outcomes,
         orbit.exits_unknown,
         findings=findings,
+        section=orbit.section,
         made_by=orbit.made_by,
     )
 

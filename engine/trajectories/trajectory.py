@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -12,14 +12,21 @@ from engine.evidence.birkhoff_averages import compare_halves
 from engine.exits.exit_rows import exit_curves_if_known
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.foundations.validation import checked_state, checks_types
-from engine.integrator.kernels.dense_output import find_crossings, sample_deviations, sample_path, trace_steps
+from engine.integrator.kernels.dense_output import sample_deviations, sample_path
+from engine.integrator.source.section_numbers import SectionNumbers
 from engine.propagation.classification import OrbitSteps, record_orbit
 from engine.propagation.fates import Evidence, Fate, OrbitResult
 from engine.propagation.limited_steps import DEVIATION_VECTORS
+from engine.propagation.passages import find_passages_of_orbit
+from engine.slices.sections.section import Section
+from engine.slices.sections.section_text import checked_section, read_section
 from engine.systems.outcomes import Outcome
 from engine.systems.potential import Potential
 from engine.systems.well_units import AREA, ENERGY, LENGTH, MOMENTUM, RATE, TIME
 from engine.trajectories.birkhoff_digits import BirkhoffDigits, compute_birkhoff_digits
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 MAX_ORBIT_TIME = 1e7
 """Largest t_max of `integrate_orbit`. The samples of such an orbit take 3 GB."""
@@ -55,7 +62,7 @@ class Orbit(OrbitResult):
         Time of the outcome: of the passage through an exit, of the collision, or of the passage of the escape radius; NaN without
         an outcome.
     crossings
-        Upward crossings of y = 0 before the escape or t_max; the start is not counted.
+        Crossings of `section` before the escape or t_max; the start is not counted.
     energy_error
         ``|H − h| / |h|`` at the end of the orbit.
     energy
@@ -69,6 +76,8 @@ class Orbit(OrbitResult):
     exits_unknown
         The reason why the exits over saddles are not known at this energy; empty if they are known. With a reason, no fate is an
         exit, and `Fate.BOUNDED` only means that the orbit has no other outcome by t_max.
+    section
+        The surface of section at which crossings are counted.
     """
 
     t: np.ndarray = field(metadata=TIME)
@@ -88,7 +97,14 @@ class Orbit(OrbitResult):
     time_unit: float = field(default=1.0, metadata=TIME)
     potential: Potential | None = field(default=None, repr=False)
     exits_unknown: str = ""
+    section: Section = Section.Y_UP
     codes: ClassVar = {"fate": Fate, "evidence": Evidence}
+    held_as: ClassVar = OrbitResult.held_as | {"section": "section"}
+
+    @classmethod
+    def read_parts(cls, dataset: xr.Dataset) -> dict[str, Any]:
+        """Return the section, which files hold as text."""
+        return {"section": read_section(dataset.attrs["section"])} if "section" in dataset.attrs else {}
 
     @property
     def outcomes(self) -> tuple[Outcome, ...]:  # type: ignore[override]
@@ -105,11 +121,10 @@ class Orbit(OrbitResult):
         return {name: value for name, value in super().numbers().items() if name != "exits_unknown" or value}
 
     def find_section_crossings(self) -> np.ndarray:
-        """Return x and px at the upward crossings of y = 0, (n, 2), dimensionless, in order of time; n equals `crossings`.
+        """Return the crossings of the section, (n, 2), dimensionless, in order of time; n equals `crossings`.
 
-        The start is not counted. A crossing between two samples is found with the Taylor series of the first sample or, where
-        steps are shorter than the distance of the samples, as near a body, with the series of the step. Raises ValueError if the
-        orbit has no potential.
+        The coordinates are those of `Section.axes`, on y = 0 x and px. The start is not counted. Raises ValueError if the orbit
+        has no potential.
 
         Examples
         --------
@@ -119,15 +134,17 @@ class Orbit(OrbitResult):
                [ 0.1585, -0.0726],
                [ 0.2122, -0.0821]])
         """
+        return self.section.axes.points(self.find_section_states()[0])
+
+    def find_section_states(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return x, y, px, py, (n, 4), and the times, (n,), of the crossings of the section, see `find_section_crossings`."""
         potential = self._required_potential
-        units, kernels = potential.units, potential.in_well_units.well.kernels
-        samples = np.stack([self.x, self.y, self.px, self.py]) / units.state[:, None]
-        times = self.t / units.time
-        steps = trace_steps(kernels, samples[:, 0], times[-1], len(potential.outcomes))
-        short_steps = steps[np.isin(steps[:, 4], _starts_of_short_steps(times, steps[:, 4]))]
-        all_times, index = np.unique(np.concatenate([times, short_steps[:, 4]]), return_index=True)
-        path = np.concatenate([samples, short_steps[:, :4].T], axis=1)[:, index]
-        return find_crossings(kernels, path, all_times) * [units.length, units.momentum]
+        units, start = potential.units, np.array([self.x[0], self.y[0], self.px[0], self.py[0]])
+        section = self.section.in_well_units(units).numbers
+        found = find_passages_of_orbit(
+            potential.in_well_units, start / units.state, self.crossings, float(self.t[-1]) / units.time, section
+        )
+        return self.section.settle(found[:, :4] * units.state), found[:, 4] * units.time
 
     def compute_birkhoff_digits(self, *, execution: Execution = DEFAULT_EXECUTION) -> BirkhoffDigits:
         """Compute the digits to which averages over two consecutive windows agree, for windows up to half as long as the orbit.
@@ -153,7 +170,14 @@ class Orbit(OrbitResult):
 
 
 @checks_types(potential=Potential, execution=Execution)
-def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, execution: Execution = DEFAULT_EXECUTION) -> Orbit:
+def integrate_orbit(
+    potential: Potential,
+    state: Any,
+    t_max: float = 1e5,
+    *,
+    section: Section | str = Section.Y_UP,
+    execution: Execution = DEFAULT_EXECUTION,
+) -> Orbit:
     """Integrate one orbit until it escapes or up to `t_max`.
 
     Fate, escape time and crossings are identical to those of a map pixel with the same start. The deviation vectors obey eq. 4
@@ -171,6 +195,8 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, exe
     t_max
         Longest integration time, 0 < t_max ≤ 1e7, dimensionless. Above about 1e5, there is at least one sample per integration
         step, which takes about 300 bytes per time unit.
+    section
+        The surface of section at which crossings are counted: a `Section` or text, see `read_section`.
     execution
         How the computation runs.
 
@@ -179,7 +205,7 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, exe
     concurrent.futures.CancelledError
         If cancelled.
     ValueError
-        If `state` is not four finite numbers or `t_max` is out of range.
+        If `state` is not four finite numbers, `t_max` is out of range, or `section` is not legal.
 
     Examples
     --------
@@ -190,16 +216,18 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, exe
     """
     start = checked_state("state", state)
     t_max = potential.checked_t_max(t_max, MAX_ORBIT_TIME)
-    units = potential.units
-    orbit = _integrate(potential.in_well_units, start / units.state, t_max / units.time, execution)
-    return replace(units.restore(orbit), potential=potential, made_by=potential.describe_run(t_max=t_max))
+    units, section = potential.units, checked_section(section)
+    numbers = section.in_well_units(units).numbers
+    orbit = _integrate(potential.in_well_units, start / units.state, t_max / units.time, numbers, execution)
+    made_by = potential.describe_run(t_max=t_max, section=section.text)
+    return replace(units.restore(orbit), potential=potential, section=section, made_by=made_by)
 
 
-def _integrate(potential: Potential, start: np.ndarray, t_max: float, execution: Execution) -> Orbit:
+def _integrate(potential: Potential, start: np.ndarray, t_max: float, section: SectionNumbers, execution: Execution) -> Orbit:
     """Apply `integrate_orbit` in units of the well."""
     energy = float(potential.energy(start))
     curves, exits_unknown = exit_curves_if_known(potential, energy)
-    orbit_steps = record_orbit(potential, start, curves, t_max, execution)
+    orbit_steps = record_orbit(potential, start, curves, t_max, execution, section)
     times, (x, y, px, py), sali, exponent = _sample_orbit(potential, start, orbit_steps, execution)
     arrays = (times, x, y, px, py, sali, exponent, x * x + y * y)
     # The columns of one orbit are arrays of length 1, in this order.

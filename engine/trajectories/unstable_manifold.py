@@ -8,15 +8,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from engine.exits.exit_rows import exit_curves
-from engine.exits.exit_shapes import exit_gates
 from engine.exits.lyapunov_orbit import LyapunovOrbit
 from engine.exits.periodic_orbits import monodromy_matrix
 from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.integrator.kernels.dense_output import sample_path, trace_steps
-from engine.integrator.kernels.propagate import Exits
-from engine.integrator.source.recurrence import TOLERANCE
-from engine.propagation.tiles import map_tiles
+from engine.propagation.passages import find_passages
+from engine.slices.sections.linear_section import LinearSection
+from engine.slices.sections.section import Crossing
 from engine.systems.potential import Potential
 
 # Largest displacement from the Lyapunov orbit at which orbits of the tube start, in units of the well. When the tube has grown to
@@ -34,6 +33,10 @@ _MIN_MULTIPLIER = 1.5
 _FIRST_IMAGE_END = 6.0
 # Number of tiles that a thread computes at a time; a tile takes about 0.3 ms.
 _TILES_PER_TASK = 16
+# Columns of a passage that are returned.
+_X, _PX, _TIME = 0, 2, 4
+# The section of the passages.
+_DOWNWARD = LinearSection(Crossing.DOWN, y=1.0).numbers
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,10 +141,12 @@ class UnstableManifold:
         curves = exit_curves(self.potential, self.orbit.energy)
         # The second term is the time in which the smallest displacement would grow to 1.
         duration = count * _MAX_PERIODS_PER_PASSAGE * self.orbit.period - growth_time * math.log(self.min_displacement)
-        passages = map_tiles(
-            _find_passages_of_tile, self.potential, self.start_states(displacements), count, curves, exit_gates(curves), duration,
-            shape=(count, 3), execution=execution, tiles_per_task=_TILES_PER_TASK,
+        starts = self.start_states(displacements)
+        found = find_passages(
+            self.potential, starts, np.zeros(len(starts), np.int64), curves[None], count, duration, _DOWNWARD,
+            execution=execution, tiles_per_task=_TILES_PER_TASK,
         )  # fmt: skip
+        passages = found[:, :, [_X, _PX, _TIME]]
         execution.raise_if_cancelled()
         passages[:, :, 2] += growth_time * np.log(displacements)[:, None]
         return passages
@@ -177,15 +182,3 @@ def _leading_eigenpair(matrix: np.ndarray) -> tuple[float, np.ndarray]:
     values, vectors = np.linalg.eig(matrix)
     leading = int(np.argmax(np.abs(values)))
     return float(values[leading].real), vectors[:, leading].real.copy()
-
-
-def _find_passages_of_tile(
-    potential: Potential, tile: np.ndarray, count: int, curves: np.ndarray, gates: np.ndarray, duration: float
-) -> np.ndarray:
-    """Return the passages of the orbits in a tile (4, lanes), of shape (lanes, count, 3)."""
-    passages = np.full((tile.shape[1], count, 3), np.nan)
-    counts = np.zeros(tile.shape[1], np.int64)
-    # The kernel writes the passages of each orbit and their number.
-    exits = Exits(gates, curves[None], np.zeros(tile.shape[1], np.int64))
-    potential.well.kernels.find_section_passages(TOLERANCE, duration, -1.0, exits, tile, passages, counts)
-    return passages

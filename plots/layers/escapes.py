@@ -110,8 +110,10 @@ CROSSINGS = Picture(
     name="crossings",
     title="Crossings of y = 0",
     short_title="Crossings",
+    title_of=lambda spec: spec.section.words.title,
     help=(
-        "The number of times an orbit crosses the axis y = 0 upward before it escapes; the start does not count. An escape "
+        "The number of times an orbit crosses the surface of section, y = 0 upward if no other is chosen, before it escapes; the "
+        "start does not count. An escape "
         "without a crossing is direct. There is about one crossing per period of the well, so the bands follow the "
         "escape time, and they become thinner towards a basin boundary."
     ),

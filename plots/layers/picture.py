@@ -167,6 +167,8 @@ class Picture:
         Legend of the picture.
     has_times
         Whether the escape times are drawn over the codes.
+    title_of
+        Returns the title for a map, if it depends on the map.
     compares
         Whether the picture compares the map with another view. Only the page has such pictures.
     """
@@ -179,4 +181,9 @@ class Picture:
     colours: Callable[[Palette], Sequence[str]]
     legend: Callable[[ShownMap], Legend]
     has_times: bool = False
+    title_of: Callable[[MapSpec], str] | None = None
     compares: bool = False
+
+    def title_for(self, spec: MapSpec) -> str:
+        """Return the title above the picture of a map."""
+        return self.title if self.title_of is None else self.title_of(spec)

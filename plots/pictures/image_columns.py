@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from engine import EscapeMap, Fate, Outcome
+from engine import EscapeMap, Fate, Outcome, Section
 from plots.pictures.palette import CROSSING_CLASSES, OUTCOMES, PAPER, end_places
 
 NO_LAYER = [np.zeros((1, 1), np.uint8)]
@@ -46,6 +46,7 @@ def map_columns(frame: EscapeMap) -> dict[str, list[Any]]:
         "escape_time": [images["escape_time"].astype(np.float32)],
         "difference": NO_LAYER,
         "ends": [end_words(frame.spec.outcomes)],
+        "crossing_words": [crossing_words(frame.spec.section)],
         "x": [window.x_low],
         "y": [window.ordinate_low],
         "dw": [window.width],
@@ -138,6 +139,12 @@ def end_words(outcomes: Sequence[Outcome]) -> list[str]:
     return at_places(outcomes, [outcome.present for outcome in outcomes])
 
 
+def crossing_words(section: Section) -> list[str]:
+    """Return the words for one crossing of a section, and for several: "upward crossing of y = 0"."""
+    words = section.words
+    return [f"{words.singular}{words.place}", f"{words.plural}{words.place}"]
+
+
 def at_places(outcomes: Sequence[Outcome], words: Sequence[str]) -> list[str]:
     """Return a list with the word of each outcome at its place among `Palette.ends`, and empty words elsewhere."""
     words_by_place = [""] * len(PAPER.ends)
@@ -146,11 +153,11 @@ def at_places(outcomes: Sequence[Outcome], words: Sequence[str]) -> list[str]:
     return words_by_place
 
 
-def pixel_coding(outcomes: Sequence[Outcome]) -> dict[str, Any]:
+def pixel_coding(outcomes: Sequence[Outcome], section: Section = Section.Y_UP) -> dict[str, Any]:
     """Return the tables with which the browser turns pixels of a potential with these outcomes into codes.
 
-    The result contains the fates that are not ends, the first class, the places and words of the ends, the classes of crossings,
-    the code of pixels that are not decided, and for each code the codes of differences from all codes.
+    The result contains the fates that are not ends, the first class, the places and words of the ends, the classes and words of
+    crossings, the code of pixels that are not decided, and for each code the codes of differences from all codes.
     """
     codes = np.arange(FIRST_CLASS + len(PAPER.ends), dtype=np.uint8)
     return {
@@ -159,6 +166,7 @@ def pixel_coding(outcomes: Sequence[Outcome]) -> dict[str, Any]:
         "ends": end_places(outcomes),
         "words": end_words(outcomes),
         "leastCrossings": _LEAST_CROSSINGS.tolist(),
+        "crossingWords": crossing_words(section),
         "undecided": _UNDECIDED,
         "differences": _difference_codes(codes[:, None], codes).tolist(),
     }

@@ -17,7 +17,7 @@ from engine import EscapeMap
 from plots.layers.layer import NO_ANALYSES, Analyses
 from plots.layers.map_images import picture_pixels
 from plots.layers.picture import ColourScale, Legend, ShownMap
-from plots.layers.table import LAYERS, TITLES, map_legend
+from plots.layers.table import LAYERS, PICTURES, TITLES, map_legend
 from plots.pictures.palette import Palette
 from plots.pictures.provenance import provenance_line
 from plots.pictures.time_scale import TimeScale, fitted_scale
@@ -141,7 +141,7 @@ def draw_picture(
             draw_strokes(axes, overlay.strokes(result), window, palette)
     show_window(axes, window, *spec.plane.axis_symbols, style)
     letters = int(_LETTERS_PER_EM * size_in_points(axes)[0] / style.font_size)
-    set_title(axes, textwrap.fill(TITLES[picture], max(1, letters)), style)
+    set_title(axes, textwrap.fill(PICTURES[picture].title_for(spec), max(1, letters)), style)
 
 
 def _explain_picture(axes: Axes, legend: Legend, explained: set[str], width: float, style: FigureStyle) -> None:

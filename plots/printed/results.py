@@ -19,7 +19,7 @@ from engine.foundations.extras import require_package
 from engine.maps.pixels import PixelAnalysis
 from engine.results import DecayLaws, EscapeStatistics, PotentialReview, Returns, SampledOrbits, Sweep, UncertaintyExponent
 from engine.slices.default_window import default_window
-from engine.slices.planes import SECTION, SPACE
+from engine.slices.planes import SPACE
 from plots.layers.layer import Layer
 from plots.layers.picture import ShownMap
 from plots.layers.table import LAYERS, map_legend
@@ -123,7 +123,7 @@ def _find_charts(result: Result, palette: Palette) -> list[Chart]:
             return [times_chart(result), probabilities_chart(result)]
         case UncertaintyExponent():
             return [pairs_chart(result)]
-        case Returns() if result.spec.plane == SECTION:
+        case Returns():
             return section_charts(result, palette)
     return []
 

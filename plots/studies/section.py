@@ -1,13 +1,14 @@
-"""The study of the surface of section: the returns of many orbits of one energy to y = 0 upward."""
+"""The study of the surface of section: the returns of many orbits of one energy to it."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
-from engine import MapSpec, compute_returns
+from engine import MapSpec, Section, compute_returns
 from engine.jobs.job import Job
 from engine.results import Returns
-from engine.slices.planes import SECTION
 from plots.pictures.charts import Chart, Frame, Series, Shape
 from plots.pictures.palette import Palette
 from plots.studies.study import Changes, Study, Subject
@@ -21,10 +22,10 @@ _STARTS = (13, 13)
 FRAME = Frame(
     "section",
     "Surface of section",
-    SECTION.axis_symbols,
-    "Where many orbits of this energy cross y = 0 upward, up to their exits, each in one of a few colours. A regular orbit stays "
-    "on a curve: nested curves are an island, and chains of small islands are resonances. A chaotic orbit fills an area, or "
-    "leaves a few points and escapes.",
+    Section.Y_UP.axes.symbols,
+    "Where many orbits of this energy cross the surface of section, up to their exits, each in one of a few colours. A regular "
+    "orbit stays on a curve: nested curves are an island, and chains of small islands are resonances. A chaotic orbit fills an "
+    "area, or leaves a few points and escapes. Controls, Slice, chooses the section.",
     "Click to follow the orbit from (@x{number}, @y{number})",
     described=Shape.DOTS,
     is_square=True,
@@ -32,31 +33,37 @@ FRAME = Frame(
 
 
 def _job(subject: Subject, axis: str) -> Job[Returns]:
-    spec = MapSpec(subject.potential, SECTION, subject.energy, _STARTS, t_max=subject.t_max)
+    section = subject.section
+    spec = MapSpec(subject.potential, section.plane, subject.energy, _STARTS, t_max=subject.t_max, section=section)
     return Job(compute_returns, (spec,), (("returns", RETURNS),))
 
 
 def section_charts(found: Returns, palette: Palette) -> list[Chart]:
-    """Return the chart of the points of the orbits, in the window of their starts; empty without points."""
+    """Return the chart of the points of the orbits, in the window of starts on the section; empty without points."""
     colours = palette.orbits
     series = [
         Series("", colours[number % len(colours)], points[:, 0], points[:, 1], Shape.DOTS)
         for number, points in enumerate(found.points())
     ]
-    window = found.spec.find_window()
-    return [Chart(FRAME, series, window.ranges)] if series else []
+    spec = found.spec
+    frame = replace(FRAME, labels=spec.section.axes.symbols)
+    limits = spec.find_window().ranges if spec.section.is_drawn_on(spec.plane) else (None, None)
+    return [Chart(frame, series, limits)] if series else []
 
 
 def _changes(subject: Subject, axis: str, found: Returns, x: float, y: float) -> Changes:
-    """Return the start at the point nearest to the click, on the slice and at the energy of the section."""
+    """Return the start at the point nearest to the click, if starts on the section have the coordinates of the chart."""
+    section = found.spec.section
+    if not section.is_drawn_on(found.spec.plane):
+        return {}
     window, points = found.spec.find_window(), np.concatenate(found.points())
     distance = np.hypot((points[:, 0] - x) / window.width, (points[:, 1] - y) / window.height)
-    nearest_x, nearest_px = points[np.argmin(distance)].tolist()
-    return {"plane": SECTION, "energy": subject.energy, "start": (nearest_x, nearest_px)}
+    nearest = points[np.argmin(distance)].tolist()
+    return {"plane": section.plane, "energy": subject.energy, "start": tuple(nearest)}
 
 
 def _sentence(found: Returns) -> str:
-    can_click = found.complete and bool(found.count.any())
+    can_click = found.complete and bool(found.count.any()) and found.spec.section.is_drawn_on(found.spec.plane)
     return f"{found.describe()}{' Click a point to follow its orbit.' if can_click else ''}"
 
 
@@ -68,7 +75,7 @@ SECTION_STUDY = Study(
     name="section",
     title="Section",
     follows_map=True,
-    hint=f"The points at which many orbits cross y = 0 upward, up to {RETURNS} of each orbit.",
+    hint=f"The points at which many orbits cross the surface of section, up to {RETURNS} of each orbit.",
     job=_job,
     progress=lambda found: 1.0 if found.complete else 0.0,
     sentence=_sentence,

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from engine import Potential, Result, Slice, System
+from engine import Potential, Result, Section, Slice, System
 from engine.jobs.job import Job
 from engine.systems.catalogue.entry import EnergyRange
 from plots.pictures.charts import Chart, Frame
@@ -32,6 +32,8 @@ class Subject:
         Its potential.
     plane
         The slice of the starts.
+    section
+        The surface of section at which crossings are counted.
     energy
         The energy h, in the units of the potential; on a slice with an axis h, the last energy of another slice.
     energies
@@ -43,6 +45,7 @@ class Subject:
     system: System
     potential: Potential
     plane: Slice
+    section: Section
     energy: float
     energies: EnergyRange
     t_max: float

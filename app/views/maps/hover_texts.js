@@ -38,7 +38,7 @@ export function pixelDetails(pixel, {maps, compared}, codes, words) {
   const lines = [
     Number.isFinite(time) && `escape time ${number(time)}`,
     fate > codes.bounded
-      ? `${crossings} upward ${crossings === 1 ? "crossing" : "crossings"} of y = 0`
+      ? `${crossings} ${maps.crossing_words[0][crossings === 1 ? 0 : 1]}`
       : words.evidence[maps.crossing_class[0][pixel] - codes.firstEvidence],
     ...Object.entries(words.layers).map(([column, sentences]) => {
       const layerWords = sentences.length ? sentences : maps[`${column}_words`][0]

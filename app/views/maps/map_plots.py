@@ -255,7 +255,8 @@ class MapsView:
             else:
                 axes = other.axes if name == "compared" and other is not None else spec.plane.axis_symbols
                 legend = picture_legend(map_legend(name, shown_map))
-                annotate_picture(self.figures[name], PICTURE_ENTRIES[name].title, axes, legend, notes, self._under_way(name))
+                title = PICTURE_ENTRIES[name].title_for(spec)
+                annotate_picture(self.figures[name], title, axes, legend, notes, self._under_way(name))
 
     def _under_way(self, picture: str) -> str:
         """Return what is being computed for a picture: the picture itself, or layers over the picture; empty if nothing is."""

@@ -17,9 +17,8 @@ from app.state.view_state import ViewState
 from app.views.components.collapsible_section import Fold
 from app.views.components.texts import TextPane
 from app.views.components.widgets import FULL_HEIGHT, button, copy_button, flex_row, number_rows
-from engine import Coordinate, Orbit, Slice
+from engine import Coordinate, Orbit, Section, Slice
 from engine.foundations.wording import format_number, format_time, format_whole
-from engine.slices.planes import SECTION
 from engine.trajectories.chaos_indicators import IndicatorVerdict
 from plots.pictures.orbit_curves import initial_state
 from plots.pictures.palette import PALETTES, Palette
@@ -72,7 +71,7 @@ class OrbitControls:
         self.copy = copy_button(self._rows, actions.copy)
         for box in (self.x, self.ordinate):
             box.param.watch(lambda event: self._submit(), "enter_pressed")
-        state.follow(self._follow_plane, "plane")
+        state.follow(self._follow_plane, "plane", "section")
         state.follow(lambda name: self._set_colours(PALETTES[name]), "palette")
 
     def start_boxes(self) -> list[pn.viewable.Viewable]:
@@ -97,13 +96,14 @@ class OrbitControls:
             self._interval_row, self.indicators, *values.parts(), sizing_mode="stretch_width", margin=0, styles=styles
         )
 
-    def _follow_plane(self, plane: Slice) -> None:
+    def _follow_plane(self, plane: Slice, section: Section) -> None:
         """Label the boxes with the axes of the plane."""
         self.x.label, self.ordinate.label = plane.axis_symbols
         energy_or_parameter = [axis for axis in plane.axes if axis is Coordinate.H or axis is plane.parameter]
         self.open_section.visible = bool(energy_or_parameter)
         if energy_or_parameter:
-            self.open_section.label = f"Open {SECTION.title} at this {' and '.join(axis.symbol for axis in energy_or_parameter)}"
+            names = " and ".join(axis.symbol for axis in energy_or_parameter)
+            self.open_section.label = f"Open {section.plane.title} at this {names}"
 
     def _set_colours(self, palette: Palette) -> None:
         """Set the colours of the orbits' numbers."""
@@ -209,7 +209,7 @@ def _value_table(orbit: Orbit | None) -> str:
         "energy h": format_number(orbit.energy, 10),
         "start x, y": f"{format_number(orbit.x[0], 6)}, {format_number(orbit.y[0], 6)}",
         "start px, py": f"{format_number(orbit.px[0], 6)}, {format_number(orbit.py[0], 6)}",
-        "upward crossings of y = 0": format_whole(orbit.crossings),
+        orbit.section.crossings_name: format_whole(orbit.crossings),
         "last SALI": format_number(orbit.sali[-1], 3),
         "relative energy error": format_number(orbit.energy_error, 2),
     }

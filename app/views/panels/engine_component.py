@@ -18,6 +18,7 @@ from app.state.view_state import ViewState
 from engine import EscapeMap
 from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job, Queue
+from engine.slices.axes import STATE
 from engine.slices.slice_text import write_slice
 from plots.layers.map_images import LAYER_COLUMNS
 from plots.pictures.image_columns import pixel_coding
@@ -51,7 +52,7 @@ class BrowserEngine(JSComponent):
         self._take_energy = locked(self._end_animation)
         self._system_request = LatestRequest(jobs, self._show_system, lambda sentence: None, locked)
         results.param.watch(lambda event: self._request_system(event.new), "frame")
-        shown_fields = ["system", "plane", "energy", "resolution", "window", "palette"]
+        shown_fields = ["system", "plane", "section", "energy", "resolution", "window", "palette"]
         state.param.watch(lambda *events: self.show_view(), shown_fields)
 
     def show_view(self) -> None:
@@ -89,7 +90,7 @@ class BrowserEngine(JSComponent):
         """Request the system for the browser once a frame has arrived, because the system needs the compiled kernels."""
         state = self._state
         if frame is not None and frame.spec.potential == state.potential:
-            arguments = state.potential, state.energies.low, state.energies.high
+            arguments = state.potential, state.energies.low, state.energies.high, state.section
             self._system_request.submit(Job(make_browser_system, arguments, queue=Queue.LONG_CALL))
 
     def _show_system(self, system: BrowserSystem) -> None:
@@ -100,14 +101,28 @@ def describe_view(state: ViewState) -> dict[str, Any]:
     """Return the view of a state in the form of `ServerView` in app/browser/modules/gestures/preview.js."""
     outcomes = state.potential.outcomes_at(state.energy)
     return {
-        "system": system_key(state.potential),
+        "system": system_key(state.potential, state.section),
         "plane": ";".join(filter(None, write_slice(state.plane))),
         # Only the server knows the potentials along a parameter.
-        "slice": state.plane.to_dict(state.potential.units) if state.plane.parameter is None else None,
+        "slice": _describe_slice(state) if state.plane.parameter is None else None,
+        "sectionColumns": _section_columns(state),
         "energy": state.energy,
         "home": state.window is None,
         "resolution": state.resolution,
         "colours": [entry.colour for entry in state.colours.end_entries(outcomes)],
         "labels": [end.label for end in outcomes],
-        "coding": {**pixel_coding(outcomes), "layers": list(LAYER_COLUMNS)},
+        "coding": {**pixel_coding(outcomes, state.section), "layers": list(LAYER_COLUMNS)},
     }
+
+
+def _describe_slice(state: ViewState) -> dict[str, object]:
+    """Return the slice of a state. Pixels have no mirror images if these have other crossings of the section."""
+    described = state.plane.to_dict(state.potential.units)
+    return described if state.section.is_mirrored else described | {"mirrored": None}
+
+
+def _section_columns(state: ViewState) -> list[int] | None:
+    """Return the columns of the axes of the slice in states, if the slice is on the section; otherwise None."""
+    axes = state.plane.axes
+    is_shown = state.section.is_drawn_on(state.plane) and all(axis in STATE for axis in axes)
+    return [STATE.index(axis) for axis in axes] if is_shown else None

@@ -1,4 +1,4 @@
-"""The drawer that chooses the slice: its axes, what the energy determines, and the values of the other coordinates."""
+"""The drawer that chooses the slice, its axes and what the energy determines, and the surface of section."""
 
 from __future__ import annotations
 
@@ -13,12 +13,16 @@ import panel as pn
 from app.browser.inputs.counted_inputs import NumberBox
 from app.state.view_state import ViewState
 from app.views.components.texts import StatusPane, TextPane
-from app.views.components.widgets import flex_row
-from engine import Coordinate, ParameterAxis, Slice, System
+from app.views.components.widgets import button, flex_row
+from engine import Coordinate, ParameterAxis, Section, Slice, System, read_section
 from engine.slices.planes import checked_slice
 from engine.slices.slice_text import AXIS_NAMES, default_range
+from engine.systems.catalogue.table import CATALOGUE
 from engine.systems.parameters import symbol_of
 
+_SECTION_HINT = "Crossings are counted, and section points drawn, where an orbit meets the surface of section."
+# Sections that are offered for all systems, besides those of the catalogue.
+_SECTIONS = (Section.Y_UP.text, "x = 0, px > 0", "angle = 45°", "pericentre", "apocentre")
 _HINT = "Starts move along the two axes. The energy decides one momentum, or the speed in a given direction."
 # Labels of the modes in which the energy determines the speed, by the angle of its direction.
 _ANGLES = {Coordinate.THETA: "speed, at angle θ from the x axis", Coordinate.BETA: "speed, at angle β from the radius"}
@@ -55,15 +59,24 @@ class SlicePanel:
         self.ranges = pn.Column(sizing_mode="stretch_width", margin=0)
         self.held = pn.Column(sizing_mode="stretch_width", margin=0)
         self.message = StatusPane("", sizing_mode="stretch_width", margin=(8, 0))
+        self.section = pn.widgets.AutocompleteInput(
+            label="Surface of section", restrict=False, min_characters=0, case_sensitive=False, search_strategy="includes",
+            sizing_mode="stretch_width", margin=(4, 0),
+        )  # fmt: skip
+        self.start_on_section = button("Start on the section", self._start_on_section, margin=(4, 0))
+        self.section.param.watch(lambda event: self._take_section(event.new), "value")
         for index, axis in enumerate(self.axes):
             axis.param.watch(partial(self._take_axis, index), "value")
         self.mode.param.watch(lambda event: self._take_mode(_MODES[event.new]) if event.new else None, "value")
         state.follow(self.show, "plane", "system")
+        state.follow(self.show_section, "section", "plane", "system")
 
     def build(self) -> list[pn.viewable.Viewable]:
         """Return the parts of a column."""
         hint = TextPane(f"<p class='quiet'>{_HINT}</p>", sizing_mode="stretch_width", margin=0)
-        return [hint, *self.axes, self.ranges, self.mode, self.held, self.message]
+        section_hint = TextPane(f"<p class='quiet'>{_SECTION_HINT}</p>", sizing_mode="stretch_width", margin=0)
+        section = [section_hint, self.section, self.start_on_section]
+        return [hint, *self.axes, self.ranges, self.mode, self.held, self.message, *section]
 
     def show(self, plane: Slice, system: System) -> None:
         """Show a slice of a system."""
@@ -78,6 +91,33 @@ class SlicePanel:
         self.ranges.objects = self._range_boxes(plane)
         self.held.objects = self._held_boxes(plane)
         self.message.object = f"<p>{escape(plane.title)}</p>"
+
+    def show_section(self, section: Section, plane: Slice, system: System) -> None:
+        """Show the section, the sections of a system, and whether the starts are on the section."""
+        entry = CATALOGUE.get(system.case)
+        self._is_following = True
+        try:
+            options = dict.fromkeys([*_SECTIONS[:1], *(entry.sections if entry is not None else ()), *_SECTIONS[1:]])
+            self.section.param.update(options=list(options), value=section.text)
+        finally:
+            self._is_following = False
+        self.start_on_section.visible = plane != section.plane
+        self.start_on_section.label = f"Start on the section: {section.plane.title}"
+
+    def _take_section(self, text: str) -> None:
+        if self._is_following or text == self._state.section.text:
+            return
+        try:
+            section = read_section(text)
+        except ValueError as error:
+            self.message.object = f"<p role='alert'>{escape(str(error))}</p>"
+            return
+        self.message.object = f"<p>{escape(self._state.plane.title)}</p>"
+        with pn.io.hold():
+            self._state.show_section(section, with_slice=False)
+
+    def _start_on_section(self) -> None:
+        self._state.show_section(self._state.section, with_slice=True)
 
     def _range_boxes(self, plane: Slice) -> list[pn.viewable.Viewable]:
         axis = plane.parameter

@@ -60,6 +60,8 @@ define noalias nonnull ptr @NRT_MemInfo_alloc_aligned(i64 %size, i32 %alignment)
 """
 # Options of Numba for kernels that Python does not call.
 _OPTIONS: dict[str, Any] = {**OPTIONS, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+# Functions above this size, in LLVM's units, are not inlined. By default they would be, which gives 10 % more bytes and no speed.
+_INLINING_THRESHOLD = 100
 _RUNTIME_NAMES = "|".join(re.findall(r"@(NRT_\w+)", _RUNTIME))
 
 
@@ -80,7 +82,7 @@ def lower_kernels(kernels: Mapping[Any, Signature]) -> bytes:
         module.link_in(_parse(_without_runtime(compiled.inspect_llvm(signature.args)), machine))
         module.link_in(_parse(str(_wrapper(names[kernel], symbol, signature)), machine))
     _make_internal(module, exported=set(names.values()))
-    return compile_module(module, machine, level=3)
+    return compile_module(module, machine, level=2, inlining_threshold=_INLINING_THRESHOLD)
 
 
 def _parse(text: str, machine: Any) -> Any:

@@ -8,6 +8,7 @@ The functions of a potential are those that kernels call by their addresses, wit
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
@@ -37,8 +38,10 @@ _ALIGNMENT = 8
 _INT64 = ir.IntType(64)
 
 
-def webassembly_module(outline: CodeOutline) -> bytes:
+def webassembly_module(outline: CodeOutline, section_outline: CodeOutline | None = None) -> bytes:
     """Return the functions of the potentials of one structure (`FUNCTIONS`) as a WebAssembly module, which imports its memory.
+
+    The functions of `section_outline`, which count crossings of another section than y = 0, upward, replace those of `outline`.
 
     The functions have the arguments of Numba's calling convention. The number of lanes is rounded up to an even number, and rows
     must be long enough for this number. The module is read from the disk, or else compiled, which can take seconds.
@@ -48,19 +51,23 @@ def webassembly_module(outline: CodeOutline) -> bytes:
     ValueError
         If another process compiles and cannot; the message has the reason.
     """
-    path = cache_folder() / f"{__name__}.{outline.digest[:24]}.{program_digest()}{SUFFIX}"
-    return read_or_make(path, "WebAssembly modules", partial(call_compiler, partial(_compile, outline.structure)))
+    outlines = [outline] if section_outline is None else [outline, section_outline]
+    digests = ".".join(each.digest[:24] for each in outlines)
+    path = cache_folder() / f"{__name__}.{digests}.{program_digest()}{SUFFIX}"
+    structures = tuple(each.structure for each in outlines)
+    return read_or_make(path, "WebAssembly modules", partial(call_compiler, partial(_compile, structures)))
 
 
-def _compile(structure: Structure) -> bytes:
-    """Compile the functions of the potentials of one structure."""
+def _compile(structures: Sequence[Structure]) -> bytes:
+    """Compile the functions of the potentials of one structure; those of later structures replace those of earlier ones."""
     machine = target_machine()
     module = ir.Module("engine")
     module.triple, module.data_layout = TARGET, str(machine.target_data)
-    functions, entries = generate_code(structure)
-    for function in functions:
-        if function.name in FUNCTIONS:
-            _Writer(module, function, len(entries)).write()
+    codes = [generate_code(structure) for structure in structures]
+    functions = {function.name: function for code in codes for function in code.functions}
+    for name, function in functions.items():
+        if name in FUNCTIONS:
+            _Writer(module, function, len(codes[0].entries)).write()
     return compile_module(llvm.parse_assembly(str(module)), machine, level=2)
 
 

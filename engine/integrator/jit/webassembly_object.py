@@ -27,14 +27,17 @@ def target_machine() -> Any:
     return llvm.Target.from_triple(TARGET).create_target_machine(opt=3, features=_FEATURES, reloc="static")
 
 
-def compile_module(source: Any, machine: Any, level: int) -> bytes:
+def compile_module(source: Any, machine: Any, level: int, inlining_threshold: int | None = None) -> bytes:
     """Compile an LLVM module to a WebAssembly module that exports its external functions by their names.
 
-    source: a parsed module of llvmlite, which is optimised in place; level: the level of optimisation, 2 or 3.
+    source: a parsed module of llvmlite, which is optimised in place; level: the level of optimisation, 2 or 3;
+    inlining_threshold: largest size of functions that are inlined, None for the default of the level.
     """
     options = llvm.create_pipeline_tuning_options(speed_level=level)
     # Without unrolling, the module has a third fewer bytes and is as fast.
     options.loop_unrolling = False
+    if inlining_threshold is not None:
+        options.inlining_threshold = inlining_threshold
     passes = llvm.create_pass_builder(machine, options)
     # The second run optimises what the first run has made constant.
     for _ in range(2):

@@ -10,10 +10,11 @@ import numpy as np
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.integrator.jit.decorator import kernel
 from engine.integrator.jit.function_pointers import call_jets
-from engine.integrator.kernels.events import BOUNDED, NOT_COMPUTED, append_crossings, series_value
+from engine.integrator.kernels.events import BOUNDED, NOT_COMPUTED, series_value
 from engine.integrator.kernels.exit_geometry import CURVE_COLUMNS
 from engine.integrator.kernels.propagate import VECTOR, Exits, Orbits
 from engine.integrator.source.recurrence import TOLERANCE
+from engine.integrator.source.section_numbers import UPWARD, SectionNumbers
 from engine.integrator.source.series import ORDER
 
 # Number of steps or samples that are processed together.
@@ -42,6 +43,15 @@ def trace_orbit(
         yield steps[:count], t_max if goes_on else float(orbits.t[0])
 
 
+def without_exits(outcome_count: int, orbits: int = 1, section: SectionNumbers = UPWARD) -> Exits:
+    """Return exits that no orbit reaches; the kernels read a gate for each of the `outcome_count` outcomes of the potential."""
+    # No step passes these gates: 0 x + 0 y = ∞.
+    gates = np.full((outcome_count + len(section.rows), 3), np.inf)
+    gates[:outcome_count, :2] = 0.0
+    gates[outcome_count:] = np.reshape(section.rows, (len(section.rows), 3))
+    return Exits(gates, np.zeros((1, outcome_count, CURVE_COLUMNS)), np.zeros(orbits, np.int64))
+
+
 def trace_pieces(
     kernels: ModuleType,
     state: np.ndarray,
@@ -49,14 +59,8 @@ def trace_pieces(
     outcome_count: int,
     execution: Execution = DEFAULT_EXECUTION,
 ) -> Iterator[tuple[np.ndarray, float]]:
-    """Apply `trace_orbit` to a state (4,) from t = 0 to `t_end`, without exits.
-
-    The kernels read a gate for each of the `outcome_count` outcomes of the potential.
-    """
-    # No step passes these gates: 0 x + 0 y = ∞.
-    gates = np.full((outcome_count, 3), np.inf)
-    gates[:, :2] = 0.0
-    exits = Exits(gates, np.zeros((1, outcome_count, CURVE_COLUMNS)), np.zeros(1, np.int64))
+    """Apply `trace_orbit` to a state (4,) from t = 0 to `t_end`, without exits, see `without_exits`."""
+    exits = without_exits(outcome_count)
     fate = np.full(1, NOT_COMPUTED, np.int8)
     crossings, last_crossings = np.zeros((2, 1), np.int64)
     orbits = Orbits(state[None].copy(), np.zeros(1), crossings, last_crossings, fate, np.ones(1, np.uint8), np.zeros((1, 2)))
@@ -118,30 +122,6 @@ def evaluate_series(series, row, tau, states):
                 value = value * tau[n] + series[axis, k, row[n]]
             states[axis, n] = value
             states[axis + 2, n] = slope
-
-
-def find_crossings(kernels: ModuleType, path: np.ndarray, times: np.ndarray) -> np.ndarray:
-    """Return x and px (m, 2) at upward crossings of y = 0 along a path (4, n) with samples at most one step apart."""
-    y, py = path[1], path[3]
-    rises = (y[:-1] < 0.0) & (y[1:] >= 0.0)
-    # Between samples on the same side, an orbit can cross y = 0 twice if it first approaches y = 0 and then recedes.
-    turns = (y[:-1] * y[1:] > 0.0) & (y[:-1] * py[:-1] < 0.0) & (y[1:] * py[1:] > 0.0)
-    first_samples = np.flatnonzero(rises | turns)
-    series = np.empty((2, ORDER + 1, first_samples.size))
-    kernels.jets(first_samples.size, *(np.ascontiguousarray(row[first_samples]) for row in path), *series)
-    return _locate_crossings(series, times[first_samples + 1] - times[first_samples])
-
-
-@kernel
-def _locate_crossings(series, durations):
-    """Return x and px (m, 2) at upward crossings within `durations` (n,) of the starts of n series."""
-    x_series, y_series = series[0], series[1]
-    # Two crossings in one interval are rare, and three do not occur.
-    points = np.empty((1, 2 * durations.size, 3))
-    counts = np.zeros(1, np.int64)
-    for i in range(durations.size):
-        append_crossings(x_series, y_series, i, 1.0, 0.0, durations[i], points, counts, 0)
-    return points[0, : counts[0], :2].copy()
 
 
 def sample_deviations(

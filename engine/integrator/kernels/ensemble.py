@@ -15,9 +15,10 @@ from engine.integrator.jit.function_pointers import call_jets, call_step
 from engine.integrator.kernels.events import crossed_exit, find_exit_time, find_zero, passed_exit, series_slope, series_value
 from engine.integrator.kernels.exit_geometry import ends_inside, reached_exit
 from engine.integrator.kernels.propagate import fill_vectors
+from engine.integrator.kernels.sections import section_series
 from engine.integrator.source.recurrence import LANES, ROWS, SIZE_ROW, TIME_ROW
 from engine.integrator.source.series import ORDER
-from engine.integrator.source.step_flags import NEAR
+from engine.integrator.source.step_flags import CROSSES, NEAR
 
 
 class Ensemble(NamedTuple):
@@ -38,7 +39,7 @@ class Ensemble(NamedTuple):
     last_time
         (n,) time until which the orbit is followed, or infinite.
     section
-        (2, n) x and px of the last upward crossing of y = 0.
+        (4, n) x, y, px, py at the last crossing of the section.
     """
 
     ends: np.ndarray
@@ -54,8 +55,8 @@ class Ensemble(NamedTuple):
 def advance_ensemble(step, jets, coefficients, tolerance, time, beyond, gates, curves, ensemble):
     """Advance each orbit, in place, until its step contains `time`, or the last time at which the orbit is followed.
 
-    beyond: time for which orbits are followed beyond an exit, except into a body; gates (exits, 3) and curves (exits, columns):
-    see `engine.integrator.kernels.propagate.Exits`.
+    beyond: time for which orbits are followed beyond an exit, except into a body; gates (exits + rows, 3) and curves (exits,
+    columns): see `engine.integrator.kernels.propagate.Exits`.
     """
     count = ensemble.begin.shape[0]
     now = np.zeros((ROWS, LANES))
@@ -64,6 +65,7 @@ def advance_ensemble(step, jets, coefficients, tolerance, time, beyond, gates, c
     crossed = np.zeros(LANES, np.int64)
     x_jet = np.zeros((ORDER + 1, LANES))
     y_jet = np.zeros((ORDER + 1, LANES))
+    work = np.zeros((ORDER + 1, LANES))
     lane_orbit = np.zeros(LANES, np.int64)
     next_orbit = 0
     while next_orbit < count:
@@ -85,7 +87,9 @@ def advance_ensemble(step, jets, coefficients, tolerance, time, beyond, gates, c
         call_step(step, coefficients, width, tolerance, time, gates, now, new, flag, crossed)
         call_jets(jets, coefficients, width, now[0], now[1], now[2], now[3], x_jet, y_jet)
         for i in range(active):
-            _keep_step(now, new, flag[i], x_jet, y_jet, i, beyond, gates, curves, ensemble, lane_orbit[i])
+            crosses = crossed[i] > 0 or flag[i] & CROSSES != 0
+            crossed[i] = 0
+            _keep_step(now, new, flag[i], crosses, x_jet, y_jet, work, i, beyond, gates, curves, ensemble, lane_orbit[i])
             # The next turn begins with the first orbit that needs another step.
             if _is_late(ensemble, lane_orbit[i], time):
                 next_orbit = min(next_orbit, lane_orbit[i])
@@ -110,16 +114,18 @@ def place_ensemble(time, ensemble, places, channels):
 @kernel
 def begin_ensemble(starts, ensemble, places, channels):
     """Set all orbits to their starts (n, 4), `places` (2, n) to the positions, and `channels` (n,) to 0."""
-    ensemble.ends[:] = 0.0
-    ensemble.begin[:] = 0.0
-    ensemble.leaving[:] = 0
-    ensemble.escape_time[:] = np.inf
-    ensemble.last_time[:] = np.inf
-    ensemble.section[:] = np.nan
-    channels[:] = 0
+    # Loops over whole arrays would be as many copies of the code.
     for orbit in range(starts.shape[0]):
+        for row in range(ROWS):
+            ensemble.ends[row, orbit] = 0.0
         for row in range(4):
             ensemble.ends[row, orbit] = starts[orbit, row]
+            ensemble.section[row, orbit] = np.nan
+        ensemble.begin[orbit] = 0.0
+        ensemble.leaving[orbit] = 0
+        ensemble.escape_time[orbit] = np.inf
+        ensemble.last_time[orbit] = np.inf
+        channels[orbit] = 0
         for axis in range(2):
             places[axis, orbit] = starts[orbit, axis]
 
@@ -173,8 +179,8 @@ def _is_late(ensemble, orbit, time):
 
 
 @subroutine
-def _keep_step(now, new, flags, x_jet, y_jet, i, beyond, gates, curves, ensemble, orbit):
-    """Make the step of lane i, with its events, the current step of its orbit in the ensemble."""
+def _keep_step(now, new, flags, crosses, x_jet, y_jet, work, i, beyond, gates, curves, ensemble, orbit):
+    """Make the step of lane i, with its events, the current step of its orbit in the ensemble; work: see `section_series`."""
     for k in range(ORDER + 1):
         ensemble.series[0, k, orbit] = x_jet[k, i]
         ensemble.series[1, k, orbit] = y_jet[k, i]
@@ -196,7 +202,10 @@ def _keep_step(now, new, flags, x_jet, y_jet, i, beyond, gates, curves, ensemble
         follow_time = 0.0 if ends_inside(curves[channel - 1]) else beyond
         ensemble.last_time[orbit] = ensemble.escape_time[orbit] + follow_time
     ensemble.leaving[orbit] = channel
-    if now[1, i] < 0.0 and new[1, i] >= 0.0:
-        tau = find_zero(y_jet, i, 0.0, size)
+    section = gates[curves.shape[0] :]
+    if crosses:
+        tau = find_zero(section_series(x_jet, y_jet, i, section, work), i, 0.0, size)
         ensemble.section[0, orbit] = series_value(x_jet, i, tau)
-        ensemble.section[1, orbit] = series_slope(x_jet, i, tau)
+        ensemble.section[1, orbit] = series_value(y_jet, i, tau)
+        ensemble.section[2, orbit] = series_slope(x_jet, i, tau)
+        ensemble.section[3, orbit] = series_slope(y_jet, i, tau)

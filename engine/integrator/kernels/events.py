@@ -1,4 +1,4 @@
-"""Events within one step, located in its dense output: exits and crossings of the section y = 0.
+"""Events within one step, located in its dense output: exits and crossings of a surface of section.
 
 An orbit that has crossed the path of a Lyapunov orbit does not return. Any other exit can be crossed and recrossed within a step,
 so the whole step is examined for such an exit.
@@ -22,11 +22,13 @@ from engine.integrator.kernels.exit_geometry import (
     is_circle,
     position_across,
 )
+from engine.integrator.kernels.sections import counts_falls, is_on_side, section_series
 
 # Fates of an orbit or a start, besides the number, 1 or more, of the exit at which an orbit ended.
 BOUNDED, FORBIDDEN, OUTSIDE, NOT_COMPUTED, FAILED = 0, -1, -2, -3, -4
 
-# Number of parts of a step that are examined in turn; within a part, ẏ is assumed to change its sign at most once.
+# Number of parts of a step that are examined in turn; within a part, the slope of a series is assumed to change its sign at most
+# once.
 _PARTS = 8
 # Largest number of iterations in the search for a root.
 _ROOT_ITERATIONS = 80
@@ -116,10 +118,11 @@ def find_zero(jet, i, low, high):
 
 @subroutine
 def crossing_between(jet, i, direction, low, y_low, slope_low, high, y_high, slope_high):
-    """Return times before and after the crossing of y = 0, in a direction, in a part of a step; equal times if there is none.
+    """Return times before and after the zero of a series, in a direction, in a part of a step; equal times if there is none.
 
-    jet: series of y; direction: 1 for crossings from y < 0 to y ≥ 0, −1 for crossings from y > 0 to y ≤ 0; low, high: the ends of
-    the part; y_…, slope_…: y and ẏ at these ends, times `direction`. A crossing may be one of a pair in opposite directions.
+    jet: series, such as y; direction: 1 for crossings from y < 0 to y ≥ 0, −1 for crossings from y > 0 to y ≤ 0; low, high: the
+    ends of the part; y_…, slope_…: y and ẏ at these ends, times `direction`. A crossing may be one of a pair in opposite
+    directions.
     """
     # An orbit that starts on the section and moves against the direction counts as being before the section.
     is_before = y_low < 0.0 or (y_low == 0.0 and slope_low < 0.0)
@@ -136,43 +139,72 @@ def crossing_between(jet, i, direction, low, y_low, slope_low, high, y_high, slo
 
 
 @subroutine
-def count_upward_crossings(y_jet, i, duration):
-    """Count the upward crossings of y = 0 within `duration` of the start of a step."""
+def count_crossings(x_jet, y_jet, i, duration, section, work):
+    """Count the crossings of a section within `duration` of the start of a step; work: see `section_series`."""
+    jet = section_series(x_jet, y_jet, i, section, work)
     count = 0
     low = 0.0
-    y_low, slope_low = series_value(y_jet, i, low), series_slope(y_jet, i, low)
+    at_low, slope_low = series_value(jet, i, low), series_slope(jet, i, low)
     for part in range(1, _PARTS + 1):
         high = duration * part / _PARTS
-        y_high, slope_high = series_value(y_jet, i, high), series_slope(y_jet, i, high)
-        before, after = crossing_between(y_jet, i, 1.0, low, y_low, slope_low, high, y_high, slope_high)
-        if after > before:
-            count += 1
-        low, y_low, slope_low = high, y_high, slope_high
+        at_high, slope_high = series_value(jet, i, high), series_slope(jet, i, high)
+        for fall in range(2 if counts_falls(section) else 1):
+            sign = -1.0 if fall == 1 else 1.0
+            before, after = crossing_between(
+                jet, i, sign, low, sign * at_low, sign * slope_low, high, sign * at_high, sign * slope_high
+            )
+            if after > before and (section.shape[0] == 0 or _counts_on_side(x_jet, y_jet, i, jet, before, after, section)):
+                count += 1
+        low, at_low, slope_low = high, at_high, slope_high
     return count
 
 
 @subroutine
-def append_crossings(x_jet, y_jet, i, direction, begin, duration, crossings, found, orbit):
-    """Append each crossing of y = 0 within `duration` of the start of a step to `crossings` (n, m, 3 or 4): x, px, time and py.
+def _counts_on_side(x_jet, y_jet, i, jet, before, after, section):
+    """Return whether the crossing between two times of a step is on the side of the section on which crossings count."""
+    tau = find_zero(jet, i, before, after)
+    return is_on_side(series_value(x_jet, i, tau), series_value(y_jet, i, tau), section)
 
-    direction: as in `crossing_between`; begin: time at the start of the step; found (n,): number of crossings of each orbit,
-    increased in place. The row of `orbit` is filled from this index, until the row has m crossings.
+
+@subroutine
+def append_crossings(x_jet, y_jet, i, begin, duration, section, work, crossings, found, orbit):
+    """Append each crossing of a section within `duration` of the start of a step to `crossings` (n, m, columns).
+
+    begin: time at the start of the step; work: see `section_series`; columns: the first 3 to 5 of x, px, time, py and y; found
+    (n,): number of crossings of each orbit, increased in place. The row of `orbit` is filled from this index, until the row has m
+    crossings.
     """
+    jet = section_series(x_jet, y_jet, i, section, work)
     low = 0.0
-    y_low, slope_low = direction * series_value(y_jet, i, low), direction * series_slope(y_jet, i, low)
+    at_low, slope_low = series_value(jet, i, low), series_slope(jet, i, low)
     for part in range(1, _PARTS + 1):
         high = duration * part / _PARTS
-        y_high, slope_high = direction * series_value(y_jet, i, high), direction * series_slope(y_jet, i, high)
-        before, after = crossing_between(y_jet, i, direction, low, y_low, slope_low, high, y_high, slope_high)
-        if after > before and found[orbit] < crossings.shape[1]:
-            tau = find_zero(y_jet, i, before, after)
-            crossings[orbit, found[orbit], 0] = series_value(x_jet, i, tau)
-            crossings[orbit, found[orbit], 1] = series_slope(x_jet, i, tau)
-            crossings[orbit, found[orbit], 2] = begin + tau
-            if crossings.shape[2] > 3:
-                crossings[orbit, found[orbit], 3] = series_slope(y_jet, i, tau)
-            found[orbit] += 1
-        low, y_low, slope_low = high, y_high, slope_high
+        at_high, slope_high = series_value(jet, i, high), series_slope(jet, i, high)
+        # A pair of crossings in a part is a rise before a fall if the part begins below the section.
+        falls_first = at_low > 0.0
+        for crossing in range(2 if counts_falls(section) else 1):
+            sign = -1.0 if counts_falls(section) and (crossing == 0) == falls_first else 1.0
+            before, after = crossing_between(
+                jet, i, sign, low, sign * at_low, sign * slope_low, high, sign * at_high, sign * slope_high
+            )
+            if after > before and found[orbit] < crossings.shape[1]:
+                tau = find_zero(jet, i, before, after)
+                if is_on_side(series_value(x_jet, i, tau), series_value(y_jet, i, tau), section):
+                    _append_crossing(x_jet, y_jet, i, begin, tau, crossings, found, orbit)
+        low, at_low, slope_low = high, at_high, slope_high
+
+
+@subroutine
+def _append_crossing(x_jet, y_jet, i, begin, tau, crossings, found, orbit):
+    """Append the state at time tau after the start of a step to the crossings of an orbit, see `append_crossings`."""
+    crossings[orbit, found[orbit], 0] = series_value(x_jet, i, tau)
+    crossings[orbit, found[orbit], 1] = series_slope(x_jet, i, tau)
+    crossings[orbit, found[orbit], 2] = begin + tau
+    if crossings.shape[2] > 3:
+        crossings[orbit, found[orbit], 3] = series_slope(y_jet, i, tau)
+    if crossings.shape[2] > 4:
+        crossings[orbit, found[orbit], 4] = series_value(y_jet, i, tau)
+    found[orbit] += 1
 
 
 @subroutine

@@ -15,6 +15,7 @@ from engine.integrator.jit.decorator import kernel, subroutine
 from engine.integrator.jit.function_pointers import call_jets, call_limited_step, call_tangent
 from engine.integrator.kernels.events import append_crossings
 from engine.integrator.kernels.propagate import fill_vectors
+from engine.integrator.kernels.sections import UPWARD
 from engine.integrator.source.recurrence import LANES, ROWS, SIZE_ROW, TIME_ROW
 from engine.integrator.source.series import ORDER
 
@@ -157,7 +158,7 @@ def _locate_crossings(jets, coefficients, n, start, size, step_orbit, points, fo
     y_jet = np.empty((ORDER + 1, LANES))
     call_jets(jets, coefficients, LANES, start[0], start[1], start[2], start[3], x_jet, y_jet)
     for i in range(n):
-        append_crossings(x_jet, y_jet, i, 1.0, 0.0, size[i], points, found, step_orbit[i])
+        append_crossings(x_jet, y_jet, i, 0.0, size[i], UPWARD, y_jet, points, found, step_orbit[i])
 
 
 @kernel

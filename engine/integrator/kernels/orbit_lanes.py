@@ -1,4 +1,4 @@
-"""Adaptive steps of one orbit per lane until the orbit escapes, for passages through y = 0 and integrals of the speed.
+"""Adaptive steps of one orbit per lane until the orbit escapes, for passages through a section and integrals of the speed.
 
 These kernels are compiled once for all potentials, like `engine.integrator.kernels.propagate`.
 """
@@ -15,7 +15,7 @@ from engine.integrator.kernels.events import append_crossings, crossed_exit, fin
 from engine.integrator.kernels.propagate import fill_vectors, has_failed, make_buffer, passes_exit
 from engine.integrator.source.recurrence import LANES, ROWS, SIZE_ROW, TIME_ROW
 from engine.integrator.source.series import ORDER
-from engine.integrator.source.step_flags import GATE, HIDDEN, NEAR, OVERSHOOT
+from engine.integrator.source.step_flags import CROSSES, GATE, HIDDEN, NEAR, OVERSHOOT
 
 # Nodes and weights of Gauss's rule with 8 points on [−1, 1].
 _NODES = (
@@ -61,12 +61,11 @@ def fill_lanes(orbits):
 
 
 @kernel
-def find_section_passages(step, jets, coefficients, tolerance, horizon, direction, exits, state, passages, found):
-    """Find the first m passages of y = 0 of each orbit before it escapes through an exit or passes `horizon`.
+def find_section_passages(step, jets, coefficients, tolerance, horizon, exits, state, passages, found):
+    """Find the first m crossings of the section by each orbit before it escapes through an exit or passes `horizon`.
 
-    direction: 1 for passages from y < 0 to y ≥ 0, −1 for passages from y > 0 to y ≤ 0; exits: `propagate.Exits`; state (4,
-    lanes), lanes a multiple of `propagate.VECTOR` up to `LANES`; passages (lanes, m, 3 or 4): set to x, px, time and py; found
-    (lanes,): zeros, set to the numbers of passages.
+    exits: `propagate.Exits`; state (4, lanes), lanes a multiple of `propagate.VECTOR` up to `LANES`; passages (lanes, m, 3 to 5):
+    set to x, px, time, py and y; found (lanes,): zeros, set to the numbers of crossings.
     """
     lanes = state.shape[1]
     most_passages = passages.shape[1]
@@ -82,7 +81,8 @@ def find_section_passages(step, jets, coefficients, tolerance, horizon, directio
             orbit = lane_orbit[i]
             curves = exits.curves[exits.curve_row[orbit]]
             is_full = found[orbit] == most_passages
-            passes = direction * now[1, i] < 0.0 and direction * new[1, i] >= 0.0
+            passes = crossed[i] > 0 or flag[i] & CROSSES != 0
+            crossed[i] = 0
             if flag[i] == 0 and not passes and not is_full:
                 continue
             fails = has_failed(new, i)
@@ -99,7 +99,7 @@ def find_section_passages(step, jets, coefficients, tolerance, horizon, directio
                 buffer.channel[buffered] = channel
                 buffered += 1
                 if buffered == lanes:
-                    _locate_passages(jets, coefficients, horizon, direction, buffer, buffered, exits, passages, found)
+                    _locate_passages(jets, coefficients, horizon, buffer, buffered, exits, passages, found)
                     buffered = 0
             if fails or is_full or channel > 0 or flag[i] & OVERSHOOT != 0:
                 # The last active lane takes the place of the lane whose orbit has ended.
@@ -108,13 +108,14 @@ def find_section_passages(step, jets, coefficients, tolerance, horizon, directio
                     new[c, i] = new[c, active]
                 lane_orbit[i] = lane_orbit[active]
         now, new = new, now
-    _locate_passages(jets, coefficients, horizon, direction, buffer, buffered, exits, passages, found)
+    _locate_passages(jets, coefficients, horizon, buffer, buffered, exits, passages, found)
 
 
 @subroutine
-def _locate_passages(jets, coefficients, horizon, direction, buffer, n, exits, passages, found):
-    """Append the passages in a direction in each of the first `n` buffered steps to the passages of the orbit of the step."""
-    start = buffer.start
+def _locate_passages(jets, coefficients, horizon, buffer, n, exits, passages, found):
+    """Append the crossings in each of the first `n` buffered steps to the passages of the orbit of the step."""
+    start, section = buffer.start, exits.gates[exits.curves.shape[1] :]
+    work = np.empty((ORDER + 1, start.shape[1]))
     x_jet = np.empty((ORDER + 1, start.shape[1]))
     y_jet = np.empty((ORDER + 1, start.shape[1]))
     call_jets(jets, coefficients, start.shape[1], start[0], start[1], start[2], start[3], x_jet, y_jet)
@@ -124,7 +125,7 @@ def _locate_passages(jets, coefficients, horizon, direction, buffer, n, exits, p
             exit_curve = exits.curves[exits.curve_row[buffer.orbit[i]], buffer.channel[i] - 1]
             duration = find_exit_time(x_jet, y_jet, i, duration, exit_curve)
         duration = min(duration, horizon - start[TIME_ROW, i])
-        append_crossings(x_jet, y_jet, i, direction, start[TIME_ROW, i], duration, passages, found, buffer.orbit[i])
+        append_crossings(x_jet, y_jet, i, start[TIME_ROW, i], duration, section, work, passages, found, buffer.orbit[i])
 
 
 @kernel

@@ -19,7 +19,7 @@ from engine.integrator.kernels.events import (
     BOUNDED,
     FAILED,
     NOT_COMPUTED,
-    count_upward_crossings,
+    count_crossings,
     crossed_exit,
     find_exit_time,
     passed_exit,
@@ -29,7 +29,7 @@ from engine.integrator.kernels.events import (
 from engine.integrator.kernels.exit_geometry import CLOSED, SHAPE, reached_exit
 from engine.integrator.source.recurrence import LANES, REMAINDER_ROW, ROWS, SIZE_ROW, TIME_ROW
 from engine.integrator.source.series import ORDER
-from engine.integrator.source.step_flags import GATE, HIDDEN, NEAR, OVERSHOOT
+from engine.integrator.source.step_flags import CROSSES_PLACE, GATE, HIDDEN, NEAR, OVERSHOOT
 
 VECTOR = 8
 """The number of active lanes is rounded up to a multiple of this, so that no lane is in the scalar remainder of a loop."""
@@ -42,13 +42,14 @@ GOES_ON = -1
 
 
 class Exits(NamedTuple):
-    """Exits at one or more energies.
+    """Exits at one or more energies, and the surface of section.
 
     Attributes
     ----------
     gates
-        (exits, 3) three numbers for each exit, the same for all energies. For a channel, they are g_x, g_y and g: an orbit can be
-        outside only beyond the line g_x x + g_y y = g. For a disc or the escape circle, they are its centre and its radius.
+        (exits + rows, 3) three numbers for each exit, the same for all energies. For a channel, they are g_x, g_y and g: an orbit
+        can be outside only beyond the line g_x x + g_y y = g. For a disc or the escape circle, they are its centre and its
+        radius. Further rows describe the section at which crossings are counted, see `engine.integrator.kernels.sections`.
     curves
         (energies, exits, columns) exits, see `engine.integrator.kernels.exit_geometry`.
     curve_row
@@ -70,9 +71,9 @@ class Orbits(NamedTuple):
     t
         (n,) time reached: the escape time, or the start of the next step.
     crossings
-        (n,) upward crossings of y = 0 until `t`.
+        (n,) crossings of the section until `t`.
     last_crossings
-        (n,) upward crossings between `t` and t_max, for bounded orbits.
+        (n,) crossings between `t` and t_max, for bounded orbits.
     fate
         (n,) int8: the number of the exit at which an orbit ended, BOUNDED, NOT_COMPUTED or FAILED.
     pending
@@ -95,7 +96,7 @@ class _StepBuffer(NamedTuple):
 
     start (4, lanes): state at the start of each step; h (lanes,): its size; orbit (lanes,): the number of its orbit; channel
     (lanes,): the channel through which the orbit escapes, 0 if the step passes the horizon, or GOES_ON; x_jet, y_jet (ORDER + 1,
-    lanes): work space for the series.
+    lanes): work space for the series; section_jet: that of the form of a section.
     """
 
     start: np.ndarray
@@ -104,6 +105,7 @@ class _StepBuffer(NamedTuple):
     channel: np.ndarray
     x_jet: np.ndarray
     y_jet: np.ndarray
+    section_jet: np.ndarray
 
 
 @subroutine
@@ -116,7 +118,8 @@ def fill_vectors(count):
 def make_buffer(lanes):
     """Return an empty buffer for as many steps as there are lanes."""
     h, orbit, channel = np.zeros(lanes), np.zeros(lanes, np.int64), np.zeros(lanes, np.int64)
-    return _StepBuffer(np.zeros((4, lanes)), h, orbit, channel, np.zeros((ORDER + 1, lanes)), np.zeros((ORDER + 1, lanes)))
+    x_jet, y_jet, section_jet = np.zeros((ORDER + 1, lanes)), np.zeros((ORDER + 1, lanes)), np.zeros((ORDER + 1, lanes))
+    return _StepBuffer(np.zeros((4, lanes)), h, orbit, channel, x_jet, y_jet, section_jet)
 
 
 @kernel
@@ -161,8 +164,8 @@ def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget,
                 if buffered == LANES:
                     _locate_events(jets, coefficients, buffer, buffered, horizon, exits, orbits)
                     buffered = 0
-            elif not ends and now[1, i] < 0.0 and new[1, i] >= 0.0:
-                crossed[i] += 1
+            elif not ends:
+                crossed[i] += flag[i] >> CROSSES_PLACE
             if ends:
                 active, next_orbit = _refill_lane(orbits, todo, next_orbit, active, new, i, lane_orbit, crossed)
         now, new = new, now
@@ -286,30 +289,36 @@ def _buffer_step(now, new, i, orbit, channel, buffer, k):
 
 @subroutine
 def _locate_events(jets, coefficients, buffer, n, horizon, exits, orbits):
-    """Locate the events in the first `n` buffered steps: upward crossings and, for orbits that end, the exit and its time."""
-    start, x_jet, y_jet = buffer.start, buffer.x_jet, buffer.y_jet
+    """Locate the events in the first `n` buffered steps: crossings and, for orbits that end, the exit and its time."""
+    start, x_jet, y_jet, work = buffer.start, buffer.x_jet, buffer.y_jet, buffer.section_jet
+    section = exits.gates[exits.curves.shape[1] :]
     call_jets(jets, coefficients, start.shape[1], start[0], start[1], start[2], start[3], x_jet, y_jet)
     for i in range(n):
         orbit = buffer.orbit[i]
         h = buffer.h[i]
         channel = buffer.channel[i]
-        if channel == GOES_ON:
-            orbits.crossings[orbit] += count_upward_crossings(y_jet, i, h)
-            continue
-        curves = exits.curves[exits.curve_row[orbit]]
-        if channel == 0:
-            x_end, y_end = series_value(x_jet, i, h), series_value(y_jet, i, h)
-            channel = crossed_exit(start[0, i], start[1, i], x_end, y_end, curves, exits.gates)
-            if channel == 0:
-                channel = passed_exit(x_jet, y_jet, i, h, curves)
         # The series of the whole step is used, so that the escape time is the same to the bit for every horizon.
-        tau = find_exit_time(x_jet, y_jet, i, h, curves[channel - 1]) if channel > 0 else h
-        if channel == 0 or orbits.t[orbit] + tau > horizon:
+        tau, is_bounded = h, False
+        curves = exits.curves[exits.curve_row[orbit]]
+        if channel != GOES_ON:
+            if channel == 0:
+                x_end, y_end = series_value(x_jet, i, h), series_value(y_jet, i, h)
+                channel = crossed_exit(start[0, i], start[1, i], x_end, y_end, curves, exits.gates)
+                if channel == 0:
+                    channel = passed_exit(x_jet, y_jet, i, h, curves)
+            if channel > 0:
+                tau = find_exit_time(x_jet, y_jet, i, h, curves[channel - 1])
+            is_bounded = channel == 0 or orbits.t[orbit] + tau > horizon
+        # There is one call, because each call would be another copy of the code.
+        count = count_crossings(x_jet, y_jet, i, horizon - orbits.t[orbit] if is_bounded else tau, section, work)
+        if is_bounded:
             # The state stays at the start of the step that would pass t_max, so that the orbit can be continued.
-            orbits.last_crossings[orbit] = count_upward_crossings(y_jet, i, horizon - orbits.t[orbit])
+            orbits.last_crossings[orbit] = count
             orbits.fate[orbit] = BOUNDED
             continue
-        orbits.crossings[orbit] += count_upward_crossings(y_jet, i, tau)
+        orbits.crossings[orbit] += count
+        if channel == GOES_ON:
+            continue
         orbits.t[orbit] += tau
         orbits.state[orbit, 0] = series_value(x_jet, i, tau)
         orbits.state[orbit, 1] = series_value(y_jet, i, tau)

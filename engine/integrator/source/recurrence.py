@@ -35,6 +35,8 @@ from engine.foundations.arrays import read_only
 from engine.integrator.source.expression_recurrence import ExpressionStructure, structure_of_expression
 from engine.integrator.source.generated_functions import GeneratedFunction, Place, lane_loop, point_function
 from engine.integrator.source.polynomial_recurrence import PolynomialStructure, Terms, structure_of_polynomial
+from engine.integrator.source.section_crossings import flag_crossings, section_places
+from engine.integrator.source.section_numbers import COLUMNS
 from engine.integrator.source.series import (
     LONGEST_STEP,
     ORDER,
@@ -45,7 +47,7 @@ from engine.integrator.source.series import (
     cauchy,
     total,
 )
-from engine.integrator.source.step_flags import OVERSHOOT, flag_gates, flag_hidden_crossings
+from engine.integrator.source.step_flags import CROSSES, CROSSES_PLACE, OVERSHOOT, flag_gates, flag_hidden_crossings
 from engine.integrator.source.straight_line import StraightLine, Value, where
 
 TOLERANCE = 3e-15
@@ -95,8 +97,8 @@ class GeneratedCode(NamedTuple):
     Attributes
     ----------
     functions
-        ``step``, ``limited_step``, ``jets``, ``tangent`` and ``potential_value``. Besides the programs, their kernels refer to
-        ``kernel`` and ``read_table``.
+        ``step``, ``limited_step``, ``jets``, ``tangent`` and ``potential_value``; only ``step`` for a section other than y = 0,
+        upward. Besides the programs, their kernels refer to ``kernel`` and ``read_table``.
     entries
         The entries of the table, as defined by the structure.
     """
@@ -236,18 +238,31 @@ def _step(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
     x, y = structure.orbit(program, remainders)
     h = _step_size(program, x, y, structure)
     x_end, y_end = _end_of_step(x, h, remainders.get("x")), _end_of_step(y, h, remainders.get("y"))
-    hidden_flag = flag_hidden_crossings(y, y_end[0], h) if structure.can_hide_crossings else program.constant(0)
+    crossing, hidden_flag = _crossings(structure, program, (x, y), (x_end, y_end), h)
     gate_places, gate_flag = flag_gates(structure.setting, program, (x, y), (x_end[0], y_end[0]), h)
     t_end = program.input("t0") + h
     flags = hidden_flag + gate_flag + where(t_end <= program.input("horizon"), 0, OVERSHOOT)
     writes = {
-        Place("crossed"): where((y[0] < 0.0) & (y_end[0] >= 0.0) & flags.equals(0), 1, 0),
-        Place("flag"): flags,
+        Place("crossed"): where(flags.equals(0), crossing >> CROSSES_PLACE, 0),
+        Place("flag"): flags + where(flags.equals(0), 0, crossing),
         **_end_of_lane(x_end, y_end, t_end, h),
     }
     arguments = "tolerance, horizon, gates, now, new, flag, crossed"
-    constants = {name: Place("gates", *place) for name, place in gate_places.items()}
+    places = gate_places | section_places(len(gate_places) // COLUMNS)
+    constants = {name: Place("gates", *place) for name, place in places.items() if name in program.parameters}
     return lane_loop(program, arguments, _lane_reads(structure), writes, constants, rows=dict.fromkeys(("now", "new"), LANES))
+
+
+def _crossings(
+    structure: Structure, program: StraightLine, series: tuple[Series, Series], ends: tuple[_AxisEnd, _AxisEnd], h: Value
+) -> tuple[Value, Value]:
+    """Return CROSSES or 0, whether the ends of a step are on both sides of the section, and the flag of hidden crossings."""
+    (x, px, _), (y, py, _) = ends
+    if structure.setting.section is not None:
+        return flag_crossings(program, structure.setting.section, series, (x, y, px, py), h)
+    _, y_series = series
+    hidden_flag = flag_hidden_crossings(y_series, y, h) if structure.can_hide_crossings else program.constant(0)
+    return where((y_series[0] < 0.0) & (y >= 0.0), CROSSES, 0), hidden_flag
 
 
 def _limited_step(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
@@ -315,6 +330,8 @@ def generate_code(structure: Structure) -> GeneratedCode:
     """Return the generated functions for all potentials of a structure; large formulas take seconds."""
     # All programs share the table, which each of them extends.
     table: dict[Any, int] = {}
+    if structure.setting.section is not None:
+        return GeneratedCode((_step(structure, table),), tuple(table))
     functions = [
         *(write(structure, table) for write in (_step, _limited_step, _jets, _tangent)),
         *(point_function(name, append, table) for name, append in structure.point_functions().items()),

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import NamedTuple
 
+from engine.integrator.source.section_numbers import SectionForm
 from engine.integrator.source.straight_line import StraightLine, Value
 
 ORDER = 19
@@ -45,11 +46,14 @@ class Setting(NamedTuple):
         For each circle at which orbits end: −1 if they end inside it, 1 if they end outside.
     rotates
         Whether the frame rotates.
+    section
+        The kind of the form that vanishes on the surface of section; None for y = 0, crossed upward.
     """
 
     channels: int = 0
     sides: tuple[int, ...] = ()
     rotates: bool = False
+    section: SectionForm | None = None
 
     @property
     def needs_whole_steps(self) -> bool:

@@ -6,7 +6,7 @@ from engine.integrator.source.series import ORDER, Series, Setting
 from engine.integrator.source.straight_line import StraightLine, Value, where
 
 HIDDEN = 1
-"""Flag of a step that may hide crossings of y = 0."""
+"""Flag of a step that may hide crossings of the section."""
 
 GATE = 2
 """Flag of a step that ends beyond the gate of an exit."""
@@ -16,6 +16,12 @@ OVERSHOOT = 4
 
 NEAR = 8
 """Flag of a step that may cross and recross an exit, so that the step can end before the gate."""
+
+CROSSES_PLACE = 4
+"""Place of the bit `CROSSES`."""
+
+CROSSES = 1 << CROSSES_PLACE
+"""Flag, besides others, of a step that crosses the section between its ends."""
 
 # Maxima of σ − σ^k for 0 ≤ σ ≤ 1, by k, rounded up; for larger k, 1 is used.
 _LARGEST_SAGS = {2: 0.25, 3: 0.385, 4: 0.473}
@@ -30,7 +36,7 @@ def _bend(series: Series, h: Value) -> Value:
     return bound * two_h * h
 
 
-def _sag(series: Series, h: Value) -> Value:
+def largest_sag(series: Series, h: Value) -> Value:
     """Return Σ_{k≥2} max(σ − σ^k) |x_k| h^k, which is at least the distance of a coordinate from its chord over a step."""
     bound = abs(series[ORDER])
     for k in reversed(range(2, ORDER)):
@@ -39,7 +45,7 @@ def _sag(series: Series, h: Value) -> Value:
 
 
 def flag_hidden_crossings(y: Series, end: Value, h: Value) -> Value:
-    """Return the test of a step for hidden crossings of y = 0, for potentials where these are possible: HIDDEN or 0.
+    """Return the test of a step for hidden zeros of a series, such as y, with the value `end` at its end: HIDDEN or 0.
 
     The bound of `_bend` is at least h · max|ẏ − ẏ(0)|. Therefore there are no hidden crossings if ẏ keeps its sign
     (|ẏ(0)| h > bound), or if both ends lie on one side, farther away than bound/2.
@@ -71,7 +77,7 @@ def flag_gates(
         return places, flag
     start = series[0][0], series[1][0]
     # All points of the step are within this distance of its chord.
-    sag = _sag(series[0], h) + _sag(series[1], h)
+    sag = largest_sag(series[0], h) + largest_sag(series[1], h)
     half_chord = 0.5 * (abs(end[0] - start[0]) + abs(end[1] - start[1]))
     for g_x, g_y, g in lines:
         for x, y in (start, end):

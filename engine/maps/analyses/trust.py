@@ -249,7 +249,7 @@ class TrustTest:
         """Integrate the undecided orbits of one rerun to the horizon."""
         propagate_batch(
             self.spec.potential, self._curves, rerun.batch, self._undecided, horizon,
-            final=horizon == self.spec.t_max, tolerance=rerun.tolerance, execution=execution,
+            final=horizon == self.spec.t_max, tolerance=rerun.tolerance, execution=execution, section=self.spec.section.numbers,
         )  # fmt: skip
 
     def _find_chaotic(self, time: float) -> None:

@@ -58,6 +58,9 @@ class CatalogueEntry:
         The names of the parameters that users can choose.
     energies
         Energies to explore at the values of `parameters`; None for the range derived from the potential.
+    sections
+        Surfaces of section in use for the system besides y = 0, such as that of the reference or those through its bodies, as
+        text, see `read_section`.
     """
 
     name: str
@@ -68,6 +71,7 @@ class CatalogueEntry:
     parameters: Mapping[str, float] = field(default_factory=lambda: _WELL_DEFAULTS)
     adjustable: tuple[str, ...] = tuple(_WELL_DEFAULTS)
     energies: EnergyRange | None = None
+    sections: tuple[str, ...] = ()
 
     @property
     def is_well(self) -> bool:

@@ -24,6 +24,7 @@ ROTATING_ENTRIES = (
         {"m": 0.5} | _UNIT_ROTATION,
         ("m",),
         EnergyRange(-2.6, -1.0, (), -1.6),
+        ("x = -0.5 up", "x = 0.5 up", "apsis about (-0.5, 0)", "apsis about (0.5, 0)"),
     ),
     CatalogueEntry(
         "Earth-Moon",
@@ -35,6 +36,7 @@ ROTATING_ENTRIES = (
         {"m": _MOON_MASS} | _UNIT_ROTATION,
         ("m",),
         EnergyRange(-1.14, -1.045, (), -1.095, 4),
+        ("x = 0 up", "x = 0 down", "pericentre"),
     ),
     CatalogueEntry(
         "Hill",
@@ -45,6 +47,7 @@ ROTATING_ENTRIES = (
         _UNIT_ROTATION,
         (),
         EnergyRange(-3.0, -1.0, (), -2.0),
+        ("x = 0 up", "pericentre"),
     ),
     CatalogueEntry(
         "Star cluster",
@@ -56,6 +59,7 @@ ROTATING_ENTRIES = (
         {"c": 0.15, "k": 1.4} | _UNIT_ROTATION,
         ("c", "k"),
         EnergyRange(-3.0, -0.9, (), -1.6),
+        ("x = 0 up", "pericentre"),
     ),
     CatalogueEntry(
         "Barred galaxy",
@@ -67,6 +71,7 @@ ROTATING_ENTRIES = (
         {"a": 10.0, ROTATION: 4.5},
         ("a", ROTATION),
         EnergyRange(-3500.0, -3010.0, (), -3200.0, 1),
+        ("x = 0 up", "apocentre"),
     ),
     CatalogueEntry(
         "Logarithmic bar",
@@ -89,6 +94,7 @@ ROTATING_ENTRIES = (
         {"k": 0.5},
         ("k", ROTATION),
         EnergyRange(-1.5, 1.0, (), 0.02),
+        ("x = -1 up", "x = 1 up"),
     ),
     CatalogueEntry(
         "Four hills",

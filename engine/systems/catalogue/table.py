@@ -46,6 +46,7 @@ _ENTRIES = (
         "½(x² + y²) + x²y − y³/3",
         "Three channels, one of them along the +y axis: the original orientation, even in x but not in y.",
         "M. Hénon & C. Heiles, Astronomical Journal 69, 73 (1964)",
+        sections=("x = 0, px > 0",),
     ),
     CatalogueEntry(
         "Barbanis",

@@ -34,7 +34,7 @@ export class Ensemble {
       leaving: integrator.array("int8", [count]),
       escapeTime: integrator.array("float64", [count]),
       last: integrator.array("float64", [count]),
-      section: integrator.array("float64", [2, count]),
+      section: integrator.array("float64", [4, count]),
     }
     this.#positions = integrator.array("float64", [2, count])
     this.#channels = integrator.array("int8", [count])
@@ -71,14 +71,13 @@ export class Ensemble {
     return this.#arrays.escapeTime.values
   }
 
-  /** x of the last upward crossing of y = 0; NaN before the first crossing. */
-  get sectionX() {
-    return this.#arrays.section.at(0).values
-  }
-
-  /** px of the last upward crossing of y = 0. */
-  get sectionPx() {
-    return this.#arrays.section.at(1).values
+  /**
+   * Return a coordinate of each orbit at its last crossing of the section, in units of the well; NaN before the first crossing.
+   *
+   * @param {number} column  0 for x, 1 for y, 2 for px, 3 for py
+   */
+  atSection(column) {
+    return this.#arrays.section.at(column).values
   }
 
   /** Return all orbits to their starts. */

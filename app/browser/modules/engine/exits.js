@@ -18,13 +18,14 @@ export class Exits {
    * @param {ArrayLike<number>} energies
    */
   constructor(integrator, energies) {
-    const {exits, layout} = integrator.system
+    const {exits, layout, section} = integrator.system
     this.#integrator = integrator
     this.#columns = layout.exits
     /** Values of the exits at each energy, of shape (energies, exits, columns). */
     this.curves = integrator.array("float64", [energies.length, exits.length, layout.exits.count])
-    /** Values of the exits at all energies, of shape (exits, 3). */
-    this.gates = integrator.array("float64", [exits.length, 3])
+    /** Values of the exits at all energies, and the rows of the section, of shape (exits + rows, 3). */
+    this.gates = integrator.array("float64", [exits.length + section.length, 3])
+    section.forEach((row, index) => this.gates.at(exits.length + index).values.set(row))
     exits.forEach((exit, index) => ("row" in exit ? this.#setCircle(exit, index) : this.#interpolate(exit, index, energies)))
   }
 

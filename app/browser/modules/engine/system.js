@@ -11,6 +11,7 @@
  * @property {PolynomialTable | null} polynomial  V if it is a polynomial
  * @property {number} innerRadius  radius of the gap at the origin; 0 if the origin belongs to the well
  * @property {ExitData[]} exits  one for each outcome: exits over saddles, then circles
+ * @property {number[][]} section  rows of numbers of the surface of section; none for y = 0, upward
  * @property {number[] | null} mirror  mirror image of each outcome under x → −x, after an entry 0; null without this symmetry
  * @property {{length: number, time: number, energy: number}} units
  * @property {number} numberDistance  of an exit, from the origin, as a share of the distance of the middle of the exit

@@ -322,21 +322,20 @@ class EnsemblePlayer {
   }
 
   /**
-   * Draw each orbit on the map of (x, px), at its last upward crossing of y = 0.
+   * Draw each orbit on the map of a slice on the section, at its last crossing of the section.
    *
    * @param {Ensemble} ensemble
    * @param {import("./present.js").Shown} shown
    */
-  #paintSection({sectionX, sectionPx}, {scene, colours}) {
+  #paintSection(ensemble, {scene, colours}) {
     const [picture, view] = [mapPictures()[0], scene()]
-    // The first row of `motion` is the origin of the slice, whose second coordinate is y. The section is y = 0.
-    const isSection = view?.slice.axes.join() === "x,px" && view.slice.motion[0][1] === 0
+    const [xs, ys] = view?.sectionColumns?.map(column => ensemble.atSection(column)) ?? []
     // Before the first crossing, the map stays uncovered.
-    if (!picture || !view || !isSection || !sectionX.some(Number.isFinite))
+    if (!picture || !view || !xs?.some(Number.isFinite))
       return void (this.#sectionCanvas.style.display = "none")
     const style = getComputedStyle(this.#note)
     this.#sectionCanvas.style.background = `color-mix(in srgb, ${style.getPropertyValue("--ui-page")} ${100 * COVER_OPACITY}%, transparent)`
-    const points = {xs: sectionX, ys: sectionPx, units: view.slice.units}
+    const points = {xs, ys, units: view.slice.units}
     this.#paint(this.#sectionCanvas, picture.box, view.window, colours(), points)
   }
 

@@ -8,6 +8,7 @@
  * @property {number[]} ends  place of each outcome, from fate 1, among all ends
  * @property {string[]} words  descriptions of all ends
  * @property {number[]} leastCrossings  fewest crossings of each class
+ * @property {[string, string]} crossingWords  words for one crossing and for several
  * @property {number} undecided  code of undecided pixels
  * @property {number[][]} differences  code of the difference of two pixels, by the codes of both
  * @property {string[]} layers  columns of layers, which only the server computes
@@ -51,6 +52,7 @@ export function pixelColumns(coding, view, pixels, serverColumns, compared) {
     ...Object.fromEntries(coding.layers.map(name => [name, [emptyImage]])),
     difference: [compared ? new Bytes(differenceCodes(coding, view, fate, compared).buffer, shape) : emptyImage],
     ends: [coding.words],
+    crossing_words: [coding.crossingWords],
     x: [window.xLow],
     y: [window.ordinateLow],
     dw: [window.xHigh - window.xLow],

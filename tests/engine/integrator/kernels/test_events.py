@@ -6,12 +6,19 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 
-from engine import CASES, find_lyapunov_orbits
-from engine.integrator.kernels.events import append_crossings, count_upward_crossings, crossed_exit, find_exit_time
+from engine import CASES, find_lyapunov_orbits, read_section
+from engine.integrator.kernels.events import append_crossings, count_crossings, crossed_exit, find_exit_time
 from engine.integrator.kernels.exit_geometry import CURVE_COLUMNS, HALF_WIDTH, ORIGIN_X, OUTWARD_X, REACH, exit_distance
+from engine.integrator.kernels.sections import UPWARD
 from engine.integrator.source.series import ORDER
 
 X = Polynomial([0.3, -0.7, 0.2])
+# The section y = 0 by direction: upward, downward, and both.
+SECTIONS = {
+    1: UPWARD,
+    -1: np.array(read_section("y = 0 down").numbers.rows),
+    0: np.array(read_section("y = 0 both").numbers.rows),
+}
 
 
 def jet_of(polynomial: Polynomial) -> np.ndarray:
@@ -21,13 +28,14 @@ def jet_of(polynomial: Polynomial) -> np.ndarray:
 
 
 def crossings(polynomial: Polynomial, duration: float = 1.0) -> int:
-    return int(count_upward_crossings(jet_of(polynomial), 0, duration))
+    jet = jet_of(polynomial)
+    return int(count_crossings(jet_of(X), jet, 0, duration, UPWARD, jet))
 
 
 def points_of(y: Polynomial, direction: int) -> np.ndarray:
     """Return x, px and time of the crossings of a step, of shape (n, 3). The step begins at t = 5, and its x is `X`."""
     points, found = np.full((2, 8, 3), np.nan), np.zeros(2, np.int64)
-    append_crossings(jet_of(X), jet_of(y), 0, float(direction), 5.0, 1.0, points, found, 1)
+    append_crossings(jet_of(X), jet_of(y), 0, 5.0, 1.0, SECTIONS[direction], jet_of(X), points, found, 1)
     assert found[0] == 0
     return points[1, : found[1]]
 
