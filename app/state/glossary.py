@@ -45,7 +45,7 @@ GLOSSARY: Mapping[str, str] = MappingProxyType(
         ),
         "centre": "A body: an orbit that enters the disc around it has collided with it.",
         "escape radius": "A distance from the origin beyond which orbits have escaped, in place of exits over saddles.",
-        "direct escapes": "Orbits that escape without crossing y = 0 upward.",
+        "direct escapes": "Orbits that escape without a crossing of the section, of y = 0 upward by default.",
         **{term: meaning for measure in MEASURES.values() for term, meaning in measure.terms.items()},
     }
 )

@@ -77,8 +77,6 @@ class View:
         The system, which may not be reviewed yet.
     plane
         The slice.
-    section
-        The surface of section at which crossings are counted.
     energy
         h, in the units of the potential; None for the initial energy of the system. Unused on a slice with an axis h.
     t_max
@@ -93,6 +91,8 @@ class View:
         Names of the layers that are on, as in `plots.layers.table.LAYERS`.
     settings
         The values of all `plots.layers.table.SETTINGS`, by name.
+    section
+        The surface of section at which crossings are counted.
     analysis
         The analysis shown beside the maps, one of `ANALYSES`.
     watched
@@ -103,7 +103,6 @@ class View:
 
     system: System = _FIRST_SYSTEM
     plane: Slice = Plane.X_PX
-    section: Section = Section.Y_UP
     energy: float | None = None
     t_max: float = 1e5
     resolution: int = MapSpec.resolution[0]
@@ -111,6 +110,7 @@ class View:
     box: Window | None = None
     layers: frozenset[str] = frozenset()
     settings: Settings = field(default_factory=default_settings, hash=False)
+    section: Section = Section.Y_UP
     analysis: str = Analysis.ORBIT
     watched: WatchedStarts = field(default=WatchedStarts())
     starts: tuple[Start, ...] = ()

@@ -200,7 +200,7 @@ class ViewState(param.Parameterized):
     @property
     def subject(self) -> Subject:
         """What the studies of the view are about."""
-        return Subject(self.system, self.potential, self.plane, self.section, self.energy, self.energies, self.t_max)
+        return Subject(self.system, self.potential, self.plane, self.energy, self.energies, self.t_max, self.section)
 
     @property
     def colours(self) -> Palette:

@@ -57,7 +57,7 @@ def run(
     entry = _find_study(study)
     energies = review_system(system).energies
     chosen_energy = energies.first if energy is None else energy
-    subject = Subject(system, potential, plane, section, chosen_energy, energies, t_max)
+    subject = Subject(system, potential, plane, chosen_energy, energies, t_max, section)
     job = entry.job(subject, _choose_axis(entry, system, against))
     stem = Path(f"{entry.files}-{file_name_part(case)}")
     paths = name_files(output, ["nc", "csv", *FigureFormat], ["nc", "csv"], stem)

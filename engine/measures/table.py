@@ -97,7 +97,7 @@ _ENTRIES = (
         "shares", "Shares of the interior starts", "how many starts end where",
         lambda measured: measured.statistics,
         (
-            Quantity("direct_share", "share that escapes without an upward crossing of y = 0", attrgetter("direct_share")),
+            Quantity("direct_share", "share that escapes without a crossing of the section", attrgetter("direct_share")),
         ),
         curve=Curve("percentage of starts"),
         other_variables=_share_variables,

@@ -4,27 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import ClassVar
 
 from engine.evidence.birkhoff_averages import TORUS_DIGITS
 from engine.foundations.validation import checks_types
 from engine.foundations.wording import format_time
-from engine.propagation.fates import Evidence, Fate, OrbitResult, describe_evidence, describe_fate, name_fate, outcome_of
-from engine.slices.sections.section import Section
-from engine.slices.sections.section_text import read_section
+from engine.propagation.fates import Evidence, Fate, describe_evidence, describe_fate, name_fate, outcome_of
 from engine.systems.outcomes import Outcome
 from engine.trajectories.birkhoff_digits import BirkhoffDigits
 from engine.trajectories.chaos_indicators import INDICATORS, IndicatorVerdict, Verdict, evaluate_indicators
-from engine.trajectories.trajectory import Orbit
-
-if TYPE_CHECKING:
-    import xarray as xr
+from engine.trajectories.trajectory import Orbit, SectionResult
 
 _DEVIATION_INDICATORS = {indicator.name for indicator in INDICATORS if indicator.of_deviations}
 
 
 @dataclass(frozen=True)
-class OrbitVerdict(OrbitResult):
+class OrbitVerdict(SectionResult):
     """The facts known about one orbit.
 
     Attributes
@@ -51,8 +46,6 @@ class OrbitVerdict(OrbitResult):
         What each indicator concludes: SALI, the Lyapunov exponent, the Birkhoff digits of both halves of a bounded orbit and, if
         given, the digits of windows. Each finding has a `name`, a `value` at the end of the orbit (NaN if not available), a
         `conclusion` (one of the words of `character`, or None) and a `sentence` with the reason.
-    section
-        The surface of section at which crossings are counted.
     """
 
     fate: int
@@ -64,14 +57,7 @@ class OrbitVerdict(OrbitResult):
     outcomes: tuple[Outcome, ...] = field(default=(), repr=False)
     exits_unknown: str = ""
     findings: tuple[IndicatorVerdict, ...] = field(default=(), repr=False, compare=False)
-    section: Section = Section.Y_UP
     codes: ClassVar = {"fate": Fate, "evidence": Evidence}
-    held_as: ClassVar = OrbitResult.held_as | {"section": "section"}
-
-    @classmethod
-    def read_parts(cls, dataset: xr.Dataset) -> dict[str, Any]:
-        """Return the section, which files hold as text."""
-        return {"section": read_section(dataset.attrs["section"])} if "section" in dataset.attrs else {}
 
     @property
     def is_bounded_for_ever(self) -> bool:

@@ -40,7 +40,30 @@ _MAX_INTERVALS = 500_000
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Orbit(OrbitResult):
+class SectionResult(OrbitResult):
+    """Base of results on orbits whose crossings of a surface of section are counted.
+
+    Attributes
+    ----------
+    section
+        The surface of section.
+    """
+
+    section: Section = field(default=Section.Y_UP, kw_only=True)
+    held_as: ClassVar[dict[str, str]] = OrbitResult.held_as | {"section": "section"}
+
+    def to_xarray(self) -> xr.Dataset:
+        """Return the dataset of a result, with the section as text."""
+        return super().to_xarray().assign_attrs(section=self.section.text)
+
+    @classmethod
+    def read_parts(cls, dataset: xr.Dataset) -> dict[str, Any]:
+        """Return the section, which files hold as text."""
+        return {"section": read_section(dataset.attrs["section"])} if "section" in dataset.attrs else {}
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Orbit(SectionResult):
     """One orbit, dimensionless, sampled at n evenly spaced times from 0 to its end or t_max; arrays are read-only.
 
     An orbit exactly at rest on a saddle is bounded; its samples end where rounding carries the orbit off the saddle.
@@ -76,8 +99,6 @@ class Orbit(OrbitResult):
     exits_unknown
         The reason why the exits over saddles are not known at this energy; empty if they are known. With a reason, no fate is an
         exit, and `Fate.BOUNDED` only means that the orbit has no other outcome by t_max.
-    section
-        The surface of section at which crossings are counted.
     """
 
     t: np.ndarray = field(metadata=TIME)
@@ -97,14 +118,7 @@ class Orbit(OrbitResult):
     time_unit: float = field(default=1.0, metadata=TIME)
     potential: Potential | None = field(default=None, repr=False)
     exits_unknown: str = ""
-    section: Section = Section.Y_UP
     codes: ClassVar = {"fate": Fate, "evidence": Evidence}
-    held_as: ClassVar = OrbitResult.held_as | {"section": "section"}
-
-    @classmethod
-    def read_parts(cls, dataset: xr.Dataset) -> dict[str, Any]:
-        """Return the section, which files hold as text."""
-        return {"section": read_section(dataset.attrs["section"])} if "section" in dataset.attrs else {}
 
     @property
     def outcomes(self) -> tuple[Outcome, ...]:  # type: ignore[override]
@@ -219,7 +233,7 @@ def integrate_orbit(
     units, section = potential.units, checked_section(section)
     numbers = section.in_well_units(units).numbers
     orbit = _integrate(potential.in_well_units, start / units.state, t_max / units.time, numbers, execution)
-    made_by = potential.describe_run(t_max=t_max, section=section.text)
+    made_by = potential.describe_run(t_max=t_max)
     return replace(units.restore(orbit), potential=potential, section=section, made_by=made_by)
 
 

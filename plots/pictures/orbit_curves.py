@@ -43,7 +43,7 @@ class OrbitCurves:
     histories
         Histories by name, one for each of `ORBIT_QUANTITIES`.
     section
-        x and px of the upward crossings of y = 0, of shape (n, 2).
+        The crossings of the section of the orbit, of shape (n, 2), see `Section.axes`; by default x and px on y = 0.
     visits
         Opacity of each pixel of the density image of a long path, uint8 of shape (n, n), row 0 lowest; None for shorter paths.
     part

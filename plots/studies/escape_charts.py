@@ -27,11 +27,11 @@ TIMES = Frame(
 PROBABILITIES = Frame(
     "probabilities",
     "Escapes after n crossings",
-    ("upward crossings n", "p"),
-    "Of the orbits that have not escaped at their n-th upward crossing of y = 0, the share that escapes before the next one; "
+    ("crossings n", "p"),
+    "Of the orbits that have not escaped at their n-th crossing of the section, the share that escapes before the next one; "
     "n = 0 is the share of direct escapes. If the motion inside the well were well mixed, the probability would be the same for "
     "all n. Bounded orbits stay in the count, so if there are any, it tends to zero.",
-    "n = $x{count} upward crossings:<br><b>@top{percent}</b> of the orbits still inside<br>escape before the next one",
+    "n = $x{count} crossings:<br><b>@top{percent}</b> of the orbits still inside<br>escape before the next one",
     Shape.BARS,
 )
 

@@ -32,23 +32,23 @@ class Subject:
         Its potential.
     plane
         The slice of the starts.
-    section
-        The surface of section at which crossings are counted.
     energy
         The energy h, in the units of the potential; on a slice with an axis h, the last energy of another slice.
     energies
         The energies at which the system is explored.
     t_max
         Longest time of the orbits, in the units of the potential.
+    section
+        The surface of section at which crossings are counted.
     """
 
     system: System
     potential: Potential
     plane: Slice
-    section: Section
     energy: float
     energies: EnergyRange
     t_max: float
+    section: Section = Section.Y_UP
 
 
 @dataclass(frozen=True, kw_only=True)

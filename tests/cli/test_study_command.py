@@ -41,3 +41,14 @@ def test_an_axis_that_a_study_does_not_have_is_refused(run: Run) -> None:
     code, _, err = run("study", "periods", "II", "--against", "epsilon")
     assert code == 2
     assert "against='epsilon': must be one of h" in err
+
+
+def test_a_study_is_about_a_section(run: Run, tmp_path: Path) -> None:
+    code, out, _ = run(
+        "study", "section", "HH", "--energy", "0.1", "--section", "x = 0, px > 0", "--output", tmp_path / "found.csv"
+    )
+    assert code == 0
+    assert "upward crossings of x = 0 by" in out
+    code, _, err = run("study", "section", "HH", "--section", "somewhere")
+    assert code == 2
+    assert "must be a section such as" in err

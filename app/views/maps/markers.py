@@ -1,4 +1,4 @@
-"""Marks on the pictures: numbered starts, section points (upward crossings of y = 0), and the box whose pixels are counted."""
+"""Marks on the pictures: numbered starts, section points (crossings of the section), and the box whose pixels are counted."""
 
 from __future__ import annotations
 

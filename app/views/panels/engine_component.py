@@ -105,7 +105,6 @@ def describe_view(state: ViewState) -> dict[str, Any]:
         "plane": ";".join(filter(None, write_slice(state.plane))),
         # Only the server knows the potentials along a parameter.
         "slice": _describe_slice(state) if state.plane.parameter is None else None,
-        "sectionColumns": _section_columns(state),
         "energy": state.energy,
         "home": state.window is None,
         "resolution": state.resolution,
@@ -116,13 +115,12 @@ def describe_view(state: ViewState) -> dict[str, Any]:
 
 
 def _describe_slice(state: ViewState) -> dict[str, object]:
-    """Return the slice of a state. Pixels have no mirror images if these have other crossings of the section."""
-    described = state.plane.to_dict(state.potential.units)
-    return described if state.section.is_mirrored else described | {"mirrored": None}
+    """Return the slice of a state, with the columns of its axes in states if the slice is on the section.
 
-
-def _section_columns(state: ViewState) -> list[int] | None:
-    """Return the columns of the axes of the slice in states, if the slice is on the section; otherwise None."""
-    axes = state.plane.axes
-    is_shown = state.section.is_drawn_on(state.plane) and all(axis in STATE for axis in axes)
-    return [STATE.index(axis) for axis in axes] if is_shown else None
+    Pixels have no mirror images if these have other crossings of the section.
+    """
+    plane, section = state.plane, state.section
+    described = plane.to_dict(state.potential.units)
+    is_shown = section.is_drawn_on(plane) and all(axis in STATE for axis in plane.axes)
+    described["sectionColumns"] = [STATE.index(axis) for axis in plane.axes] if is_shown else None
+    return described if section.is_mirrored else described | {"mirrored": None}

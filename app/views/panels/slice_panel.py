@@ -102,7 +102,6 @@ class SlicePanel:
         finally:
             self._is_following = False
         self.start_on_section.visible = plane != section.plane
-        self.start_on_section.label = f"Start on the section: {section.plane.title}"
 
     def _take_section(self, text: str) -> None:
         if self._is_following or text == self._state.section.text:

@@ -1,4 +1,4 @@
-"""Escape statistics of a map or of a window in it: outcomes, escape times and upward crossings of y = 0."""
+"""Escape statistics of a map or of a window in it: outcomes, escape times and crossings of the section."""
 
 from __future__ import annotations
 
@@ -38,7 +38,8 @@ class EscapeStatistics(OrbitResult):
     mean_escape_time, median_escape_time
         Mean and median over the escapes, dimensionless; NaN without escapes.
     crossing_counts
-        (most crossings + 1,) int64, dN_n: escapes after exactly n upward crossings of y = 0; empty without escapes.
+        (most crossings + 1,) int64, dN_n: escapes after exactly n crossings of the section, by default of y = 0 upward; empty
+        without escapes.
     escape_times
         (escaped,) float64, all escape times, row by row, dimensionless.
     t_max
@@ -81,7 +82,7 @@ class EscapeStatistics(OrbitResult):
 
     @property
     def direct(self) -> int:
-        """Nde: number of escapes without an upward crossing of y = 0."""
+        """Nde: number of escapes without a crossing of the section, by default of y = 0 upward."""
         return int(self.crossing_counts[:1].sum())
 
     @property

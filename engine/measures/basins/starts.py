@@ -42,7 +42,7 @@ class Classified(Protocol):
 
     @property
     def crossings(self) -> np.ndarray:
-        """Numbers of upward crossings of y = 0, the start not counted."""
+        """Numbers of crossings of the section, of y = 0 upward by default, the start not counted."""
 
     @property
     def t_max(self) -> float:

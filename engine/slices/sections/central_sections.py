@@ -14,6 +14,9 @@ from engine.slices.sections.section import Crossing, CrossingWords, Section, Sec
 from engine.slices.slice import Slice
 from engine.systems.well_units import WellUnits
 
+# The names of apsides, by the direction in which they cross the section.
+_APSIDES = {Crossing.UP: "pericentre", Crossing.DOWN: "apocentre", Crossing.BOTH: "apsis"}
+
 
 @dataclass(frozen=True)
 class RaySection(Section):
@@ -107,12 +110,16 @@ class ApsisSection(Section):
         return f"apsis{_about(self.centre)}"
 
     @property
+    def text(self) -> str:
+        """See `Section.text`."""
+        return f"{_APSIDES[self.direction]}{_about(self.centre)}"
+
+    @property
     def words(self) -> CrossingWords:
         """See `Section.words`."""
-        names = {Crossing.UP: ("a pericentre", "pericentres"), Crossing.DOWN: ("an apocentre", "apocentres")}
-        singular, plural = names.get(self.direction, ("an apsis", "apsides"))
-        place = _about(self.centre)
-        return CrossingWords(singular.split()[-1], plural, place, f"without {singular}{place}", f"{plural.capitalize()}{place}")
+        name, place = _APSIDES[self.direction], _about(self.centre)
+        article, plural = ("a" if name[0] == "p" else "an"), ("apsides" if name == "apsis" else f"{name}s")
+        return CrossingWords(name, plural, place, f"without {article} {name}{place}", f"{plural.capitalize()}{place}")
 
     @property
     def form(self) -> dict[str, float]:

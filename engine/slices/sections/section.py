@@ -80,13 +80,13 @@ class SectionAxes(NamedTuple):
 class Section:
     """A surface of section in phase space, with the directions in which crossings count; `read_section` makes one from text.
 
-    The sections are the instances of its subclasses `LinearSection`, `RaySection` and `ApsisSection`. `Section.Y_UP` is y = 0,
+    There are sections of a linear form of x, y, px and py, of rays from a centre, and of apsides. `Section.Y_UP` is y = 0,
     crossed upward, the section of Zotos (2014), at which crossings are counted by default.
 
-    Parameters
+    Attributes
     ----------
     direction
-        The `Crossing`s that count.
+        The direction in which crossings count, or both.
     """
 
     Y_UP: ClassVar[Section]
@@ -128,7 +128,7 @@ class Section:
 
     @property
     def form(self) -> dict[str, float]:
-        """The numbers other than 0 of the form and the side of the section, by name, see `section_numbers.NAMES`."""
+        """The numbers of the form and of the side of the section, by name; numbers of 0 may be missing."""
         raise NotImplementedError
 
     def in_well_units(self, units: WellUnits) -> Self:

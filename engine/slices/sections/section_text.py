@@ -47,8 +47,8 @@ def read_section(text: str) -> Section:
     Examples
     --------
     >>> from escape_explorer import read_section
-    >>> read_section("x = 0, px < 0").text, read_section("apsis about (0.5, 0)").crossing_name
-    ('x = 0 down', 'apsis about (0.5, 0)')
+    >>> read_section("x = 0, px < 0").text, read_section("apsis about (0.5, 0)").crossings_name
+    ('x = 0 down', 'apsides about (0.5, 0)')
     """
     try:
         return _read(text.strip().replace("−", "-").lower())

@@ -22,6 +22,7 @@ const coding = {
   ends: [0, 1, 2, 3],
   words: [],
   leastCrossings: [0, 1, 2, 3, 11],
+  crossingWords: /** @type {[string, string]} */ (["crossing", "crossings"]),
   undecided: 0,
   differences: Array.from({length: 14}, (_, code) => Array.from({length: 14}, (_, other) => 20 * code + other)),
   layers: ["passage"],
@@ -37,6 +38,7 @@ test("outcomes, channels and classes of crossings have the codes of the server",
   assert.deepEqual([...new Uint8Array(columns.fate[0].buffer)], [0, 5, 8])
   assert.deepEqual([...new Uint8Array(columns.crossing_class[0].buffer)], [0, 5, 9])
   assert.deepEqual(columns.fate[0].shape, [1, 3])
+  assert.deepEqual(columns.crossing_words, [["crossing", "crossings"]])
   assert.deepEqual([columns.x, columns.y, columns.dw, columns.dh], [[-1], [-2], [2], [4]])
 })
 

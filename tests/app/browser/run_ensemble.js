@@ -15,13 +15,12 @@ function follow() {
   const ensemble = new Ensemble(integrator, energy, starts)
   const frames = times.map((/** @type {number} */ time) => {
     ensemble.advance(time)
-    const {x, y, channel, sectionX, sectionPx} = ensemble
+    const {x, y, channel} = ensemble
     return {
       x: [...x],
       y: [...y],
       channel: [...channel],
-      sectionX: [...sectionX],
-      sectionPx: [...sectionPx],
+      section: [0, 1, 2, 3].map(column => [...ensemble.atSection(column)]),
       growth: ensemble.growth(),
     }
   })

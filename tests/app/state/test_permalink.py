@@ -12,7 +12,7 @@ from app.state.permalink import LONGEST_VALUE, linked_view, read_link, without_s
 from app.state.view import PICTURES, RESOLUTION_CHOICES, T_MAX_CHOICES, Analysis, View
 from app.state.view_state import ViewState
 from app.state.watched_starts import COUNTS, StartsFrom, WatchedStarts
-from engine import CASES, Coordinate, ParameterAxis, Plane, Slice, System, Window
+from engine import CASES, Coordinate, ParameterAxis, Plane, Slice, System, Window, read_section
 from engine.systems.system import TYPED
 from plots.layers.table import LAYERS, SETTINGS
 from plots.pictures.palette import MOST_ORBITS, PALETTES
@@ -225,3 +225,17 @@ def test_a_link_contains_the_starts_that_are_watched(where: StartsFrom, count: i
 
 def test_a_single_number_is_the_upper_end_of_the_scale() -> None:
     assert read_link({"lock_times": "2000"}) == ({"lock_times": TimeScale(1.0, 2000.0)}, [])
+
+
+def test_a_link_contains_a_section_and_refuses_others() -> None:
+    state = ViewState(section=read_section("pericentre about (0.5, 0)"))
+    values, problems = read_link(parameters(write_link(state)))
+    assert values["section"] == state.section
+    assert not problems
+    values, problems = read_link({"section": "nowhere"})
+    assert "section" not in values
+    assert "apsis" in problems[0]
+
+
+def test_the_first_section_is_not_in_links() -> None:
+    assert "section" not in parameters(write_link(ViewState()))

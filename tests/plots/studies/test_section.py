@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from app.views.components.charts import ChartView
-from engine import CASES, Execution, Plane, System
+from engine import CASES, Execution, Plane, System, read_section
 from engine.jobs.job import run_job
 from engine.results import Returns
 from engine.systems.review.potential_review import review_system
@@ -53,3 +55,20 @@ def test_a_click_starts_the_orbit_through_the_point_on_the_section(found: Return
 def test_an_energy_without_orbits_gives_no_chart(found: Returns) -> None:
     empty = Returns(found.spec, np.full_like(found.states, np.nan), np.full_like(found.time, np.nan))
     assert SECTION_STUDY.charts(empty, PAPER) == []
+
+
+def test_another_section_has_its_own_axes_and_starts() -> None:
+    section = read_section("x = 0, px > 0")
+    found = run_job(SECTION_STUDY.job(replace(SUBJECT, section=section), ""), Execution(), {})
+    (chart,) = SECTION_STUDY.charts(found, PAPER)
+    assert chart.frame.labels == ("y", "py")
+    assert "upward crossings of x = 0" in SECTION_STUDY.sentence(found)
+    y, py = found.points()[5][2].tolist()
+    assert SECTION_STUDY.changes(SUBJECT, "", found, y, py) == {"plane": Plane.Y_PY, "energy": 0.15, "start": (y, py)}
+
+
+def test_points_that_are_no_starts_of_a_slice_cannot_be_clicked() -> None:
+    found = run_job(SECTION_STUDY.job(replace(SUBJECT, section=read_section("angle = 30°")), ""), Execution(), {})
+    assert found.count.any()
+    assert "Click" not in SECTION_STUDY.sentence(found)
+    assert SECTION_STUDY.changes(SUBJECT, "", found, 0.0, 0.0) == {}

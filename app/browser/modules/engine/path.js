@@ -14,7 +14,7 @@ import {findStarts, keepInside} from "./starts.js"
  * @property {number[]} y
  * @property {number} channel  number of the exit; 0 for an orbit that has not escaped
  * @property {number} time  of the last point
- * @property {number} crossings  upward crossings of y = 0
+ * @property {number} crossings  crossings of the section
  * @property {number} energy
  */
 

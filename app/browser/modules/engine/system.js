@@ -69,6 +69,7 @@
  * @property {number[][]} motion  coordinates at the origin, then their changes per unit of each axis; the last is the energy
  * @property {number} decided  code of what the energy determines
  * @property {1 | -1} sign
+ * @property {[number, number] | null} [sectionColumns]  columns of the axes in states, if the slice is on the section
  * @property {[boolean, boolean] | null} mirrored  whether each axis changes direction under x → −x; null without this symmetry
  */
 

@@ -20,7 +20,6 @@ import {LEAST_SIDE} from "../workers/frames.js"
  * @property {string} system  key of the system
  * @property {string} plane  name of the slice
  * @property {import("../engine/system.js").Slice | null} slice  null for a slice that only the server can compute
- * @property {[number, number] | null} sectionColumns  columns of the axes in states, if the slice is on the section
  * @property {number} energy
  * @property {boolean} home  whether the window is the default window of its energy
  * @property {string[]} colours  of the outcomes, exits first

@@ -329,10 +329,9 @@ class EnsemblePlayer {
    */
   #paintSection(ensemble, {scene, colours}) {
     const [picture, view] = [mapPictures()[0], scene()]
-    const [xs, ys] = view?.sectionColumns?.map(column => ensemble.atSection(column)) ?? []
+    const [xs, ys] = view?.slice.sectionColumns?.map(column => ensemble.atSection(column)) ?? []
     // Before the first crossing, the map stays uncovered.
-    if (!picture || !view || !xs?.some(Number.isFinite))
-      return void (this.#sectionCanvas.style.display = "none")
+    if (!picture || !view || !xs?.some(Number.isFinite)) return void (this.#sectionCanvas.style.display = "none")
     const style = getComputedStyle(this.#note)
     this.#sectionCanvas.style.background = `color-mix(in srgb, ${style.getPropertyValue("--ui-page")} ${100 * COVER_OPACITY}%, transparent)`
     const points = {xs, ys, units: view.slice.units}

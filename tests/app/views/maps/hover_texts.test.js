@@ -23,6 +23,7 @@ const maps = {
   escape_time: [Float32Array.of(NaN, 12.345678)],
   crossings: [Uint8Array.of(0, 1)],
   crossing_class: [Uint8Array.of(11, 6)],
+  crossing_words: [["upward crossing of y = 0", "upward crossings of y = 0"]],
   character: none,
   passage: none,
   passage_words: [["", "", "", "", "", "never entered", "entered through exit 2"]],

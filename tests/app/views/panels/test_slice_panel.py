@@ -10,7 +10,7 @@ from app.browser.inputs.counted_inputs import NumberBox
 from app.state.system_review import review_for_page
 from app.state.view_state import ViewState
 from app.views.panels.slice_panel import SlicePanel
-from engine import Coordinate, ParameterAxis, Plane, Slice, System
+from engine import Coordinate, ParameterAxis, Plane, Section, Slice, System, read_section
 from engine.systems.system import TYPED
 from tests.app.browser_messages import send
 
@@ -85,3 +85,25 @@ def test_letters_of_a_formula_are_axes_of_this_system_only(drawer: Drawer) -> No
     assert drawer.state.plane.parameter == ParameterAxis("a", 0.5, 2.0, reviewed.system)
     drawer.state.show_system(review_for_page(System("III")))
     assert drawer.state.plane is Plane.X_PX
+
+
+def test_a_typed_section_is_that_of_the_state_and_offers_its_starts(drawer: Drawer) -> None:
+    drawer.panel.section.value = "x = 0, px > 0"
+    assert drawer.state.section == read_section("x = 0 up")
+    assert drawer.panel.section.value == "x = 0 up"
+    assert drawer.state.plane is Plane.X_PX
+    assert drawer.panel.start_on_section.visible
+    drawer.panel.start_on_section.clicks += 1
+    assert drawer.state.plane == Plane.Y_PY
+    assert not drawer.panel.start_on_section.visible
+
+
+def test_an_illegal_section_is_refused_with_legal_ones(drawer: Drawer) -> None:
+    drawer.panel.section.value = "z = 3"
+    assert "must be a section such as" in drawer.panel.message.object
+    assert drawer.state.section is Section.Y_UP
+
+
+def test_sections_of_the_catalogue_are_offered(drawer: Drawer) -> None:
+    drawer.state.show_system(review_for_page(System("Hill")))
+    assert {"y = 0 up", "pericentre", "x = 0 up"} <= set(drawer.panel.section.options)
