@@ -71,6 +71,7 @@ def advance_ensemble(step, jets, coefficients, tolerance, time, beyond, gates, c
     while next_orbit < count:
         # Lanes without an orbit take harmless steps.
         for i in range(LANES):
+            crossed[i] = 0
             for row in range(ROWS):
                 now[row, i] = 0.01 if row == 0 else 0.0
         active = 0
@@ -88,7 +89,6 @@ def advance_ensemble(step, jets, coefficients, tolerance, time, beyond, gates, c
         call_jets(jets, coefficients, width, now[0], now[1], now[2], now[3], x_jet, y_jet)
         for i in range(active):
             crosses = crossed[i] > 0 or flag[i] & CROSSES != 0
-            crossed[i] = 0
             _keep_step(now, new, flag[i], crosses, x_jet, y_jet, work, i, beyond, gates, curves, ensemble, lane_orbit[i])
             # The next turn begins with the first orbit that needs another step.
             if _is_late(ensemble, lane_orbit[i], time):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import heyoka as hy
@@ -14,10 +15,12 @@ from scipy import stats
 from engine import (
     Plane,
     Potential,
+    Section,
     System,
     classify_orbits,
     compute_flux,
     find_lyapunov_orbits,
+    read_section,
     sample_entrances,
     sample_orbits,
     sample_starts,
@@ -51,19 +54,23 @@ class Followed:
     again: np.ndarray
 
 
-@pytest.fixture(scope="module", params=SYSTEMS, ids=lambda system: system[0])
-def followed(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Followed:
-    case, energy = request.param
+def follow(case: str, energy: float, folder: Path, section: Section = Section.Y_UP) -> Followed:
+    """Follow random orbits in the browser's engine, with their crossings of a section."""
     potential = System(case).potential
     assert potential.units.length == potential.units.time == 1.0
-    portable = make_portable_system(potential, review_system(System(case)).energies.high)
+    portable = make_portable_system(potential, review_system(System(case)).energies.high, section)
     states = sample_starts(potential, energy, COUNT, seed=3)
     times = np.sort(np.random.default_rng(1).uniform(0.0, LONGEST, FRAMES))
     data = {"system": portable.to_dict(), "module": portable.module, "energy": energy}
     data |= {"states": states.ravel().tolist(), "times": times.tolist()}
-    found = run_node("run_ensemble.js", data, tmp_path_factory.mktemp("ensemble"))
+    found = run_node("run_ensemble.js", data, folder)
     frames = [{name: np.array(values, float) for name, values in frame.items()} for frame in found["frames"]]
     return Followed(potential, energy, states, times, frames, np.array(found["outcomes"]), np.array(found["again"], float))
+
+
+@pytest.fixture(scope="module", params=SYSTEMS, ids=lambda system: system[0])
+def followed(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Followed:
+    return follow(*request.param, tmp_path_factory.mktemp("ensemble"))
 
 
 def positions_of_heyoka(potential: Potential, state: np.ndarray, times: np.ndarray) -> np.ndarray:
@@ -124,6 +131,25 @@ def test_passages_lie_on_the_section_at_the_energy(followed: Followed) -> None:
     np.testing.assert_allclose(passed[:, 1], 0.0, atol=1e-14)
     assert (passed[:, 3] > 0.0).all()
     np.testing.assert_allclose(followed.potential.energy(passed), followed.energy, atol=1e-9)
+
+
+@needs_node
+@pytest.mark.parametrize("text", ["x = 0.008 down", "apsis"])
+def test_passages_lie_on_any_section(text: str, tmp_path: Path) -> None:
+    # Lanes without an orbit start at x = 0.01, at rest, and cross x = 0.008.
+    section = read_section(text)
+    followed = follow(*SYSTEMS[0], tmp_path, section)
+    seen = 0
+    for frame in followed.frames:
+        states = frame["section"].T
+        passed = states[np.isfinite(states).all(axis=1)]
+        seen += len(passed)
+        form = section.form
+        linear = passed @ [form.get(name, 0.0) for name in ("x", "y", "px", "py")]
+        radial = form.get("radial", 0.0) * np.sum(passed[:, :2] * passed[:, 2:], axis=1)
+        np.testing.assert_allclose(linear + radial, form.get("value", 0.0), atol=1e-12)
+        assert text == "apsis" or np.all(passed[:, 2] < 0.0)
+    assert seen > FRAMES * COUNT / 2
 
 
 def request_for(where: str, **changes: Any) -> dict[str, Any]:
