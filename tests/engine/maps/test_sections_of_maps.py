@@ -126,6 +126,16 @@ def test_points_of_a_single_orbit_are_its_returns(text: str) -> None:
     assert spec.section.count(orbit.crossings) in judge_orbit(orbit).describe()
 
 
+def test_apsides_of_an_ellipse_are_its_ends() -> None:
+    # Semi-major axis 1 and eccentricity 1/2, so the period is 2π. The orbit starts at the apocentre, which does not count.
+    potential, start = parse_formula("−1/r; centre the body (0, 0) 0.01; escape 10"), (1.5, 0.0, 0.0, np.sqrt(1.0 / 3.0))
+    for text, distances in (("pericentre", [0.5] * 5), ("apocentre", [1.5] * 4), ("apsis", [0.5, 1.5] * 4 + [0.5])):
+        states, times = integrate_orbit(potential, start, 30.0, section=text).find_section_states()
+        np.testing.assert_allclose(np.hypot(states[:, 0], states[:, 1]), distances, atol=1e-13)
+        half_periods = np.arange(1, 10)[:: 1 if text == "apsis" else 2] + (text == "apocentre")
+        np.testing.assert_allclose(times, np.pi * half_periods[: len(distances)], atol=1e-12)
+
+
 def test_crossings_do_not_depend_on_threads() -> None:
     for text in ("x = -0.07 both", "apsis"):
         spec = replace(SPEC, section=read_section(text), resolution=(60, 60))
