@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
-from engine import CASES, EscapeMap, MapSpec, Orbit, Plane, Result, Slice, System, judge_orbit
+from engine import CASES, EscapeMap, MapSpec, Orbit, Plane, Result, Section, Slice, System, judge_orbit
 from engine.results import OrbitVerdict
 from engine.systems.system import TYPED
 from plots.layers.layer import NO_ANALYSES, Analyses
@@ -108,7 +108,7 @@ def python_lines(spec: MapSpec, system: System, starts: Sequence[Sequence[float]
         # Each orbit of such a map belongs to another potential.
         starts = ()
     names = [source, "MapSpec", *_slice_names(spec.plane), "Window", "compute_map", *(["integrate_orbit"] if starts else [])]
-    energy = repr(spec.energy)
+    energy, has_section = repr(spec.energy), spec.section != Section.Y_UP
     lines = [
         "from matplotlib import pyplot",
         "",
@@ -124,13 +124,15 @@ def python_lines(spec: MapSpec, system: System, starts: Sequence[Sequence[float]
         f"    t_max={spec.t_max!r},",
         f"    use_evidence={spec.use_evidence!r},",
         *(["    backward=True,"] if spec.backward else []),
+        *([f"    section={spec.section.text!r},"] if has_section else []),
         ")",
         "escape_map = compute_map(spec)",
         "escape_map.plot()",
     ]
     if starts:
         lines += ["starts = [", *(f"    {_state(start)}," for start in starts), "]"]
-        lines += ["orbits = [integrate_orbit(potential, start, spec.t_max) for start in starts]"]
+        section = ", section=spec.section" if has_section else ""
+        lines += [f"orbits = [integrate_orbit(potential, start, spec.t_max{section}) for start in starts]"]
         lines += ["for orbit in orbits:", "    orbit.plot()"]
     lines.append("pyplot.show()")
     return "\n".join(lines) + "\n"
@@ -174,7 +176,8 @@ def _numbers(numbers: Sequence[float]) -> str:
 def file_stem(spec: MapSpec, case: str) -> str:
     """Return a file name for a map, without an ending: letters, digits and ``_ . + -`` only.
 
-    The name contains the case, any rotation, plane, energy, t_max and, unless the map shows the whole plane, the window.
+    The name contains the case, any rotation, plane, energy, t_max, the window unless the map shows the whole plane, and any
+    section other than y = 0, upward.
     """
     energy = repr(spec.energy).strip("()").replace(", ", "-")
     rotation = f"-rotation{spec.potential.rotation:g}" if spec.potential.rotation else ""
@@ -183,6 +186,8 @@ def file_stem(spec: MapSpec, case: str) -> str:
     if window is not None:
         x, ordinate = window.ranges
         stem += "".join(f"-{low!r}_{high!r}" for low, high in (x, ordinate))
+    if spec.section != Section.Y_UP:
+        stem += f"-{spec.section.text}"
     return re.sub(r"[^A-Za-z0-9_.+-]", "_", stem)
 
 

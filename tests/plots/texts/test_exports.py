@@ -29,6 +29,7 @@ from plots.texts.exports import file_stem, netcdf_bytes, orbits_csv, python_line
 
 START = (0.1, 0.0, 0.05, 0.6)
 SPECS = {
+    "another section": MapSpec(CASES["II"], Plane.X_PX, 0.18, (9, 7), t_max=50.0, section="x = 0.1 both"),
     "a window": MapSpec(CASES["II"], Plane.X_PX, 0.18, (20, 15), window=(-1.0, 1.4, -0.8, 0.8), t_max=200.0),
     "the whole interior": MapSpec(CASES["II"], Plane.X_Y, 0.1 + 0.2, (11, 11), t_max=100.0),
     "energies": MapSpec(CASES["II"], Plane.X_H, (1 / 6, 0.4), (11, 11), t_max=100.0),
@@ -110,7 +111,7 @@ def test_a_table_of_curves_has_a_row_for_each_energy() -> None:
     np.testing.assert_array_equal([float(row["s_b"]) for row in rows], curves["s_b"])
 
 
-@pytest.mark.parametrize("name", ["energies", "a deep zoom", "NumPy's numbers, backward in time"])
+@pytest.mark.parametrize("name", ["energies", "a deep zoom", "NumPy's numbers, backward in time", "another section"])
 def test_the_script_reproduces_and_draws_the_map_and_the_orbits(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     spec = SPECS[name]
     made: dict[str, Any] = {}
@@ -123,8 +124,8 @@ def test_the_script_reproduces_and_draws_the_map_and_the_orbits(name: str, monke
     for image in ("fate", "escape_time", "crossings", "x", "ordinate"):
         np.testing.assert_array_equal(getattr(made["escape_map"], image), getattr(whole, image))
     for one, start in zip(made["orbits"], (START, (1 / 3, 0.0, 0.0, 0.3)), strict=True):
-        expected = integrate_orbit(CASES["II"], start, spec.t_max)
-        assert one.fate == expected.fate
+        expected = integrate_orbit(CASES["II"], start, spec.t_max, section=spec.section)
+        assert (one.fate, one.crossings) == (expected.fate, expected.crossings)
         np.testing.assert_array_equal(one.x, expected.x)
     # The script draws the map and two orbits.
     assert len(drawn) == 3
@@ -152,6 +153,7 @@ def test_the_script_reproduces_the_potential(system: System) -> None:
         ("a window", "escapes-II-x_px-h0.18-t200--1.0_1.4--0.8_0.8"),
         ("the whole interior", "escapes-II-x_y-h0.30000000000000004-t100"),
         ("energies", "escapes-II-x_h-h0.16666666666666666-0.4-t100"),
+        ("another section", "escapes-II-x_px-h0.18-t50-x___0.1_both"),
     ],
 )
 def test_files_are_named_after_case_plane_energy_duration_and_window(name: str, stem: str) -> None:
