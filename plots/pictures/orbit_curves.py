@@ -100,7 +100,9 @@ def well_energy(potential: Potential) -> float:
 def _path_window(potential: Potential, orbit: Orbit) -> Window:
     """Return a square around the origin and the nearby path. An orbit without known exits may go far away."""
     largest_coordinate = float(max(np.abs(orbit.x).max(), np.abs(orbit.y).max()))
-    half = min(_PATH_MARGIN_FACTOR * largest_coordinate, _MOST_SADDLE_DISTANCES * float(np.hypot(*potential.saddles.T).max()))
+    # A well whose exits are not known may have no saddles.
+    saddle_distance = float(np.hypot(*potential.saddles.T).max(initial=0.0)) or potential.units.length
+    half = min(_PATH_MARGIN_FACTOR * largest_coordinate, _MOST_SADDLE_DISTANCES * saddle_distance)
     return Window(-half, half, -half, half)
 
 

@@ -71,3 +71,12 @@ def test_an_orbit_outside_with_less_energy_than_the_well_is_shown_with_the_whole
     curves = compute_orbit_curves(potential, integrate_orbit(potential, state, 10.0))
     assert curves.orbit.energy == pytest.approx(-0.4)
     assert curves.window == default_window(potential, Plane.X_Y, potential.escape_energy)
+
+
+def test_an_orbit_of_a_well_without_saddles_whose_exits_are_not_known_is_shown_near_the_origin() -> None:
+    potential = parse_formula("1 − exp(−x² − y²)")
+    orbit = integrate_orbit(potential, (0.1, 0.0, 0.0, 2.8), 20.0)
+    assert orbit.exits_unknown
+    assert potential.saddles.size == 0
+    window = compute_orbit_curves(potential, orbit, with_visits=False).window
+    assert orbit.y.max() > window.x_high == 10.0 * potential.units.length

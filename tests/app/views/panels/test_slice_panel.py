@@ -101,7 +101,7 @@ def test_a_typed_section_is_that_of_the_state_and_offers_its_starts(drawer: Draw
 def test_an_illegal_section_is_refused_with_legal_ones(drawer: Drawer) -> None:
     drawer.panel.section.value = "z = 3"
     assert "must be a section such as" in drawer.panel.message.object
-    assert drawer.state.section is Section.Y_UP
+    assert drawer.state.section == Section.Y_UP
 
 
 def test_sections_of_the_catalogue_are_offered(drawer: Drawer) -> None:
