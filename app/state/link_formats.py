@@ -10,7 +10,6 @@ import numpy as np
 
 from app.state.watched_starts import COUNTS, StartsFrom, WatchedStarts
 from engine import Window, read_section
-from engine.slices.sections.section_text import LEGAL_SECTIONS
 from plots.pictures.palette import MOST_ORBITS
 from plots.pictures.time_scale import TimeScale
 
@@ -144,7 +143,7 @@ WINDOW = Format(
 )
 """Text form of a window or a box."""
 
-SECTION = Format(lambda section: section.text, read_section, lambda: f"a section, such as {LEGAL_SECTIONS}")
+SECTION = Format(lambda section: section.text, read_section, lambda: "a section, such as x = 0 up, angle = 30° or apsis")
 """Text form of a surface of section."""
 
 TIMES = Format(
