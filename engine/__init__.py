@@ -49,7 +49,6 @@ from engine.measures.measure import Measure as Measure
 from engine.measures.table import MEASURES as MEASURES
 from engine.measures.uncertain_pairs import compute_uncertainty_exponent as compute_uncertainty_exponent
 from engine.opened_results import open_result as open_result
-from engine.propagation.classification import classify_orbits as classify_orbits
 from engine.propagation.fates import Evidence as Evidence
 from engine.propagation.fates import Fate as Fate
 from engine.propagation.fates import Regularity as Regularity
@@ -76,6 +75,7 @@ from engine.systems.outcomes import Outcome as Outcome
 from engine.systems.potential import Potential as Potential
 from engine.systems.review.potential_review import review_potential as review_potential
 from engine.systems.system import System as System
+from engine.trajectories.classified_orbits import classify_orbits as classify_orbits
 from engine.trajectories.entrances import sample_entrances as sample_entrances
 from engine.trajectories.entrances import sample_entrances_by_exit as sample_entrances_by_exit
 from engine.trajectories.nearest_divergent_start import find_divergent_start as find_divergent_start

@@ -107,5 +107,5 @@ def _view_of(spec: MapSpec) -> ViewState:
         "t_max": min(view.param.t_max.objects, key=lambda choice: abs(choice - spec.t_max)),
         "resolution": min(view.param.resolution.objects, key=lambda choice: abs(choice - spec.resolution[0])),
     }
-    view.param.update(plane=spec.plane, window=spec.window, **energy, **nearest)
+    view.param.update(plane=spec.plane, section=spec.section, window=spec.window, **energy, **nearest)
     return view

@@ -23,14 +23,11 @@ from app.views.orbits.orbit_controls import OrbitActions, OrbitControls
 from app.views.orbits.orbit_plots import OrbitPlots
 from app.views.orbits.path_picture import path_picture
 from app.views.orbits.separation_plot import SeparationPlot
-from engine import Orbit, Section
+from engine import Orbit, Section, Slice
 from plots.pictures.orbit_curves import OrbitCurves, restrict_curves
 
 ORBITS_REMOVED = "The orbits are removed, because they start on another slice. The Back button of the browser shows them again."
 """Message after a change of the slice."""
-
-# Largest difference of a start from the slice of a section, in units of the well.
-_ROUNDING = 1e-9
 
 Interval = tuple[float, float]
 """Start and end of a time interval, dimensionless."""
@@ -120,11 +117,11 @@ class OrbitPresenter:
         if start is None:
             return
         orbit = self._orbits[state.chosen].orbit if state.chosen < len(self._orbits) else None
-        starts = () if orbit is None else _starts_on(state.section, orbit)
+        plane, starts = _open_on(state.section, orbit)
         energy = float(state.plane.energies(state.energy, *start))
         self._open_view(
             state.plane.system_at(state.system, *start),
-            {"plane": state.section.plane, "energy": energy, "window": None, "starts": starts, "chosen": 0},
+            {"plane": plane, "energy": energy, "window": None, "starts": starts, "chosen": 0},
         )
 
     def _show(self, orbits: Sequence[StartOrbit]) -> None:
@@ -208,12 +205,9 @@ def _restrict_all(all_curves: Sequence[OrbitCurves | None], interval: Interval) 
     return [restrict_curves(curves, *interval) if curves is not None else None for curves in all_curves]
 
 
-def _starts_on(section: Section, orbit: Orbit) -> tuple[Start, ...]:
-    """Return the start of an orbit on the slice of a section, if it lies there; otherwise nothing."""
-    start = np.array([orbit.x[0], orbit.y[0], orbit.px[0], orbit.py[0]])
-    point = section.axes.points(start)
-    if orbit.potential is None or not section.is_drawn_on(section.plane):
-        return ()
-    (on_slice,) = section.plane.states(orbit.potential, orbit.energy, *point[:, None])
-    is_kept = np.allclose(on_slice / orbit.potential.units.state, start / orbit.potential.units.state, rtol=0.0, atol=_ROUNDING)
-    return ((float(point[0]), float(point[1])),) if is_kept else ()
+def _open_on(section: Section, orbit: Orbit | None) -> tuple[Slice, tuple[Start, ...]]:
+    """Return the slice on a section that shows an orbit, and the start of the orbit on it, if there is one."""
+    found = None
+    if orbit is not None and orbit.potential is not None:
+        found = section.find_start(orbit.potential, np.array([orbit.x[0], orbit.y[0], orbit.px[0], orbit.py[0]]))
+    return (section.slice_of_starts, ()) if found is None else (found[0], (found[1],))

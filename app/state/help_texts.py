@@ -39,10 +39,10 @@ HELP_TEXTS: Mapping[str, str] = MappingProxyType(
             "neighbours separate about in proportion to time, a curve that flattens."
         ),
         "watch": (
-            "Orbits move in the well, each in the colour of the exit that it will take. Grey orbits stay until t = 100. The map "
-            "on (x, px) shows each orbit at its last passage of y = 0. The solid curve of the chart is the share still inside. "
-            "The dashed curve is the law of mixed motion: flux through the exits over the volume inside. Orbits that stick to "
-            "islands stay longer."
+            "Orbits move in the well, each in the colour of the exit that it will take. Grey orbits stay until t = 100. A map "
+            "of starts on the surface of section shows each orbit at its last passage. The solid curve of the chart is the share "
+            "still inside. The dashed curve is the law of mixed motion: flux through the exits over the volume inside. Orbits "
+            "that stick to islands stay longer."
         ),
     }
 )

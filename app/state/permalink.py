@@ -42,11 +42,11 @@ _DEFAULT_PICTURE = "basins"
 # Longest part of a value that a message repeats, in characters.
 _LONGEST_QUOTE = 40
 # Names of link parameters.
-_PLANE, _FIX, _ENERGY, _JACOBI = "plane", "fix", "h", "C"
+_PLANE, _FIX, _ENERGY, _JACOBI, _SECTION = "plane", "fix", "h", "C", "section"
 # Prefix of the parameters of the view with which the state is compared.
 _COMPARED = "with_"
-# Names of the parameters of system, slice and energy.
-_VIEW_PARAMETERS = (*SYSTEM_FORMATS, _PLANE, _FIX, _ENERGY)
+# Names of the parameters of system, slice, energy and section.
+_VIEW_PARAMETERS = (*SYSTEM_FORMATS, _PLANE, _FIX, _ENERGY, _SECTION)
 
 # Indices of starts by the number that the page shows.
 _PLACES = {str(place + 1): place for place in range(MOST_ORBITS)}
@@ -60,7 +60,7 @@ def _sides() -> dict[str, int]:
 # Link parameters of attributes of the view state with one parameter each, in the order of links: fields of `View`, then the
 # visitor's own choices.
 _LINKED: dict[str, LinkParameter] = {
-    "section": LinkParameter("section", SECTION),
+    "section": LinkParameter(_SECTION, SECTION),
     "t_max": LinkParameter("t_max", number_choice_format(allowed_t_max), always=True),
     "resolution": LinkParameter("resolution", number_choice_format(_sides), always=True),
     "window": LinkParameter("window", WINDOW, of_system=True),
@@ -208,10 +208,11 @@ def refused_comparison(problem: str) -> str:
 
 
 def _write_view(view: View) -> dict[str, str]:
-    """Return the link parameters of system, slice and energy."""
+    """Return the link parameters of system, slice, energy and section."""
     axes, held = write_slice(view.plane)
     energy = {} if view.energy is None else {_ENERGY: _FORMATS[_ENERGY].write(view.energy)}
-    return {**write_system(view.system), _PLANE: axes, **({_FIX: held} if held else {}), **energy}
+    section = {_SECTION: SECTION.write(view.section)} if view.section != FIRST_VIEW.section else {}
+    return {**write_system(view.system), _PLANE: axes, **({_FIX: held} if held else {}), **energy, **section}
 
 
 def _write_layers(state: ViewState) -> dict[str, str]:

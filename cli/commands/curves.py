@@ -25,12 +25,13 @@ from cli.option_marks import DocumentedBy
 from cli.options import with_options
 from cli.output_files import Stem, name_files, reserve_output, write_files
 from cli.printing import AsJson, Table, list_rows, print_result
-from engine import ParameterAxis, Potential, Slice, SweepSpec, System, compute_sweep
+from engine import ParameterAxis, Potential, Section, Slice, SweepSpec, System, compute_sweep
 from engine.measures.table import CURVES, QUICK_CURVES
 from engine.results import Sweep
 from engine.systems.parameters import WELL_PARAMETERS
 from plots.printed.figure_style import FigureFormat, FigureStyle
 from plots.studies.against import AGAINST
+from plots.texts.exports import stem_of
 
 AGAINST_HELP = f"h, or a parameter: {', '.join(WELL_PARAMETERS)} or a letter of the formula."
 MEASURE_HELP = f"{', '.join(CURVES)}; all by default. Can be repeated."
@@ -54,6 +55,7 @@ def run(
     plane: Slice,
     resolution: Annotated[tuple[int, int], DocumentedBy(SweepSpec)] = (112, 112),
     t_max: Annotated[float, DocumentedBy(SweepSpec)],
+    section: Section,
     measure: Annotated[list[str] | None, typer.Option(help=MEASURE_HELP)] = None,
     exponent: Slow = True,
     style: FigureStyle,
@@ -72,8 +74,9 @@ def run(
         along=None if against == "h" else ParameterAxis(against, low, high, system),
         energy=energy,
         refine=refine,
+        section=section,
     )
-    stem = Path(f"curves-{file_name_part(case)}-{spec.plane.key}")
+    stem = Path(stem_of(f"curves-{file_name_part(case)}-{spec.plane.key}", section))
     paths = name_files(output, ["nc", "csv", *FigureFormat], ["nc", "csv"], stem)
     with reserve_output(output or stem):
         with place.run() as context:

@@ -32,6 +32,7 @@ from cli.printing import AsJson, Table, list_rows, print_result
 from engine import (
     Fate,
     Potential,
+    Section,
     Slice,
     classify_orbits,
     compute_exit_matching,
@@ -65,6 +66,7 @@ def run(
     window: Annotated[GivenWindow | None, DocumentedBy(sample_starts)],
     entering: bool = False,
     t_max: Annotated[float, DocumentedBy(classify_orbits)] = 25.0,
+    section: Section,
     frames: Annotated[int, typer.Option(min=2, max=5000)] = 126,
     palette: Palette,
     style: Annotated[FigureStyle, OptionChanges(defaults={"dpi": 120.0})],
@@ -97,12 +99,12 @@ def run(
 
     with reserve_output(output):
         with place.run() as context:
-            outcomes = classify_orbits(potential, energy, starts, t_max, execution=context.start_stage("orbits"))
+            outcomes = classify_orbits(potential, energy, starts, t_max, section=section, execution=context.start_stage("orbits"))
             context.execution.raise_if_cancelled()
             laws = fit_decay_laws(outcomes)
             if needs_paths:
                 times = np.linspace(0.0, outcomes.t_max, frames)
-                orbits = sample_orbits(potential, starts, times, execution=context.start_stage("paths"))
+                orbits = sample_orbits(potential, starts, times, section=section, execution=context.start_stage("paths"))
             contents = {path: make_content(ending) for ending, path in paths.items()}
         files = write_files(contents)
     matching = None if entrances is None else compute_exit_matching(entrances, outcomes)

@@ -119,6 +119,7 @@ def _print(
         "character": verdict.character,
         "bounded_for_ever": verdict.is_bounded_for_ever,
         **{name: getattr(orbit, name) for name in ("energy", "escape_time", "crossings", "energy_error", "exits_unknown")},
+        "section": orbit.section.text,
         "start": [float(getattr(orbit, name)[0]) for name in ("x", "y", "px", "py")],
         "indicators": [
             {"name": each.name, "value": each.value, "conclusion": each.conclusion, "sentence": each.sentence}

@@ -30,7 +30,7 @@ from plots.printed.figure_files import study_figure_bytes
 from plots.printed.figure_style import FigureFormat, FigureStyle
 from plots.studies.study import Study, Subject
 from plots.studies.table import STUDIES
-from plots.texts.exports import dataset_bytes, table_csv
+from plots.texts.exports import dataset_bytes, stem_of, table_csv
 
 STUDY_HELP = " ".join(f"{name}: {study.hint}" for name, study in STUDIES.items())
 AGAINST_HELP = "h, or a parameter; by default the first quantity against which the study can be made."
@@ -59,7 +59,7 @@ def run(
     chosen_energy = energies.first if energy is None else energy
     subject = Subject(system, potential, plane, chosen_energy, energies, t_max, section)
     job = entry.job(subject, _choose_axis(entry, system, against))
-    stem = Path(f"{entry.files}-{file_name_part(case)}")
+    stem = Path(stem_of(f"{entry.files}-{file_name_part(case)}", section))
     paths = name_files(output, ["nc", "csv", *FigureFormat], ["nc", "csv"], stem)
     with reserve_output(output or stem):
         with place.run() as context:

@@ -23,7 +23,7 @@ from cli.execution import Place
 from cli.option_marks import DocumentedBy
 from cli.options import with_options
 from cli.printing import AsJson, print_result
-from engine import MEASURES, MapSpec, Potential, Slice, SweepSpec, compute_sweep, plan_sweep
+from engine import MEASURES, MapSpec, Potential, Section, Slice, SweepSpec, compute_sweep, plan_sweep
 from engine.slices.window import GivenWindow
 
 MEASURE_HELP = f"{', '.join(MEASURES)}; maps by default. Can be repeated."
@@ -43,6 +43,7 @@ def run(
     resolution: Annotated[tuple[int, int], DocumentedBy(SweepSpec)],
     t_max: Annotated[float, DocumentedBy(SweepSpec)],
     use_evidence: Annotated[bool, DocumentedBy(MapSpec)],
+    section: Section,
     measure: Annotated[list[str] | None, typer.Option(help=MEASURE_HELP)] = None,
     plan: bool = False,
     place: Place,
@@ -58,7 +59,7 @@ def run(
         Estimate the cost without computing.
     """
     energies = space_values(low, high, count, energy)
-    spec = SweepSpec(potential, plane, energies, resolution, window, t_max, use_evidence, measure or ("maps",))
+    spec = SweepSpec(potential, plane, energies, resolution, window, t_max, use_evidence, measure or ("maps",), section=section)
     try:
         with place.run() as context:
             if plan:

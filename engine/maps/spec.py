@@ -17,7 +17,7 @@ from engine.slices.limiting_curves import trace_zero_velocity_curve
 from engine.slices.parameter_family import parameter_family
 from engine.slices.planes import checked_slice
 from engine.slices.sections.section import Section
-from engine.slices.sections.section_text import checked_section
+from engine.slices.sections.section_text import checked_section, section_of_file
 from engine.slices.slice import Slice
 from engine.slices.slice_text import read_slice, write_slice
 from engine.slices.window import GivenWindow, Window, checked_window
@@ -278,7 +278,7 @@ def read_spec(dataset: xr.Dataset) -> MapSpec:
     return MapSpec(
         read_potential(attributes), plane, _plain_energy(energy), (columns, rows), window,  # type: ignore[arg-type]
         float(attributes["t_max"]), use_evidence=bool(attributes["use_evidence"]), backward=bool(attributes["backward"]),
-        section=str(attributes["section"]),
+        section=section_of_file(attributes),
     )  # fmt: skip
 
 

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import partial
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from engine.exits.exit_rows import exit_curves
 from engine.exits.exit_shapes import exit_gates
-from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
-from engine.foundations.validation import checked_number, checked_states, checks_types
+from engine.foundations.execution import Execution
 from engine.integrator.kernels.dense_output import trace_orbit
 from engine.integrator.kernels.propagate import Exits
 from engine.integrator.source.section_numbers import UPWARD, SectionNumbers
@@ -20,9 +19,6 @@ from engine.propagation.fates import Fate, OrbitResult
 from engine.systems.outcomes import Outcome
 from engine.systems.potential import Potential
 from engine.systems.well_units import TIME
-
-ENERGY_TOLERANCE = 1e-9
-"""Largest difference between the energy of a start and the given energy, in units of the well."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -37,7 +33,8 @@ class Outcomes(OrbitResult):
         float64, time of the outcome: of the passage through an exit, of the collision, or of the passage of the escape radius;
         NaN without an outcome.
     crossings
-        int32, upward crossings of y = 0 (not counting the start) before the escape or until t_max; 0 if there is no orbit.
+        int32, crossings of the section, by default of y = 0 upward, before the escape or until t_max; the start is not counted; 0
+        if there is no orbit.
     energy_error
         float64, ``|H − h| / |h|`` at the end; NaN if there is no orbit.
     t_max
@@ -69,70 +66,38 @@ def collect_outcomes(potential: Potential, energy: np.ndarray, batch: OrbitBatch
     return Outcomes(batch.fate.copy(), escape_time, crossings, error)
 
 
-@shows_progress("orbits")
-@checks_types(potential=Potential, execution=Execution)
-def classify_orbits(
+def classify_in_well_units(
     potential: Potential,
     energy: float,
-    states: Any,
-    t_max: float | None = None,
-    *,
-    execution: Execution = DEFAULT_EXECUTION,
+    states: np.ndarray,
+    t_max: float,
+    execution: Execution,
+    section: SectionNumbers = UPWARD,
 ) -> Outcomes:
-    """Compute fate, escape time and number of crossings of orbits of one energy.
+    """Return the outcomes of orbits of one energy, without `t_max` and `outcomes`; all quantities are in units of the well.
 
     Parameters
     ----------
     potential
-        The potential.
+        The potential in units of its well, `Potential.in_well_units`.
     energy
-        h, finite, at most 1e9 in magnitude, dimensionless.
+        The energy of all orbits.
     states
-        (n, 4) x, y, px, py; finite, with this energy to within 1e-9 in units of the well.
+        (n, 4) x, y, px, py of the starts, with this energy.
     t_max
-        Largest integration time, 0 < t_max ≤ 1e8, dimensionless; by default as in `MapSpec`.
+        Largest integration time, above 0, dimensionless.
     execution
         How the computation runs. When it is cancelled, orbits without a result stay `Fate.NOT_COMPUTED`.
-
-    Returns
-    -------
-    The `Outcomes`; `to_pandas` and `to_xarray` have a row for each orbit.
-
-    Raises
-    ------
-    ValueError
-        If a state is not finite or has another energy, or a parameter is out of range.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from escape_explorer import CASES, Plane, classify_orbits, start_states
-    >>> states = start_states(CASES["I"], Plane.X_PX, 0.3, np.array([-0.3, 0.0, 0.3]), np.zeros(3))
-    >>> outcomes = classify_orbits(CASES["I"], 0.3, states, t_max=100.0)
-    >>> outcomes.fate.tolist(), outcomes.escape_time.round(2).tolist()
-    ([1, 1, 1], [45.7, 2.03, 1.82])
+    section
+        The surface of section at which crossings are counted, see `Section.numbers`.
     """
-    states = _checked_states(potential, energy, states)
-    t_max = potential.checked_t_max(t_max)
-    units = potential.units
-    outcomes = classify_in_well_units(
-        potential.in_well_units, energy / units.energy, states / units.state, t_max / units.time, execution
-    )
-    made_by = potential.describe_run(energy=float(energy), t_max=t_max)
-    return replace(units.restore(outcomes), t_max=t_max, outcomes=potential.outcomes_at(energy), made_by=made_by)
-
-
-def classify_in_well_units(
-    potential: Potential, energy: float, states: np.ndarray, t_max: float, execution: Execution
-) -> Outcomes:
-    """Apply `classify_orbits` in units of the well; states are not checked, and `t_max` and `outcomes` are not set."""
     curves = exit_curves(potential, energy)[None]
     batch = OrbitBatch.from_starts(states, np.zeros(len(states), np.int64))
     all_indices = np.arange(len(states))
     batch.mark_outside(potential, all_indices, curves, execution=execution)
     propagate_batch(
         potential, curves, batch, all_indices, t_max, final=True, execution=execution,
-        on_tiles=lambda: execution.report(partial(_share_done, batch, t_max)),
+        on_tiles=lambda: execution.report(partial(_share_done, batch, t_max)), section=section,
     )  # fmt: skip
     return collect_outcomes(potential, np.full(len(states), energy), batch)
 
@@ -140,19 +105,6 @@ def classify_in_well_units(
 def _share_done(batch: OrbitBatch, t_max: float) -> float:
     """Return the share of the total integration time that is done; an orbit that has ended counts as done."""
     return float(np.where(batch.fate == Fate.NOT_COMPUTED, np.minimum(batch.t / t_max, 1.0), 1.0).mean())
-
-
-def _checked_states(potential: Potential, energy: float, states: Any) -> np.ndarray:
-    """Return the states as an array; ValueError unless all have the energy to within `ENERGY_TOLERANCE`."""
-    energy = checked_number("energy", energy)
-    array = checked_states("states", states)
-    difference = np.abs(potential.energy(array) - energy)
-    tolerance = ENERGY_TOLERANCE * potential.units.energy
-    if np.any(difference > tolerance):
-        row = int(np.argmax(difference))
-        row_energy = float(potential.energy(array[row]))
-        raise ValueError(f"states: row {row} has energy {row_energy!r}; must be energy={energy} to within {tolerance:.2g}")
-    return array
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,6 +17,7 @@ from engine.slices.axes import Coordinate, ParameterAxis
 from engine.slices.default_window import map_window
 from engine.slices.parameter_family import parameter_family
 from engine.slices.planes import checked_slice
+from engine.slices.sections.section import Section
 from engine.slices.slice import Slice
 from engine.slices.slice_text import write_slice
 from engine.slices.window import GivenWindow
@@ -64,6 +65,8 @@ class SweepSpec:
     refine
         Number of additional values, 0 to 1000, chosen while the sweep runs. Each is the middle of the two neighbouring values
         between which the share of an exit, or of bounded starts, changes most. The measure "shares" is required.
+    section
+        The surface of section at which crossings are counted: a `Section` or text, see `read_section`.
 
     Raises
     ------
@@ -82,6 +85,7 @@ class SweepSpec:
     along: ParameterAxis | None = None
     energy: float | None = None
     refine: int = 0
+    section: Section = Section.Y_UP
 
     # `__init__` accepts more types than the fields have, and converts them. This declaration is for type checkers.
     if TYPE_CHECKING:
@@ -99,6 +103,7 @@ class SweepSpec:
             along: ParameterAxis | None = None,
             energy: float | None = None,
             refine: int = 0,
+            section: Section | str = Section.Y_UP,
         ) -> None: ...
 
     def __post_init__(self) -> None:
@@ -116,11 +121,12 @@ class SweepSpec:
             raise ValueError("window=None: must be given for maps along a parameter, which have common axes")
         # The map at the highest value checks the other fields and converts them.
         highest = MapSpec(
-            self.potential, plane, self._energy_at(values[-1]), self.resolution, self.window, self.t_max, self.use_evidence
-        )
+            self.potential, plane, self._energy_at(values[-1]), self.resolution, self.window, self.t_max, self.use_evidence,
+            section=self.section,
+        )  # fmt: skip
         object.__setattr__(self, "values", values)
         object.__setattr__(self, "measures", measures)
-        for name in ("plane", "resolution", "window", "t_max", "use_evidence"):
+        for name in ("plane", "resolution", "window", "t_max", "use_evidence", "section"):
             object.__setattr__(self, name, getattr(highest, name))
 
     @property
@@ -149,7 +155,9 @@ class SweepSpec:
             member = parameter_family(self.along).member(value)
             potential, numbers = member.potential, tuple(member.numbers_at(energy).tolist())
         window = self._common_window()
-        map_spec = MapSpec(potential, self.plane, energy, self.resolution, window, self.t_max, self.use_evidence)
+        map_spec = MapSpec(
+            potential, self.plane, energy, self.resolution, window, self.t_max, self.use_evidence, section=self.section
+        )
         return SweepPoint(map_spec, self.name, value, tuple(self.measures), numbers, self.outcomes)
 
     def attributes(self) -> dict[str, Any]:

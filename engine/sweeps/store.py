@@ -15,6 +15,7 @@ import numpy as np
 
 from engine.foundations.extras import require_package
 from engine.foundations.output_lock import hold_lock, output_named_in_errors
+from engine.slices.sections.section_text import FORMER_ATTRIBUTES
 from engine.sweeps.stored_values import absent_values, count_complete, has_axis
 
 if TYPE_CHECKING:
@@ -142,6 +143,7 @@ def check_same_sweep(label: str, found: Mapping[str, Any], wanted: Mapping[str, 
 
     Attributes that are `ignored` are not compared.
     """
+    found = {**FORMER_ATTRIBUTES, **found}
     # The window is compared last, because a default window follows from other attributes. Types differ in files.
     for name, value in sorted(wanted.items(), key=lambda item: item[0] == "window"):
         is_compared = name not in {*ignored, *_WORDED_ATTRIBUTES}

@@ -78,6 +78,13 @@ class Motion(Result):
         x, y, px, py = np.moveaxis(np.asarray(states, dtype=float), -1, 0)
         return 0.5 * (px * px + py * py) / self.mass + self.value(x, y)
 
+    def derivatives(self, states: np.ndarray) -> np.ndarray:
+        """Return the derivatives of states x, y, px, py, of shape (…, 4), with respect to time."""
+        x, y, px, py = np.moveaxis(states, -1, 0)
+        slope_x, slope_y = self.gradient(x, y)
+        forces = 2.0 * self.rotation * py - slope_x, -2.0 * self.rotation * px - slope_y
+        return np.stack([px / self.mass, py / self.mass, *forces], axis=-1)
+
     def jacobi_constant(self, energy: Any) -> Any:
         """Return the Jacobi constant C = 2U − ẋ² − ẏ² of energies H in a rotating frame; arrays keep their shape.
 

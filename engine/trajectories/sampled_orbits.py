@@ -11,8 +11,11 @@ from engine.exits.exit_rows import exit_curves
 from engine.foundations.execution import DEFAULT_EXECUTION, SERIAL_EXECUTION, Execution, shows_progress
 from engine.foundations.validation import checked_array, checked_states, checks_types, short_repr
 from engine.integrator.kernels.dense_output import sample_path
+from engine.integrator.source.section_numbers import SectionNumbers
 from engine.propagation.classification import Outcomes, record_orbit
 from engine.propagation.fates import Fate, OrbitResult
+from engine.slices.sections.section import Section
+from engine.slices.sections.section_text import checked_section
 from engine.systems.outcomes import Outcome
 from engine.systems.potential import Potential
 from engine.systems.well_units import ENERGY, LENGTH, MOMENTUM, TIME
@@ -76,7 +79,14 @@ class SampledOrbits(OrbitResult):
 
 @shows_progress("orbits")
 @checks_types(potential=Potential, execution=Execution)
-def sample_orbits(potential: Potential, states: Any, times: Any, *, execution: Execution = DEFAULT_EXECUTION) -> SampledOrbits:
+def sample_orbits(
+    potential: Potential,
+    states: Any,
+    times: Any,
+    *,
+    section: Section | str = Section.Y_UP,
+    execution: Execution = DEFAULT_EXECUTION,
+) -> SampledOrbits:
     """Integrate many orbits, of any energies, and return their states at chosen times.
 
     The states are evaluated from the Taylor series of the steps, without interpolation; fates and escape times are those of
@@ -91,6 +101,8 @@ def sample_orbits(potential: Potential, states: Any, times: Any, *, execution: E
     times
         (m,) times for all orbits, or (n, m) times of each orbit, dimensionless: ascending, at least 0 and at most 1e7, the last
         time above 0.
+    section
+        The surface of section at which crossings are counted: a `Section` or text, see `read_section`.
     execution
         How the computation runs.
 
@@ -103,7 +115,7 @@ def sample_orbits(potential: Potential, states: Any, times: Any, *, execution: E
     concurrent.futures.CancelledError
         If cancelled.
     ValueError
-        If there is no state, a state is not finite, or the times are out of range or not ascending.
+        If there is no state, a state is not finite, the times are out of range or not ascending, or `section` is not legal.
 
     Examples
     --------
@@ -118,11 +130,12 @@ def sample_orbits(potential: Potential, states: Any, times: Any, *, execution: E
     if not len(states):
         raise ValueError("states: must be at least one state")
     times = _checked_times(times, len(states), potential)
-    units, scaled_potential = potential.units, potential.in_well_units
+    units, scaled_potential, section = potential.units, potential.in_well_units, checked_section(section)
+    numbers = section.in_well_units(units).numbers
     # The kernels are compiled before the threads begin.
-    _ = scaled_potential.well.kernels
+    _ = scaled_potential.well.kernels_of(numbers.form)
     futures = [
-        execution.submit(_sample_orbit, scaled_potential, start / units.state, orbit_times / units.time)
+        execution.submit(_sample_orbit, scaled_potential, start / units.state, orbit_times / units.time, numbers)
         for start, orbit_times in zip(states, times, strict=True)
     ]
     results = []
@@ -136,13 +149,16 @@ def sample_orbits(potential: Potential, states: Any, times: Any, *, execution: E
     energies = potential.energy(states)
     outcomes = potential.outcomes_at((float(energies.min()), float(energies.max())))
     orbits = units.restore(_join_orbits(scaled_potential, states / units.state, times / units.time, results))
-    return replace(orbits, outcomes=outcomes, made_by=potential.describe_run(t_max=float(times[:, -1].max())))
+    made_by = potential.describe_run(t_max=float(times[:, -1].max()), section=section.text)
+    return replace(orbits, outcomes=outcomes, made_by=made_by)
 
 
-def _sample_orbit(potential: Potential, start: np.ndarray, times: np.ndarray) -> tuple[np.ndarray, Outcomes]:
+def _sample_orbit(
+    potential: Potential, start: np.ndarray, times: np.ndarray, section: SectionNumbers
+) -> tuple[np.ndarray, Outcomes]:
     """Return the states of one orbit at m times, of shape (4, m), and its outcome, in units of the well."""
     curves = exit_curves(potential, float(potential.energy(start)))
-    orbit_steps = record_orbit(potential, start, curves, times[-1], SERIAL_EXECUTION)
+    orbit_steps = record_orbit(potential, start, curves, times[-1], SERIAL_EXECUTION, section)
     path = np.full((_COMPONENTS, times.size), np.nan)
     if len(orbit_steps.steps):
         count = int(np.searchsorted(times, orbit_steps.t_end, side="right"))

@@ -35,8 +35,7 @@ _MAX_PARTS = 8
 class PointSpacing:
     """Largest distance between neighbouring points, in units of the well: `fine` in the window that is drawn, `coarse` elsewhere.
 
-    `low` and `high`, (2,) each, are the corners of the window with its margin, on the plane of the unstable manifold, where px
-    has the opposite sign. They are None for the whole plane.
+    `low` and `high`, (2,) each, are the corners of the window with its margin; None for the whole plane.
     """
 
     coarse: float
@@ -46,11 +45,11 @@ class PointSpacing:
 
     @classmethod
     def for_window(cls, plane_window: Window, window: Window | None) -> PointSpacing:
-        """Return the spacing for a window, or for the window of the whole plane, both on the plane of the stable manifold."""
+        """Return the spacing for a window, or for the window of the whole plane."""
         coarse = SPACING * plane_window.width
         if window is None:
             return cls(coarse, coarse)
-        low, high = np.array([[window.x_low, -window.ordinate_high], [window.x_high, -window.ordinate_low]])
+        low, high = np.array([[window.x_low, window.ordinate_low], [window.x_high, window.ordinate_high]])
         sides = high - low
         fine = min(coarse, SPACING * float(sides.max()))
         return cls(coarse, fine, low - _WINDOW_MARGIN * sides, high + _WINDOW_MARGIN * sides)
@@ -81,8 +80,8 @@ def refine_passages(
 ) -> np.ndarray:
     """Return passages of orbits in order of phase, (n, count, 3). Orbits are added until the curves are smooth.
 
-    `find_passages` is a function of phases (m,) that returns the passages, (m, count, 3): x, px and time. At most `max_orbits`
-    orbits are added.
+    `find_passages` is a function of phases (m,) that returns the passages, (m, count, 3): two coordinates and the time. At most
+    `max_orbits` orbits are added.
     """
     phases = np.linspace(0.0, 1.0, _FIRST_INTERVALS + 1)
     passages = find_passages(phases)
@@ -118,7 +117,7 @@ def _limit_parts(parts: np.ndarray, width: np.ndarray, min_width: float, max_orb
 
 
 def _count_parts(points: np.ndarray, spacing: PointSpacing) -> np.ndarray:
-    """Return the number of parts, (n − 1,), into which to split each interval between points (n, 3) x, px, time; 1 keeps it."""
+    """Return the number of parts, (n − 1,), into which to split each interval between passages (n, 3); 1 keeps it."""
     allowed = spacing.between(points[:, :2])
     exists = np.isfinite(points[:, 0])
     step = np.diff(points, axis=0)

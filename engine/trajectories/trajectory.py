@@ -19,7 +19,7 @@ from engine.propagation.fates import Evidence, Fate, OrbitResult
 from engine.propagation.limited_steps import DEVIATION_VECTORS
 from engine.propagation.passages import find_passages_of_orbit
 from engine.slices.sections.section import Section
-from engine.slices.sections.section_text import checked_section, read_section
+from engine.slices.sections.section_text import checked_section, section_of_file
 from engine.systems.outcomes import Outcome
 from engine.systems.potential import Potential
 from engine.systems.well_units import AREA, ENERGY, LENGTH, MOMENTUM, RATE, TIME
@@ -59,7 +59,7 @@ class SectionResult(OrbitResult):
     @classmethod
     def read_parts(cls, dataset: xr.Dataset) -> dict[str, Any]:
         """Return the section, which files hold as text."""
-        return {"section": read_section(dataset.attrs["section"])} if "section" in dataset.attrs else {}
+        return {"section": section_of_file(dataset.attrs)}
 
 
 @dataclass(frozen=True, eq=False, repr=False)

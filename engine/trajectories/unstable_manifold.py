@@ -13,9 +13,8 @@ from engine.exits.periodic_orbits import monodromy_matrix
 from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.integrator.kernels.dense_output import sample_path, trace_steps
-from engine.propagation.passages import find_passages
-from engine.slices.sections.linear_section import LinearSection
-from engine.slices.sections.section import Crossing
+from engine.integrator.source.section_numbers import SectionNumbers
+from engine.propagation.passages import find_passages, find_passages_of_orbit
 from engine.systems.potential import Potential
 
 # Largest displacement from the Lyapunov orbit at which orbits of the tube start, in units of the well. When the tube has grown to
@@ -27,16 +26,12 @@ _MAX_DISPLACEMENT = 2e-4
 _MAX_PERIODS_PER_PASSAGE = 12.0
 # Smallest multiplier of an unstable orbit. Over a saddle, multipliers are 38 or more; near 1, an orbit is almost stable.
 _MIN_MULTIPLIER = 1.5
-# End of the first image of a Lyapunov orbit that crosses y = 0, in units of the distance of the saddle from the origin. Such an
-# orbit is itself a point of the section, where one infinite curve begins. The image ends where a displacement that continued to
-# grow by the multiplier would reach this size.
+# End of the first image of a Lyapunov orbit that crosses the section, in units of the distance of the saddle from the origin.
+# Such an orbit is itself a point of the section, where one infinite curve begins. The image ends where a displacement that
+# continued to grow by the multiplier would reach this size.
 _FIRST_IMAGE_END = 6.0
 # Number of tiles that a thread computes at a time; a tile takes about 0.3 ms.
 _TILES_PER_TASK = 16
-# Columns of a passage that are returned.
-_X, _PX, _TIME = 0, 2, 4
-# The section of the passages.
-_DOWNWARD = LinearSection(Crossing.DOWN, y=1.0).numbers
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,8 +52,10 @@ class UnstableManifold:
         Unstable Floquet multiplier, the eigenvalue of the monodromy matrix of largest modulus, above 1.5.
     min_displacement, max_displacement
         Displacements of phase 0 and of phase 1, in units of the well.
+    section
+        The surface of section that its orbits cross, see `Section.numbers`.
     near_passages
-        Number of initial passages of y = 0 near the Lyapunov orbit; 0 if that orbit does not cross y = 0.
+        Number of initial passages of the section near the Lyapunov orbit; 0 if that orbit does not cross it.
     """
 
     orbit: LyapunovOrbit
@@ -66,16 +63,17 @@ class UnstableManifold:
     multiplier: float
     min_displacement: float
     max_displacement: float
+    section: SectionNumbers
     near_passages: int
 
     @classmethod
-    def from_orbit(cls, orbit: LyapunovOrbit) -> UnstableManifold:
-        """Build the manifold of a Lyapunov orbit.
+    def from_orbit(cls, orbit: LyapunovOrbit, section: SectionNumbers) -> UnstableManifold:
+        """Build the manifold of a Lyapunov orbit and its passages of a section of positions, crossed in one direction.
 
         Raises
         ------
         ValueError
-            When the orbit is not unstable, or the frame rotates.
+            When the orbit is not unstable or crosses the section more than once in a period, or the frame rotates.
         """
         orbit.potential.check_at_rest("manifolds of Lyapunov orbits")
         monodromy = monodromy_matrix(orbit.potential, orbit.start, orbit.period)
@@ -87,8 +85,8 @@ class UnstableManifold:
             )
         if direction[:2] @ orbit.outward > 0.0:
             direction = -direction
-        largest, near_passages = _choose_displacement(orbit, multiplier)
-        manifold = cls(orbit, read_only(direction), multiplier, largest / multiplier, largest, near_passages)
+        largest, near_passages = _choose_displacement(orbit, multiplier, section)
+        manifold = cls(orbit, read_only(direction), multiplier, largest / multiplier, largest, section, near_passages)
         _, left_eigenvector = _leading_eigenpair(monodromy.T)
         return replace(manifold, max_displacement=manifold._displacement_after_period(left_eigenvector))
 
@@ -115,7 +113,7 @@ class UnstableManifold:
         return displacement
 
     def find_passages(self, phases: np.ndarray, count: int, execution: Execution = DEFAULT_EXECUTION) -> np.ndarray:
-        """Find the first downward passages of y = 0 of the orbits with these phases before they escape.
+        """Find the first passages of the section of the orbits with these phases before they escape.
 
         Parameters
         ----------
@@ -128,8 +126,8 @@ class UnstableManifold:
 
         Returns
         -------
-        (n, count, 3) x, px and time; NaN for missing passages. The time is 0 where the displacement, if it grew exponentially at
-        its initial rate, would be 1. Phases 0 and 1 thus give the same times.
+        (n, count, 5) x, y, px, py and time; NaN for missing passages. The time is 0 where the displacement, if it grew
+        exponentially at its initial rate, would be 1. Phases 0 and 1 thus give the same times.
 
         Raises
         ------
@@ -142,13 +140,12 @@ class UnstableManifold:
         # The second term is the time in which the smallest displacement would grow to 1.
         duration = count * _MAX_PERIODS_PER_PASSAGE * self.orbit.period - growth_time * math.log(self.min_displacement)
         starts = self.start_states(displacements)
-        found = find_passages(
-            self.potential, starts, np.zeros(len(starts), np.int64), curves[None], count, duration, _DOWNWARD,
+        passages = find_passages(
+            self.potential, starts, np.zeros(len(starts), np.int64), curves[None], count, duration, self.section,
             execution=execution, tiles_per_task=_TILES_PER_TASK,
         )  # fmt: skip
-        passages = found[:, :, [_X, _PX, _TIME]]
         execution.raise_if_cancelled()
-        passages[:, :, 2] += growth_time * np.log(displacements)[:, None]
+        passages[:, :, 4] += growth_time * np.log(displacements)[:, None]
         return passages
 
     def displacements(self, phases: np.ndarray) -> np.ndarray:
@@ -166,11 +163,12 @@ class UnstableManifold:
         return states
 
 
-def _choose_displacement(orbit: LyapunovOrbit, multiplier: float) -> tuple[float, int]:
+def _choose_displacement(orbit: LyapunovOrbit, multiplier: float, section: SectionNumbers) -> tuple[float, int]:
     """Return `max_displacement`, without nonlinear terms, and `near_passages`, see `UnstableManifold`."""
-    # The points of rest have the first and the middle index.
-    crosses_section = orbit.y[0] * orbit.y[orbit.y.size // 2] <= 0.0
-    if not crosses_section:
+    passages = len(find_passages_of_orbit(orbit.potential, orbit.start, 2, orbit.period, section))
+    if passages > 1:
+        raise ValueError(f"the Lyapunov orbit of channel {orbit.channel} crosses the section more than once in a period")
+    if passages == 0:
         return _MAX_DISPLACEMENT, 0
     end = _FIRST_IMAGE_END * float(np.hypot(*orbit.potential.saddles[orbit.channel - 1]))
     periods = math.ceil(math.log(end / _MAX_DISPLACEMENT) / math.log(multiplier))

@@ -108,7 +108,7 @@ TIMES = Picture(
 
 CROSSINGS = Picture(
     name="crossings",
-    title="Crossings of y = 0",
+    title="Crossings of the section",
     short_title="Crossings",
     title_of=lambda spec: spec.section.words.title,
     help=(

@@ -9,8 +9,7 @@ import numpy as np
 from engine import MapSpec, find_stable_manifolds
 from engine.jobs.job import Job
 from engine.results import StableManifolds
-from engine.slices.planes import SECTION
-from engine.trajectories.stable_manifolds import MOST_IMAGES, ManifoldArc
+from engine.trajectories.stable_manifolds import MOST_IMAGES, ManifoldArc, section_of_starts
 from plots.layers.layer import Count, Layer, Over, Setting, Settings, Stroke
 from plots.pictures.palette import Entry, Mark, Palette
 
@@ -57,12 +56,12 @@ def select_image(manifolds: StableManifolds, image: int) -> StableManifolds:
 def _stroke(channel: int, image: int, arcs: list[ManifoldArc]) -> Stroke:
     index = min(image, len(_WIDTHS)) - 1
     halo_width = _WIDTHS[index] + 2.0 * _HALO_RIM if image == 1 else 0.0
-    lines = tuple(np.column_stack([arc.x, arc.px]) for arc in arcs)
+    lines = tuple(np.column_stack([arc.x, arc.ordinate]) for arc in arcs)
     return Stroke(lambda palette: palette.channels[channel - 1], lines, _WIDTHS[index], halo_width, _ALPHAS[index])
 
 
 def _length(arc: ManifoldArc) -> float:
-    return float(np.hypot(np.diff(arc.x), np.diff(arc.px)).sum())
+    return float(np.hypot(np.diff(arc.x), np.diff(arc.ordinate)).sum())
 
 
 def _entries(manifolds: StableManifolds, palette: Palette) -> list[Entry]:
@@ -71,20 +70,31 @@ def _entries(manifolds: StableManifolds, palette: Palette) -> list[Entry]:
 
 
 def _job(spec: MapSpec, settings: Settings) -> Job[StableManifolds]:
-    options = ("images", settings.get(MANIFOLDS.name, _IMAGES)), ("window", spec.given_window)
+    section = section_of_starts(spec.plane, spec.section)
+    options = ("images", settings.get(MANIFOLDS.name, _IMAGES)), ("window", spec.given_window), ("section", section)
     return Job(find_stable_manifolds, (spec.potential, spec.common_energy), options)
 
 
+def _spec_of(manifolds: StableManifolds) -> MapSpec:
+    section = manifolds.section
+    return MapSpec(manifolds.potential, section.slice_of_starts, manifolds.energy, section=section)
+
+
 def _refusal(spec: MapSpec) -> str:
-    if spec.plane != SECTION or spec.backward:
-        return f"Stable manifolds are curves in the {SECTION.title} plane and are drawn on maps forward in time there only."
+    if spec.backward:
+        return "Stable manifolds are drawn on maps forward in time only."
+    if section_of_starts(spec.plane, spec.section) is None:
+        return (
+            "Stable manifolds are drawn on slices whose starts cross a line, such as (x, px) for y = 0 and (y, py) for x = 0; "
+            f"{spec.plane.title} is not such a slice."
+        )
     return "Stable manifolds are found in frames that do not rotate only." if spec.potential.rotation else ""
 
 
 MANIFOLDS = Layer(
     name="manifolds",
     title="Stable manifolds",
-    help="Number of images of the stable manifolds, on x_px; 0 for none.",
+    help="Number of images of the stable manifolds, on slices of a section such as x_px; 0 for none.",
     stage="stable manifolds",
     result=StableManifolds,
     job=_job,
@@ -92,7 +102,7 @@ MANIFOLDS = Layer(
     count=Count("IMAGES", MOST_IMAGES),
     settings=(IMAGE,),
     select=lambda manifolds, settings: select_image(manifolds, IMAGE.value_in(settings)),
-    spec_of=lambda manifolds: MapSpec(manifolds.potential, SECTION, manifolds.energy),
+    spec_of=_spec_of,
     over=Over(pictures=("curves", "basins", "crossings"), legend=_entries, strokes=manifold_strokes),
     has_table=True,
 )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from importlib import metadata
 
-from engine import CASES, EscapeMap, Potential
+from engine import CASES, EscapeMap, Potential, Section
 from engine.foundations.wording import format_number
 
 
@@ -28,6 +28,7 @@ def provenance_line(frame: EscapeMap) -> str:
         *_system_facts(spec.potential),
         *energy,
         f"plane {plane.title}",
+        *([] if spec.section == Section.Y_UP else [f"section {spec.section.text}"]),
         f"{abscissa} from {_write_ends(window.x_low, window.x_high)}",
         f"{ordinate} from {_write_ends(window.ordinate_low, window.ordinate_high)}",
         f"{columns} × {rows} starts",

@@ -34,6 +34,7 @@ def _job(subject: Subject, axis: str) -> Job[Sweep]:
         along=along,
         energy=None if along is None else subject.energy,
         refine=REFINED_VALUES,
+        section=subject.section,
     )
     return sweep_job(spec)
 

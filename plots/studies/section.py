@@ -25,7 +25,7 @@ FRAME = Frame(
     Section.Y_UP.axes.symbols,
     "Where many orbits of this energy cross the surface of section, up to their exits, each in one of a few colours. A regular "
     "orbit stays on a curve: nested curves are an island, and chains of small islands are resonances. A chaotic orbit fills an "
-    "area, or leaves a few points and escapes. Controls, Slice, chooses the section.",
+    'area, or leaves a few points and escapes. Controls, "Axes …", chooses the section.',
     "Click to follow the orbit from (@x{number}, @y{number})",
     described=Shape.DOTS,
     is_square=True,
@@ -34,7 +34,7 @@ FRAME = Frame(
 
 def _job(subject: Subject, axis: str) -> Job[Returns]:
     section = subject.section
-    spec = MapSpec(subject.potential, section.plane, subject.energy, _STARTS, t_max=subject.t_max, section=section)
+    spec = MapSpec(subject.potential, section.slice_of_starts, subject.energy, _STARTS, t_max=subject.t_max, section=section)
     return Job(compute_returns, (spec,), (("returns", RETURNS),))
 
 
@@ -46,24 +46,26 @@ def section_charts(found: Returns, palette: Palette) -> list[Chart]:
         for number, points in enumerate(found.points())
     ]
     spec = found.spec
-    frame = replace(FRAME, labels=spec.section.axes.symbols)
+    text = FRAME.text if spec.section.plane is not None else ""
+    frame = replace(FRAME, labels=spec.section.axes.symbols, text=text)
     limits = spec.find_window().ranges if spec.section.is_drawn_on(spec.plane) else (None, None)
     return [Chart(frame, series, limits)] if series else []
 
 
 def _changes(subject: Subject, axis: str, found: Returns, x: float, y: float) -> Changes:
-    """Return the start at the point nearest to the click, if starts on the section have the coordinates of the chart."""
-    section = found.spec.section
-    if not section.is_drawn_on(found.spec.plane):
+    """Return the start of the return nearest to the click, on a slice on the section, if there is one."""
+    section, states = found.spec.section, found.states[np.isfinite(found.time)]
+    points = section.axes.points(states)
+    steps = (points - [x, y]) / np.ptp(points, axis=0)
+    start = section.find_start(subject.potential, states[np.argmin(np.hypot(*steps.T))])
+    if start is None:
         return {}
-    window, points = found.spec.find_window(), np.concatenate(found.points())
-    distance = np.hypot((points[:, 0] - x) / window.width, (points[:, 1] - y) / window.height)
-    nearest = points[np.argmin(distance)].tolist()
-    return {"plane": section.plane, "energy": subject.energy, "start": tuple(nearest)}
+    plane, place = start
+    return {"plane": plane, "energy": subject.energy, "start": place}
 
 
 def _sentence(found: Returns) -> str:
-    can_click = found.complete and bool(found.count.any()) and found.spec.section.is_drawn_on(found.spec.plane)
+    can_click = found.complete and bool(found.count.any()) and found.spec.section.plane is not None
     return f"{found.describe()}{' Click a point to follow its orbit.' if can_click else ''}"
 
 

@@ -186,9 +186,12 @@ def file_stem(spec: MapSpec, case: str) -> str:
     if window is not None:
         x, ordinate = window.ranges
         stem += "".join(f"-{low!r}_{high!r}" for low, high in (x, ordinate))
-    if spec.section != Section.Y_UP:
-        stem += f"-{spec.section.text}"
-    return re.sub(r"[^A-Za-z0-9_.+-]", "_", stem)
+    return stem_of(stem, spec.section)
+
+
+def stem_of(stem: str, section: Section) -> str:
+    """Return the file name of results with any section other than the default; letters, digits and ``_ . + -`` only."""
+    return re.sub(r"[^A-Za-z0-9_.+-]", "_", stem if section == Section.Y_UP else f"{stem}-{section.text}")
 
 
 def table_csv(found: Result) -> str:

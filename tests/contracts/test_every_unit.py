@@ -127,7 +127,7 @@ def test_stable_manifolds_are_the_same_in_other_units(scaling: Scaling) -> None:
     for arc, other in zip(scaled.arcs, usual.arcs, strict=True):
         assert (arc.channel, arc.image) == (other.channel, other.image)
         np.testing.assert_array_equal(arc.x, scaling.length * other.x)
-        np.testing.assert_array_equal(arc.px, scaling.momentum * other.px)
+        np.testing.assert_array_equal(arc.ordinate, scaling.momentum * other.ordinate)
 
 
 @exactly_scaled

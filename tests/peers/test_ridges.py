@@ -47,7 +47,7 @@ def manifold_points(images: int, sign: float) -> np.ndarray:
     points = []
     for arc in stable_manifolds(images).arcs:
         column = (arc.x - window.x_low) / (window.x_high - window.x_low) * columns - 0.5
-        row = (sign * arc.px - window.ordinate_low) / (window.ordinate_high - window.ordinate_low) * rows - 0.5
+        row = (sign * arc.ordinate - window.ordinate_low) / (window.ordinate_high - window.ordinate_low) * rows - 0.5
         lengths = np.hypot(np.diff(column), np.diff(row))
         places = np.concatenate([[0.0], np.cumsum(lengths)])
         dense = np.arange(0.0, places[-1], 0.2)

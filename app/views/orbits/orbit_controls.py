@@ -103,7 +103,7 @@ class OrbitControls:
         self.open_section.visible = bool(energy_or_parameter)
         if energy_or_parameter:
             names = " and ".join(axis.symbol for axis in energy_or_parameter)
-            self.open_section.label = f"Open {section.plane.title} at this {names}"
+            self.open_section.label = f"Open {section.slice_of_starts.title} at this {names}"
 
     def _set_colours(self, palette: Palette) -> None:
         """Set the colours of the orbits' numbers."""

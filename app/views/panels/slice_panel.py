@@ -63,6 +63,7 @@ class SlicePanel:
             label="Surface of section", restrict=False, min_characters=0, case_sensitive=False, search_strategy="includes",
             sizing_mode="stretch_width", margin=(4, 0),
         )  # fmt: skip
+        self.section_message = StatusPane("", sizing_mode="stretch_width", margin=0)
         self.start_on_section = button("Start on the section", self._start_on_section, margin=(4, 0))
         self.section.param.watch(lambda event: self._take_section(event.new), "value")
         for index, axis in enumerate(self.axes):
@@ -75,7 +76,7 @@ class SlicePanel:
         """Return the parts of a column."""
         hint = TextPane(f"<p class='quiet'>{_HINT}</p>", sizing_mode="stretch_width", margin=0)
         section_hint = TextPane(f"<p class='quiet'>{_SECTION_HINT}</p>", sizing_mode="stretch_width", margin=0)
-        section = [section_hint, self.section, self.start_on_section]
+        section = [section_hint, self.section, self.section_message, self.start_on_section]
         return [hint, *self.axes, self.ranges, self.mode, self.held, self.message, *section]
 
     def show(self, plane: Slice, system: System) -> None:
@@ -95,25 +96,29 @@ class SlicePanel:
     def show_section(self, section: Section, plane: Slice, system: System) -> None:
         """Show the section, the sections of a system, and whether the starts are on the section."""
         entry = CATALOGUE.get(system.case)
+        # With other parameters, bodies may be elsewhere.
+        of_system = entry.sections if entry is not None and system == System(system.case) else ()
+        options = dict.fromkeys(read_section(text).text for text in [*_SECTIONS[:1], *of_system, *_SECTIONS[1:]])
         self._is_following = True
         try:
-            options = dict.fromkeys([*_SECTIONS[:1], *(entry.sections if entry is not None else ()), *_SECTIONS[1:]])
             self.section.param.update(options=list(options), value=section.text)
         finally:
             self._is_following = False
-        self.start_on_section.visible = plane != section.plane
+        self.start_on_section.visible = section.plane not in (None, plane)
+        self.section_message.object = ""
 
     def _take_section(self, text: str) -> None:
-        if self._is_following or text == self._state.section.text:
+        if self._is_following:
             return
         try:
             section = read_section(text)
         except ValueError as error:
-            self.message.object = f"<p role='alert'>{escape(str(error))}</p>"
+            self.section_message.object = f"<p role='alert'>{escape(str(error))}</p>"
             return
-        self.message.object = f"<p>{escape(self._state.plane.title)}</p>"
         with pn.io.hold():
             self._state.show_section(section, with_slice=False)
+            # An equal section may be written in another way.
+            self.show_section(section, self._state.plane, self._state.system)
 
     def _start_on_section(self) -> None:
         self._state.show_section(self._state.section, with_slice=True)

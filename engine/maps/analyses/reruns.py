@@ -11,6 +11,7 @@ from engine.integrator.source.recurrence import TOLERANCE
 from engine.maps.spec import FINEST_PIXEL, MapSpec
 from engine.propagation.batch import OrbitBatch
 from engine.propagation.fates import Fate
+from engine.slices.sections.section import Crossing
 
 SHIFT = 1e-11
 """Shift of a start along x and along the ordinate, in units of the well: far above rounding errors and far below a pixel."""
@@ -29,7 +30,11 @@ changes the time by about d. Below this limit, shifts of the same size in other 
 """
 
 
-def shifted_starts(spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
+type Points = tuple[np.ndarray, np.ndarray]
+"""x and ordinate of n points, (n,) each."""
+
+
+def shifted_starts(spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> tuple[Points, ...]:
     """Shift points of the plane in two directions, so that mirror images stay mirror images.
 
     The shift is `SHIFT`, but at most a hundredth of a pixel, and at least `FINEST_PIXEL`, so that it exceeds rounding errors. The
@@ -53,21 +58,42 @@ def shifted_starts(spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> tuple[
     free_axes = spec.plane.free_axes
     points = x, ordinate
     axes = zip(points, sides, free_axes, strict=True)
-    nearer_points = tuple(_shifted_towards_zero(values, side) if is_free else values for values, side, is_free in axes)
-    if all(free_axes):
-        return (nearer_points[0], nearer_points[1]), (nearer_points[0], ordinate)
-    farther_points = tuple(values + (values - shifted) for values, shifted in zip(points, nearer_points, strict=True))
-    return (nearer_points[0], nearer_points[1]), (farther_points[0], farther_points[1])
+    nearer_x, nearer_ordinate = (_shifted_towards_zero(values, side) if is_free else values for values, side, is_free in axes)
+    nearer = nearer_x, nearer_ordinate
+    others = (nearer_x, ordinate) if all(free_axes) else _reflected(points, nearer)
+    return tuple(_shifted_beyond_section(spec, points, shifted) for shifted in (nearer, others))
+
+
+def _reflected(points: Points, others: Points) -> Points:
+    """Return the reflections of other points in these points."""
+    (x, ordinate), (other_x, other_ordinate) = points, others
+    return x + (x - other_x), ordinate + (ordinate - other_ordinate)
+
+
+def _shifted_beyond_section(spec: MapSpec, points: Points, shifted: Points) -> Points:
+    """Return shifted points, in the opposite direction where the orbit would otherwise cross the section once more.
+
+    This concerns starts on the section, and those that have just crossed it.
+    """
+    section, states = spec.section, spec.start_states(*points)
+    value, shifted_value = section.values(states), section.values(spec.start_states(*shifted))
+    rate = section.rates(states, spec.potential.derivatives(states))
+    is_near = np.abs(value) < np.abs(shifted_value)
+    has_crossed = np.where(is_near, np.sign(rate), np.sign(value)) == np.sign(rate)
+    counts = (rate > 0.0) | (section.direction is Crossing.BOTH)
+    crosses = has_crossed & counts & (shifted_value * rate < 0.0)
+    x, ordinate = (np.where(crosses, back, there) for back, there in zip(_reflected(points, shifted), shifted, strict=True))
+    return x, ordinate
 
 
 def _shifted_towards_zero(coordinate: np.ndarray, pixel: float) -> np.ndarray:
     """Return coordinates (n,) shifted towards 0, given the side of a pixel."""
     distance = np.maximum(min(SHIFT, LARGEST_SHARE_OF_PIXEL * pixel), FINEST_PIXEL * np.maximum(1.0, np.abs(coordinate)))
-    # A start on y = 0 is shifted up, because from below it would cross y = 0 once more.
+    # A start on an axis is shifted in the positive direction.
     return np.where(coordinate > 0.0, coordinate - distance, coordinate + distance)
 
 
-def _same_starts(_spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
+def _same_starts(_spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> tuple[Points, ...]:
     """Return the points unchanged, for one rerun."""
     return ((x, ordinate),)
 
@@ -76,7 +102,7 @@ def _same_starts(_spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> tuple[t
 class Perturbation:
     """Parameters of the reruns: their starts, see `shifted_starts`, their tolerances, and the largest change of escape times."""
 
-    find_starts: Callable[[MapSpec, np.ndarray, np.ndarray], tuple[tuple[np.ndarray, np.ndarray], ...]]
+    find_starts: Callable[[MapSpec, np.ndarray, np.ndarray], tuple[Points, ...]]
     tolerances: tuple[float, ...]
     largest_delay: float
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from engine.foundations.validation import checked_number, short_repr
+from engine.foundations.validation import checked_number, replace_unchecked, short_repr
 from engine.slices.planes import Plane
 from engine.slices.sections.linear_section import oblique_slice
 from engine.slices.sections.section import Crossing, CrossingWords, Section, SectionAxes, words_of, write_number
@@ -37,7 +37,8 @@ class RaySection(Section):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        degrees = checked_number("section degrees", self.degrees)
+        # The sum turns −0 into 0.
+        degrees = checked_number("section degrees", self.degrees) + 0.0
         if not -360.0 <= degrees <= 360.0:
             raise ValueError(f"section degrees={short_repr(self.degrees)}: must be from -360 to 360")
         object.__setattr__(self, "degrees", degrees)
@@ -71,7 +72,7 @@ class RaySection(Section):
 
     def in_well_units(self, units: WellUnits) -> RaySection:
         """Return the section in units of a well."""
-        return replace(self, centre=_scaled(self.centre, units))
+        return replace_unchecked(self, centre=_scaled(self.centre, units))
 
     @property
     def axes(self) -> SectionAxes:
@@ -129,7 +130,7 @@ class ApsisSection(Section):
 
     def in_well_units(self, units: WellUnits) -> ApsisSection:
         """Return the section in units of a well."""
-        return replace(self, centre=_scaled(self.centre, units))
+        return replace_unchecked(self, centre=_scaled(self.centre, units))
 
     @property
     def axes(self) -> SectionAxes:
@@ -137,9 +138,9 @@ class ApsisSection(Section):
         return SectionAxes(("x", "y"), np.eye(4)[:2])
 
     @property
-    def plane(self) -> Slice:
+    def plane(self) -> Slice | None:
         """See `Section.plane`."""
-        return Plane.TANGENTIAL
+        return Plane.TANGENTIAL if self.centre == (0.0, 0.0) else None
 
 
 def checked_centre(value: object) -> tuple[float, float]:
@@ -149,7 +150,7 @@ def checked_centre(value: object) -> tuple[float, float]:
     except (TypeError, ValueError):
         raise ValueError(f"section centre={short_repr(value)}: must be x and y") from None
     # The types of the parts are not known to type checkers.
-    return checked_number("section centre", x), checked_number("section centre", y)  # type: ignore[has-type]
+    return checked_number("section centre", x) + 0.0, checked_number("section centre", y) + 0.0  # type: ignore[has-type]
 
 
 def _about(centre: tuple[float, float]) -> str:

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from engine.foundations.validation import checked_number
+from engine.foundations.validation import LARGEST_NUMBER, checked_number, replace_unchecked
 from engine.slices.axes import MOMENTA, POSITIONS, STATE, Coordinate, Direction
-from engine.slices.planes import Plane, checked_slice
+from engine.slices.planes import checked_slice
 from engine.slices.sections.section import Crossing, Section, SectionAxes, write_number
 from engine.slices.slice import Slice
 from engine.systems.well_units import WellUnits
+
+# Smallest magnitude of the largest coefficient of a form.
+_SMALLEST = 1e-9
 
 
 @dataclass(frozen=True)
@@ -24,9 +27,9 @@ class LinearSection(Section):
     direction
         The crossings that count: upward where the form increases.
     x, y, px, py
-        Coefficients of the form, dimensionless, from −1e9 to 1e9, not all 0.
+        Coefficients of the form, dimensionless, from −1e9 to 1e9; the magnitude of the largest is at least 1e-9.
     value
-        Value of the form, from −1e9 to 1e9, dimensionless.
+        Value of the form, dimensionless, at most 1e9 times the magnitude of the largest coefficient.
     """
 
     x: float = 0.0
@@ -38,9 +41,12 @@ class LinearSection(Section):
     def __post_init__(self) -> None:
         super().__post_init__()
         for name in (*(coordinate.key for coordinate in STATE), "value"):
-            object.__setattr__(self, name, checked_number(f"section {name}", getattr(self, name)))
-        if not self._coefficients:
-            raise ValueError("section: one of the coefficients x, y, px and py must not be 0")
+            # The sum turns −0 into 0.
+            object.__setattr__(self, name, checked_number(f"section {name}", getattr(self, name)) + 0.0)
+        largest = max(map(abs, self._coefficients.values()), default=0.0)
+        if largest < _SMALLEST:
+            raise ValueError(f"section: one of the coefficients x, y, px and py must be at least {_SMALLEST:g} in magnitude")
+        checked_number("section value", self.value / largest, f"at most {LARGEST_NUMBER:g} times the largest coefficient")
 
     @property
     def _coefficients(self) -> dict[Coordinate, float]:
@@ -67,7 +73,7 @@ class LinearSection(Section):
         # The coefficient of a section of one coordinate does not change.
         unit = max(coordinate.unit(units) for coordinate in self._coefficients)
         numbers = {name: value / unit for name, value in scaled.items()} | {"value": self.value / unit}
-        return replace(self, **numbers)  # type: ignore[arg-type]
+        return replace_unchecked(self, **numbers)
 
     def settle(self, states: np.ndarray) -> np.ndarray:
         """Return states with the exact value of the coordinate of a section of one coordinate."""
@@ -97,7 +103,7 @@ class LinearSection(Section):
         return along if along[0] >= 0.0 else -along
 
     @property
-    def plane(self) -> Slice:
+    def plane(self) -> Slice | None:
         """See `Section.plane`."""
         if self.px or self.py:
             return self._plane_of_momentum()
@@ -111,16 +117,24 @@ class LinearSection(Section):
         fixed = ((coordinate, self.value / coefficient),)
         return checked_slice(Slice(*axes, solved, sign if coefficient > 0.0 else -sign, fixed))
 
-    def _plane_of_momentum(self) -> Slice:
-        """Return a slice on a section of momenta: for one momentum, the positions; otherwise x and px on the line y = 0."""
-        if len(self._coefficients) == 1:
-            ((momentum, coefficient),) = self._coefficients.items()
-            (solved,) = (other for other in MOMENTA if other is not momentum)
-            return Slice(*POSITIONS, solved, 1, ((momentum, self.value / coefficient),))
-        return Plane.X_PX
+    def _plane_of_momentum(self) -> Slice | None:
+        """Return a slice of positions on a section of one momentum."""
+        if len(self._coefficients) > 1:
+            return None
+        ((momentum, coefficient),) = self._coefficients.items()
+        (solved,) = (other for other in MOMENTA if other is not momentum)
+        return checked_slice(Slice(*POSITIONS, solved, 1, ((momentum, self.value / coefficient),)))
 
 
 Section.Y_UP = LinearSection(y=1.0)
+
+
+def section_of_coordinate(plane: Slice) -> LinearSection | None:
+    """Return the section on which all starts of a slice have one value of x or of y and cross it; None if there is none."""
+    fixed = dict(plane.fixed)
+    direction = Crossing.UP if plane.sign > 0 else Crossing.DOWN
+    sections = [LinearSection(direction, **{c.key: 1.0}, value=fixed.get(c, 0.0)) for c in POSITIONS]
+    return next((section for section in sections if section.plane == plane), None)
 
 
 def oblique_slice(along: np.ndarray, point: np.ndarray, normal: tuple[float, float], sign: int) -> Slice:

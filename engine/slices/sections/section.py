@@ -15,8 +15,14 @@ import numpy as np
 from engine.foundations.validation import check_type
 from engine.foundations.wording import format_count
 from engine.integrator.source.section_numbers import NAMES, UPWARD, SectionForm, SectionNumbers
+from engine.slices.axes import POSITIONS, STATE, Coordinate
+from engine.slices.planes import Plane, checked_slice
 from engine.slices.slice import Slice
+from engine.systems.potential import Potential
 from engine.systems.well_units import WellUnits
+
+# Largest difference of a state from a start that is the same, in units of the well.
+_ROUNDING = 1e-9
 
 
 class Crossing(Enum):
@@ -25,6 +31,11 @@ class Crossing(Enum):
     UP = "up"
     DOWN = "down"
     BOTH = "both"
+
+    @property
+    def reversed(self) -> Crossing:
+        """The direction of the same crossings backward in time."""
+        return {Crossing.UP: Crossing.DOWN, Crossing.DOWN: Crossing.UP}.get(self, self)
 
 
 def write_number(value: float) -> str:
@@ -136,13 +147,50 @@ class Section:
         raise NotImplementedError
 
     @property
-    def plane(self) -> Slice:
-        """A slice whose starts are on the section; from a section of positions they go upward, unless crossings are downward."""
+    def plane(self) -> Slice | None:
+        """A slice whose starts are on the section; None if there is none.
+
+        A ray is one half of the line of its slice. From a section of positions, starts go upward, unless crossings are downward;
+        on an oblique line or a ray not where the momentum across it is small compared with that along it, because the slice has
+        the sign of px or py.
+        """
         raise NotImplementedError
+
+    @property
+    def slice_of_starts(self) -> Slice:
+        """The slice `plane`, or (x, px) if there is none on the section."""
+        return self.plane or Plane.X_PX
 
     def is_drawn_on(self, plane: Slice) -> bool:
         """Return whether the axes of a slice on the section are the coordinates in which its points are drawn."""
         return plane == self.plane and plane.axis_symbols == self.axes.symbols
+
+    def find_start(self, potential: Potential, state: np.ndarray) -> tuple[Slice, tuple[float, float]] | None:
+        """Return a slice on the section and the place on it at which a state, (4,), starts; None if there is none."""
+        energy, unit = float(potential.energy(state)), potential.units.state
+        for plane in [] if self.plane is None else [self.plane, opposite_slice(self.plane)]:
+            place = axes_of_slice(plane).points(state)
+            (start,) = plane.states(potential, energy, *place[:, None])
+            if np.allclose(start / unit, state / unit, rtol=0.0, atol=_ROUNDING):
+                return plane, (float(place[0]), float(place[1]))
+        return None
+
+    def values(self, states: np.ndarray) -> np.ndarray:
+        """Return how far states (…, 4) are beyond the section in the direction of its crossings, in its form; negative before."""
+        linear, radial, value = self._coefficients_of_state()
+        return states @ linear + radial * np.sum(states[..., :2] * states[..., 2:], axis=-1) - value
+
+    def rates(self, states: np.ndarray, changes: np.ndarray) -> np.ndarray:
+        """Return the rate of `values` for states (…, 4) with these changes per time, (…, 4)."""
+        linear, radial, _ = self._coefficients_of_state()
+        products = changes[..., :2] * states[..., 2:] + states[..., :2] * changes[..., 2:]
+        return changes @ linear + radial * np.sum(products, axis=-1)
+
+    def _coefficients_of_state(self) -> tuple[np.ndarray, float, float]:
+        """Return the coefficients of x, y, px and py, that of x px + y py, and the value."""
+        numbers = self._signed_form()
+        linear = np.array([numbers.get(coordinate.key, 0.0) for coordinate in STATE])
+        return linear, numbers.get("radial", 0.0), numbers.get("value", 0.0)
 
     def settle(self, states: np.ndarray) -> np.ndarray:
         """Return states (…, 4) of the section without the rounding errors of a coordinate that the section fixes."""
@@ -164,6 +212,11 @@ class Section:
         return form | ({"both": 1.0} if self.direction is Crossing.BOTH else {})
 
     @property
+    def is_of_positions(self) -> bool:
+        """Whether a position is on the section or not, whatever its momentum."""
+        return not any(self.form.get(name) for name in ("px", "py", "radial"))
+
+    @property
     def is_mirrored(self) -> bool:
         """Whether the mirror images under x → −x of crossings are crossings."""
         numbers = self._signed_form()
@@ -172,6 +225,21 @@ class Section:
             name: value if name in {"both"} or name.startswith("side") else -value for name, value in mirrored.items()
         }
         return numbers == mirrored or (self.direction is Crossing.BOTH and numbers == reversed_form)
+
+
+def axes_of_slice(plane: Slice) -> SectionAxes:
+    """Return the coordinates of states on a slice whose axes are orthogonal unit vectors."""
+    components = np.array([[axis.components.get(coordinate, 0.0) for coordinate in STATE] for axis in plane.axes])
+    x, y = (dict(plane.fixed).get(position, 0.0) for position in POSITIONS)
+    return SectionAxes(plane.axis_symbols, components, (x, y))
+
+
+def opposite_slice(plane: Slice) -> Slice:
+    """Return the slice at whose starts the momentum, or the angle of the velocity from the radius, has the other sign."""
+    if plane.decided is Coordinate.SPEED:
+        fixed = tuple((coordinate, -value if coordinate is Coordinate.BETA else value) for coordinate, value in plane.fixed)
+        return checked_slice(Slice(*plane.axes, None, 1, fixed))
+    return checked_slice(Slice(*plane.axes, plane.solved, -plane.sign, plane.fixed))
 
 
 def words_of(place: str, direction: str | None) -> CrossingWords:

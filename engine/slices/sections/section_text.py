@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from typing import Any
 
-from engine.foundations.validation import short_repr
+from engine.foundations.validation import check_type, short_repr
 from engine.slices.axes import STATE
 from engine.slices.sections.central_sections import ApsisSection, RaySection
 from engine.slices.sections.linear_section import LinearSection
@@ -14,14 +15,21 @@ from engine.slices.sections.section import Crossing, Section
 LEGAL_SECTIONS = "x = 0, px > 0; y = 0.1 both; x + y = 0.2 down; angle = 30°; apsis; pericentre about (0.5, 0)"
 """Examples of sections as text."""
 
-# Names of directions at the end of a text.
+FORMER_ATTRIBUTES: Mapping[str, Any] = {"section": Section.Y_UP.text}
+"""Attributes that files of earlier versions, which had one section, lack; with their values."""
+
+# Names of directions at the end of a text: for all sections, for rays, and for apsides.
 _DIRECTIONS = {
-    "up": Crossing.UP, "upward": Crossing.UP, "outward": Crossing.UP, "counterclockwise": Crossing.UP,
-    "down": Crossing.DOWN, "downward": Crossing.DOWN, "inward": Crossing.DOWN, "clockwise": Crossing.DOWN,
-    "both": Crossing.BOTH,
+    "up": Crossing.UP, "upward": Crossing.UP, "down": Crossing.DOWN, "downward": Crossing.DOWN, "both": Crossing.BOTH,
 }  # fmt: skip
-# Names of apsides, with the directions that they stand for.
-_APSIDES = {"apsis": Crossing.BOTH, "pericentre": Crossing.UP, "apocentre": Crossing.DOWN}
+_ROTATIONS = {"counterclockwise": Crossing.UP, "clockwise": Crossing.DOWN}
+_RADIAL_DIRECTIONS = {"outward": Crossing.UP, "inward": Crossing.DOWN}
+_ALL_DIRECTIONS = {*_DIRECTIONS, *_ROTATIONS, *_RADIAL_DIRECTIONS}
+# Names of the ends of an orbit's path about a centre, with the directions that they stand for.
+_ENDS = {
+    "pericentre": Crossing.UP, "pericenter": Crossing.UP, "periapsis": Crossing.UP,
+    "apocentre": Crossing.DOWN, "apocenter": Crossing.DOWN, "apoapsis": Crossing.DOWN,
+}  # fmt: skip
 _NUMBER = r"[+-]?\s*(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?"
 _TERM = re.compile(r"\s*([+-])?\s*((?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)?\s*\*?\s*(px|py|x|y)(?![\w(])\s*")
 _CENTRE = re.compile(rf"\s+about\s*\(\s*({_NUMBER})\s*,\s*({_NUMBER})\s*\)$")
@@ -50,10 +58,16 @@ def read_section(text: str) -> Section:
     >>> read_section("x = 0, px < 0").text, read_section("apsis about (0.5, 0)").crossings_name
     ('x = 0 down', 'apsides about (0.5, 0)')
     """
+    check_type("section", text, str)
     try:
         return _read(text.strip().replace("−", "-").lower())
     except _NotASectionError:
         raise ValueError(f"section={short_repr(text)}: must be a section such as {LEGAL_SECTIONS}") from None
+
+
+def section_of_file(attributes: Mapping[Any, Any]) -> Section:
+    """Return the section that the attributes of a file, of any version, name."""
+    return read_section(str({**FORMER_ATTRIBUTES, **attributes}["section"]))
 
 
 def checked_section(value: Any) -> Section:
@@ -70,38 +84,39 @@ class _NotASectionError(Exception):
 
 
 def _read(text: str) -> Section:
-    rest, direction = _split_direction(text)
+    rest, word = _split_direction(text)
     head, centre = _split_centre(rest)
-    if head in _APSIDES:
-        return ApsisSection(direction if direction is not None and head == "apsis" else _APSIDES[head], centre)
+    if head in _ENDS:
+        return ApsisSection(_read_direction(word, {"": _ENDS[head]}), centre)
+    if head == "apsis":
+        return ApsisSection(_read_direction(word, {"": Crossing.BOTH, **_DIRECTIONS, **_RADIAL_DIRECTIONS}), centre)
     name, equals, value = (part.strip() for part in rest.partition("="))
     if not equals:
         raise _NotASectionError
     if name in {"angle", "theta"}:
         angle, centre = _split_centre(value)
-        return RaySection(direction or Crossing.UP, _read_number(angle.removesuffix("°")), centre)
-    return LinearSection(_of_velocity(direction, name), **_read_form(name), value=_read_number(value))
+        direction = _read_direction(word, {"": Crossing.UP, **_DIRECTIONS, **_ROTATIONS})
+        return RaySection(direction, _read_number(angle.removesuffix("°")), centre)
+    conditions = {f"p{name} >": Crossing.UP, f"p{name} <": Crossing.DOWN}
+    direction = _read_direction(word, {"": Crossing.UP, **_DIRECTIONS, **conditions})
+    return LinearSection(direction, **_read_form(name), value=_read_number(value))
 
 
-def _split_direction(text: str) -> tuple[str, Any]:
-    """Return a text without its direction, and the direction: a `Crossing`, a condition on a momentum, or None."""
+def _split_direction(text: str) -> tuple[str, str]:
+    """Return a text without its direction, and the direction: a word, a condition on a momentum such as "px >", or nothing."""
     before, comma, last = text.rpartition(",")
     if comma and (velocity := _VELOCITY.match(last.strip())):
-        return before.strip(), velocity.groups()
+        return before.strip(), " ".join(velocity.groups())
     head, _, word = text.rpartition(" ")
-    if word in _DIRECTIONS:
-        return head.strip().removesuffix(",").strip(), _DIRECTIONS[word]
-    return text, None
+    if word in _ALL_DIRECTIONS:
+        return head.strip().removesuffix(",").strip(), word
+    return text, ""
 
 
-def _of_velocity(direction: Any, name: str) -> Crossing:
-    """Return the direction of crossings; a condition on a momentum is one for the section of its coordinate."""
-    if isinstance(direction, tuple):
-        momentum, relation = direction
-        if momentum != f"p{name}":
-            raise _NotASectionError
-        return Crossing.UP if relation == ">" else Crossing.DOWN
-    return direction or Crossing.UP
+def _read_direction(word: str, directions: Mapping[str, Crossing]) -> Crossing:
+    if word not in directions:
+        raise _NotASectionError
+    return directions[word]
 
 
 def _split_centre(text: str) -> tuple[str, tuple[float, float]]:

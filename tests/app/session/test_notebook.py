@@ -17,7 +17,7 @@ from app.state.view_state import ViewState
 from engine import CASES, MapSpec, Plane, Window
 from tests.waiting import SECONDS
 
-SPEC = MapSpec(CASES["III"], Plane.X_PX, 0.36, (224, 224), Window(-0.4, 0.4, -0.3, 0.3), t_max=1e4)
+SPEC = MapSpec(CASES["III"], Plane.X_PX, 0.36, (224, 224), Window(-0.4, 0.4, -0.3, 0.3), t_max=1e4, section="y = 0 both")
 
 
 @pytest.fixture

@@ -184,6 +184,7 @@ COMPARED = [
     View(System("II", "", {"epsilon": 1.25}), Plane.X_PX, 0.1 + 0.2),
     View(System(TYPED, "½(x²+y²) − a x y²", {"a": 1.5}), Slice(Coordinate.X, Coordinate.THETA), 0.2),
     View(System("III"), Plane.X_H, 0.25),
+    View(System("II"), section=read_section("angle = 30° down")),
     View(System("II")),
 ]
 

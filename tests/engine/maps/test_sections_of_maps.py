@@ -20,16 +20,24 @@ from engine import (
     Orbit,
     Plane,
     Section,
+    Slice,
+    SweepSpec,
+    Trust,
+    classify_orbits,
     compute_map,
     compute_returns,
+    compute_sweep,
     compute_trust,
+    find_stable_manifolds,
     integrate_orbit,
     judge_orbit,
     open_result,
     parse_formula,
     read_section,
+    sample_orbits,
 )
 from engine.results import Returns
+from engine.slices.sections.section import opposite_slice
 
 TEXTS = (
     "y = 0.1 down", "x = 0, px > 0", "x = -0.07 both", "2x - 3y = 0.1", "px = 0.1", "x + 0.3 py = 0.1 both",
@@ -56,10 +64,10 @@ def expected_crossings(spec: MapSpec, start: np.ndarray, end: float) -> np.ndarr
     mass, rotation = potential.units.mass, potential.rotation
     falls = spec.section.direction.value
 
-    def vanishing(state: np.ndarray) -> float:
+    def vanishing(state: np.ndarray) -> Any:
         x, y, px, py = state
         linear = sum(form.get(name, 0.0) * value for name, value in zip(("x", "y", "px", "py"), state, strict=True))
-        return float(linear + form.get("radial", 0.0) * (x * px + y * py) - form.get("value", 0.0))
+        return linear + form.get("radial", 0.0) * (x * px + y * py) - form.get("value", 0.0)
 
     def derivative(t: float, state: np.ndarray) -> list[float]:
         slope_x, slope_y = potential.gradient(state[0], state[1])
@@ -69,7 +77,7 @@ def expected_crossings(spec: MapSpec, start: np.ndarray, end: float) -> np.ndarr
     step = 0.05 * potential.units.time
     path = solve_ivp(derivative, (0.0, end), start, "DOP853", rtol=1e-13, atol=1e-15, dense_output=True, max_step=step).sol
     times = np.linspace(0.0, end, 8 * int(end / step) + 8)
-    values = [vanishing(state) for state in path(times).T]
+    values = vanishing(path(times))
     # A start on the section is no crossing.
     values[0] = values[0] if abs(values[0]) > 1e-13 else 0.0
     found = []
@@ -172,6 +180,7 @@ def test_files_hold_the_section(tmp_path: Path) -> None:
         "returns": compute_returns(spec),
         "orbit": orbit,
         "verdict": judge_orbit(orbit),
+        "manifolds": find_stable_manifolds(spec.potential, 0.24, images=1, section="angle = 30°"),
     }  # type: ignore[dict-item]
     for name, result in results.items():
         result.save(tmp_path / f"{name}.nc")
@@ -179,6 +188,36 @@ def test_files_hold_the_section(tmp_path: Path) -> None:
     assert open_result(tmp_path / "returns.nc", Returns).spec == spec
     assert open_result(tmp_path / "orbit.nc", Orbit).section == section
     assert open_result(tmp_path / "verdict.nc").section == section
+    manifolds = open_result(tmp_path / "manifolds.nc")
+    assert manifolds.section == read_section("angle = 30°")
+    assert list(manifolds.columns())[3:] == ["s", "px"]
+
+
+@pytest.mark.parametrize("text", ["x = 0, px > 0", "angle = 200° both", "pericentre"])
+def test_crossings_are_the_same_in_maps_sweeps_and_lists_of_starts(text: str) -> None:
+    spec = replace(SPEC, section=read_section(text))
+    wanted = compute_map(spec)
+    sweep = compute_sweep(SweepSpec(spec.potential, spec.plane, [spec.energy], spec.resolution, t_max=spec.t_max, section=text))
+    np.testing.assert_array_equal(sweep.dataset["crossings"][0], wanted.crossings)
+    rows, columns = np.nonzero(wanted.fate >= 0)
+    starts = spec.start_states(wanted.x[columns], wanted.ordinate[rows])
+    listed = classify_orbits(spec.potential, spec.energy, starts, spec.t_max, section=text)
+    np.testing.assert_array_equal(listed.crossings, wanted.crossings[rows, columns])
+    sampled = sample_orbits(spec.potential, starts[:5], [spec.t_max], section=text)
+    np.testing.assert_array_equal(sampled.crossings, listed.crossings[:5])
+    assert {found.to_xarray().attrs["section"] for found in (listed, sampled)} == {spec.section.text}
+
+
+@pytest.mark.parametrize("text", ["y = 0.1 up", "y = 0.1 down", "y = 0.1 both"])
+@pytest.mark.parametrize("plane", [Plane.X_Y, opposite_slice(Plane.X_Y)])
+def test_starts_on_a_section_are_no_more_doubtful_than_their_neighbours(text: str, plane: Slice) -> None:
+    spec = MapSpec(CASES["I"], plane, 0.2, (41, 41), (-0.5, 0.5, -0.4, 0.6), t_max=200.0, section=text)
+    found = compute_map(spec)
+    # One row of pixels is on the section.
+    row = int(np.argmin(np.abs(found.ordinate - 0.1)))
+    assert abs(found.ordinate[row] - 0.1) < 1e-15
+    doubtful = (compute_trust(found).trust == Trust.DOUBTFUL).sum(axis=1)
+    assert doubtful[row] <= max(doubtful[row - 1], doubtful[row + 1]) + 4
 
 
 def test_a_layer_of_a_map_uses_its_section() -> None:

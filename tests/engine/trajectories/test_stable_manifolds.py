@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
 import shapely
 
-from engine import CASES, MapSpec, Plane, Potential, Window, classify_orbits, compute_map, start_states
+from engine import CASES, MapSpec, Plane, Potential, Section, Window, classify_orbits, compute_map, read_section, start_states
 from engine.exits.lyapunov_orbits import find_orbits_in_well_units
 from engine.propagation.limited_steps import find_section_points
+from engine.slices.sections.section import Crossing
 from engine.trajectories.stable_manifolds import StableManifolds, find_stable_manifolds
 from engine.trajectories.unstable_manifold import UnstableManifold
 
@@ -25,8 +27,8 @@ each = pytest.mark.parametrize(("name", "energy"), SYSTEMS)
 
 
 @cache
-def manifolds(potential: Potential, energy: float, images: int = 2) -> StableManifolds:
-    return find_stable_manifolds(potential, energy, images=images)
+def manifolds(potential: Potential, energy: float, images: int = 2, section: Section = Section.Y_UP) -> StableManifolds:
+    return find_stable_manifolds(potential, energy, images=images, section=section)
 
 
 def points_with_normals(found: StableManifolds, channel: int, image: int) -> np.ndarray:
@@ -34,7 +36,7 @@ def points_with_normals(found: StableManifolds, channel: int, image: int) -> np.
     rows = [np.empty((0, 4))]
     for arc in found.arcs:
         if (arc.channel, arc.image) == (channel, image):
-            point = np.column_stack([arc.x, arc.px])
+            point = np.column_stack([arc.x, arc.ordinate])
             step = np.diff(point, axis=0)
             length = np.hypot(*step.T)[:, None]
             tangent = step[:-1] / length[:-1] * length[1:] + step[1:] / length[1:] * length[:-1]
@@ -43,15 +45,17 @@ def points_with_normals(found: StableManifolds, channel: int, image: int) -> np.
     return np.concatenate(rows)
 
 
-def separating_share(potential: Potential, energy: float, channel: int, image: int, most: int = 60) -> float:
+def separating_share(
+    potential: Potential, energy: float, channel: int, image: int, section: Section = Section.Y_UP, most: int = 60
+) -> float:
     """Return the share of points of an image that separate: orbits `STEP` to one side escape, to the other side turn back."""
-    points = points_with_normals(manifolds(potential, energy), channel, image)
+    points = points_with_normals(manifolds(potential, energy, section=section), channel, image)
     points = points[:: math.ceil(len(points) / most)]
     sides = []
-    pairs = [start_states(potential, Plane.X_PX, energy, *(points[:, :2] + s * points[:, 2:]).T) for s in (STEP, -STEP)]
+    pairs = [start_states(potential, section.plane, energy, *(points[:, :2] + s * points[:, 2:]).T) for s in (STEP, -STEP)]
     exist = np.isfinite(pairs).all(axis=(0, 2))
     for starts in pairs:
-        outcomes = classify_orbits(potential, energy, starts[exist], 200.0)
+        outcomes = classify_orbits(potential, energy, starts[exist], 200.0, section=section)
         leaves = (outcomes.fate == channel) & (outcomes.crossings == image - 1)
         sides.append(np.where(leaves, outcomes.escape_time, NEVER))
     one, other = sides
@@ -73,6 +77,33 @@ def test_arcs_separate_escapes_after_n_crossings_from_orbits_that_turn_back(name
     for channel in range(1, CASES[name].channels + 1):
         if not crosses_axis(name, channel):
             assert separating_share(CASES[name], energy, channel, image) >= 0.99
+
+
+@pytest.mark.parametrize(
+    ("name", "energy", "channel", "text"),
+    [
+        ("III", 0.45, 1, "y = 0.1"),
+        ("II", 0.2, 1, "x = 0, px < 0"),
+        ("I", 0.15, 2, "x - 2 y = 0.1"),
+        ("III", 0.45, 2, "angle = 160°"),
+        ("II", 0.2, 3, "angle = 290° about (0.1, 0) down"),
+    ],
+)
+@pytest.mark.parametrize("image", [1, 2])
+def test_arcs_on_other_sections_separate_escapes(name: str, energy: float, channel: int, text: str, image: int) -> None:
+    assert separating_share(CASES[name], energy, channel, image, read_section(text)) >= 0.99
+
+
+def test_arcs_do_not_depend_on_the_way_in_which_a_section_is_written() -> None:
+    turned = find_stable_manifolds(TURNED, 0.2, images=1, section="-2 y = 0 down")
+    for arc, other in zip(turned.arcs, find_stable_manifolds(TURNED, 0.2, images=1).arcs, strict=True):
+        np.testing.assert_allclose([arc.x, arc.ordinate], [other.x, other.ordinate], atol=1e-9)
+
+
+@pytest.mark.parametrize("text", ["px = 0", "pericentre", "y = 0 both"])
+def test_sections_that_every_tube_crosses_at_the_exit_are_refused(text: str) -> None:
+    with pytest.raises(ValueError, match="must be a section of positions that is crossed in one direction"):
+        find_stable_manifolds(CASES["I"], 0.15, section=text)
 
 
 def test_arcs_of_a_channel_on_the_axis_separate_earlier_from_later_escapes() -> None:
@@ -100,7 +131,7 @@ def test_all_basin_boundaries_lie_on_arcs(name: str, energy: float, channel: int
         basin = (found.fate == channel) & (found.crossings == image - 1)
         row, left = np.nonzero((basin[:, 1:] != basin[:, :-1]) & (found.fate >= 0)[:, 1:] & (found.fate >= 0)[:, :-1])
         arcs = [a for a in manifolds(CASES[name], energy).arcs if (a.channel, a.image) == (channel, image)]
-        lines = shapely.MultiLineString([np.column_stack([a.x, a.px]) for a in arcs])
+        lines = shapely.MultiLineString([np.column_stack([a.x, a.ordinate]) for a in arcs])
         distance = shapely.distance(lines, shapely.points(0.5 * (found.x[left] + found.x[left + 1]), found.ordinate[row]))
         assert np.mean(distance < 0.55 * column) > 0.97
         assert distance.max() < 1.5 * column
@@ -115,7 +146,9 @@ def test_points_of_an_image_are_mapped_to_the_previous_image(name: str, energy: 
     second = points_with_normals(found, channel, 2)[:, :2]
     second = second[:: math.ceil(len(second) / 200)]
     next_points = find_section_points(CASES[name], start_states(CASES[name], Plane.X_PX, energy, *second.T), 1, 30.0)[:, 0]
-    first = shapely.MultiLineString([np.column_stack([a.x, a.px]) for a in found.arcs if (a.channel, a.image) == (channel, 1)])
+    first = shapely.MultiLineString(
+        [np.column_stack([a.x, a.ordinate]) for a in found.arcs if (a.channel, a.image) == (channel, 1)]
+    )
     assert np.mean(shapely.distance(first, shapely.points(next_points)) < 1e-3) > 0.98
 
 
@@ -124,14 +157,14 @@ def test_mirrored_channels_have_mirrored_arcs() -> None:
     for one, other in ((1, 2), (4, 3)):
         assert len(by_channel[one]) == len(by_channel[other])
         for arc, image in zip(by_channel[one], by_channel[other], strict=True):
-            np.testing.assert_array_equal([arc.x, arc.px], [-image.x, -image.px])
+            np.testing.assert_array_equal([arc.x, arc.ordinate], [-image.x, -image.ordinate])
 
 
 def test_first_images_are_closed_curves_and_not_truncated() -> None:
     found = find_stable_manifolds(CASES["I"], 0.15, images=1)
     assert not found.truncated
     for arc in found.arcs:
-        assert (arc.x[0], arc.px[0]) == (arc.x[-1], arc.px[-1])
+        assert (arc.x[0], arc.ordinate[0]) == (arc.x[-1], arc.ordinate[-1])
 
 
 # The unstable manifold.
@@ -139,11 +172,12 @@ def test_first_images_are_closed_curves_and_not_truncated() -> None:
 
 def test_an_orbit_of_the_unstable_manifold_has_no_passages_after_its_escape() -> None:
     # Channel 1 lies on y = 0, and orbits oscillate about y = 0 as they leave.
-    tube = UnstableManifold.from_orbit(find_orbits_in_well_units(CASES["II"], 0.2)[0])
+    downward = replace(Section.Y_UP, direction=Crossing.DOWN).numbers
+    tube = UnstableManifold.from_orbit(find_orbits_in_well_units(CASES["II"], 0.2)[0], downward)
     phases = np.linspace(0.0, 1.0, 200)
     displacements = tube.displacements(phases)
     growth_time = tube.orbit.period / math.log(tube.max_displacement / tube.min_displacement)
-    times = tube.find_passages(phases, 12)[:, :, 2] - growth_time * np.log(displacements)[:, None]
+    times = tube.find_passages(phases, 12)[:, :, 4] - growth_time * np.log(displacements)[:, None]
     outcomes = classify_orbits(tube.potential, tube.orbit.energy, tube.start_states(displacements), 1e3)
     escapes = outcomes.fate >= 1
     assert np.count_nonzero(escapes & np.isnan(times[:, -1])) > 100
@@ -161,7 +195,7 @@ def test_there_are_no_arcs_at_the_escape_energy() -> None:
 def window_on_an_arc(half: float) -> Window:
     """Return a square of side 2 `half` around a point of an arc of I at h = 0.19."""
     arc = next(arc for arc in find_stable_manifolds(CASES["I"], 0.19, images=1).arcs if arc.channel == 1)
-    x, px = float(arc.x[arc.x.size // 3]), float(arc.px[arc.x.size // 3])
+    x, px = float(arc.x[arc.x.size // 3]), float(arc.ordinate[arc.x.size // 3])
     return Window(x - half, x + half, px - half, px + half)
 
 
@@ -172,7 +206,7 @@ def test_curves_separate_the_basins_in_a_deep_zoom() -> None:
     frame = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19, (40, 40), window, t_max=500.0))
     direct = (frame.fate == 1) & (frame.crossings == 0)
     assert 0.2 < direct.mean() < 0.8
-    line = shapely.MultiLineString([np.column_stack([one.x, one.px]) for one in zoomed.arcs if one.channel == 1])
+    line = shapely.MultiLineString([np.column_stack([one.x, one.ordinate]) for one in zoomed.arcs if one.channel == 1])
     rows, columns = np.nonzero(direct[:, 1:] != direct[:, :-1])
     boundary = shapely.points(0.5 * (frame.x[columns] + frame.x[columns + 1]), frame.ordinate[rows])
     assert shapely.distance(line, boundary).max() < 2.0 * half / 40

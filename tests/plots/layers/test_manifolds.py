@@ -18,7 +18,7 @@ def manifolds() -> StableManifolds:
 
 def test_first_images_are_in_front_wider_and_with_a_halo(manifolds: StableManifolds) -> None:
     strokes = manifold_strokes(manifolds)
-    image_of = {(arc.x[0], arc.px[0]): arc.image for arc in manifolds.arcs}
+    image_of = {(arc.x[0], arc.ordinate[0]): arc.image for arc in manifolds.arcs}
     images = [image_of[tuple(stroke.lines[0][0])] for stroke in strokes]
     assert images == sorted(images, reverse=True)
     assert {(image, stroke.halo_width > 0.0) for image, stroke in zip(images, strokes, strict=True)} == {(1, True), (2, False)}
@@ -32,4 +32,4 @@ def test_closed_curves_are_in_front_of_the_spirals_around_them(manifolds: Stable
 
 def test_every_arc_is_drawn_once(manifolds: StableManifolds) -> None:
     drawn = [line.tobytes() for stroke in manifold_strokes(manifolds) for line in stroke.lines]
-    assert sorted(drawn) == sorted(np.column_stack([arc.x, arc.px]).tobytes() for arc in manifolds.arcs)
+    assert sorted(drawn) == sorted(np.column_stack([arc.x, arc.ordinate]).tobytes() for arc in manifolds.arcs)

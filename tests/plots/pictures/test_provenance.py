@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
-from engine import POTENTIALS, MapSpec, Plane, Window, compute_map
+from engine import POTENTIALS, MapSpec, Plane, Window, compute_map, read_section
 from plots.pictures.provenance import provenance_line
 
 
@@ -17,6 +19,13 @@ def test_a_rotating_frame_and_bodies_are_named() -> None:
     assert ", Ω = 0.2, h = 0.15, " in line_of("I", 0.15, rotation=0.2)
     assert "disc of radius " in line_of("Copenhagen", -1.7)
     assert "Ω" not in line_of("I", 0.15)
+
+
+def test_a_section_other_than_the_default_is_named() -> None:
+    spec = MapSpec(POTENTIALS["I"], Plane.X_PX, 0.15, (3, 3), t_max=1.0)
+    texts = ["y = 0 up", "x = 0 up", "x = 0 both"]
+    lines = [provenance_line(compute_map(replace(spec, section=read_section(text)))) for text in texts]
+    assert [text in line for text, line in zip(texts, lines, strict=True)] == [False, True, True]
 
 
 @pytest.mark.parametrize(

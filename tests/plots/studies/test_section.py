@@ -67,8 +67,22 @@ def test_another_section_has_its_own_axes_and_starts() -> None:
     assert SECTION_STUDY.changes(SUBJECT, "", found, y, py) == {"plane": Plane.Y_PY, "energy": 0.15, "start": (y, py)}
 
 
+@pytest.mark.parametrize("text", ["y = 0 both", "angle = 30°", "x + y = 0.1 both", "px = 0 both", "apsis"])
+def test_a_click_starts_the_orbit_of_the_point_in_every_direction(text: str) -> None:
+    found = run_job(SECTION_STUDY.job(replace(SUBJECT, section=read_section(text)), ""), Execution(), {})
+    states = found.states[np.isfinite(found.time)][::97]
+    (chart,) = SECTION_STUDY.charts(found, PAPER)
+    assert "Click" in SECTION_STUDY.sentence(found)
+    assert "Click" in chart.frame.text
+    for state in states:
+        changes = SECTION_STUDY.changes(SUBJECT, "", found, *found.spec.section.axes.points(state))
+        (start,) = changes["plane"].states(CASES["II"], 0.15, *np.array(changes["start"])[:, None])
+        np.testing.assert_allclose(start, state, atol=1e-8)
+
+
 def test_points_that_are_no_starts_of_a_slice_cannot_be_clicked() -> None:
-    found = run_job(SECTION_STUDY.job(replace(SUBJECT, section=read_section("angle = 30°")), ""), Execution(), {})
+    found = run_job(SECTION_STUDY.job(replace(SUBJECT, section=read_section("x + 0.3 px = 0")), ""), Execution(), {})
     assert found.count.any()
-    assert "Click" not in SECTION_STUDY.sentence(found)
+    (chart,) = SECTION_STUDY.charts(found, PAPER)
+    assert "Click" not in SECTION_STUDY.sentence(found) + chart.frame.text
     assert SECTION_STUDY.changes(SUBJECT, "", found, 0.0, 0.0) == {}

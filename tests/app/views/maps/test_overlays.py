@@ -37,7 +37,7 @@ def test_the_lines_of_an_exit_are_one_line_with_gaps(manifolds: StableManifolds)
     overlays.show("manifolds", manifolds)
     columns = overlays.curves["manifolds"].data
     assert len(columns["xs"]) == 3 < len(manifolds.arcs)
-    for name, positions in (("xs", [arc.x for arc in manifolds.arcs]), ("ys", [arc.px for arc in manifolds.arcs])):
+    for name, positions in (("xs", [arc.x for arc in manifolds.arcs]), ("ys", [arc.ordinate for arc in manifolds.arcs])):
         sent = np.concatenate(columns[name])
         np.testing.assert_array_equal(np.sort(sent[~np.isnan(sent)]), np.sort(np.concatenate(positions)))
 

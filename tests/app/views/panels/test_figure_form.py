@@ -80,7 +80,7 @@ def form(results: ShownResults, saved: KeptFiles) -> FigureForm:
 def test_figures_are_offered_for_the_shown_results(shown: ShownResults) -> None:
     state = ViewState(system=System("I"), energy=0.19)
     assert list(figure_choices(ShownResults(), state)) == []
-    maps = [ALL_MAPS, "Basins of escape", "Escape time", "Crossings of y = 0"]
+    maps = [ALL_MAPS, "Basins of escape", "Escape time", "Crossings of the section"]
     assert list(figure_choices(ShownResults(frame=shown.frame), state)) == [*maps, "The well in (x, y)", "Statistics"]
     others = ["Regular or chaotic", "The well in (x, y)", "Orbits", "Statistics", "Curves against energy"]
     assert list(figure_choices(shown, state)) == [*maps, *others]

@@ -100,8 +100,27 @@ def test_a_typed_section_is_that_of_the_state_and_offers_its_starts(drawer: Draw
 
 def test_an_illegal_section_is_refused_with_legal_ones(drawer: Drawer) -> None:
     drawer.panel.section.value = "z = 3"
-    assert "must be a section such as" in drawer.panel.message.object
+    assert "must be a section such as" in drawer.panel.section_message.object
     assert drawer.state.section == Section.Y_UP
+
+
+@pytest.mark.parametrize("text", ["y=0", "x = 0 down"])
+def test_a_legal_section_replaces_the_message_and_is_written_in_the_usual_way(drawer: Drawer, text: str) -> None:
+    drawer.panel.section.value = "z = 3"
+    drawer.panel.section.value = text
+    assert (drawer.panel.section.value, drawer.panel.section_message.object) == (read_section(text).text, "")
+
+
+def test_without_a_slice_of_starts_none_is_offered(drawer: Drawer) -> None:
+    drawer.panel.section.value = "x + 0.3 px = 0"
+    assert not drawer.panel.start_on_section.visible
+
+
+def test_sections_through_bodies_are_offered_where_the_bodies_are(drawer: Drawer) -> None:
+    drawer.state.show_system(review_for_page(System("Copenhagen")))
+    assert "x = -0.5 up" in drawer.panel.section.options
+    drawer.state.show_system(review_for_page(System("Copenhagen").with_parameter("m", 0.3)))
+    assert "x = -0.5 up" not in drawer.panel.section.options
 
 
 def test_sections_of_the_catalogue_are_offered(drawer: Drawer) -> None:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine import CASES, POTENTIALS, Plane, Section, read_section
+from engine import CASES, POTENTIALS, Plane, Potential, Section, read_section, sample_orbits
+from engine.slices.planes import checked_slice
 from engine.slices.sections.section import Crossing
 from engine.systems.catalogue.table import CATALOGUE
 
@@ -51,7 +52,7 @@ def test_the_default_section_needs_no_numbers() -> None:
 def test_starts_of_its_slice_are_on_a_section_and_leave_it_in_its_direction(text: str) -> None:
     section, potential = read_section(text), CASES["II"]
     x, ordinate = np.random.default_rng(1).uniform(0.01, 0.2, (2, 50))
-    states = section.plane.states(potential, 0.15, x, ordinate)
+    states = section.slice_of_starts.states(potential, 0.15, x, ordinate)
     assert np.isfinite(states).all()
     form, motion = section.form, np.column_stack([states[:, 2:], -np.stack(potential.gradient(*states[:, :2].T), axis=1)])
     coefficients = np.array([form.get(name, 0.0) for name in ("x", "y", "px", "py")])
@@ -59,15 +60,57 @@ def test_starts_of_its_slice_are_on_a_section_and_leave_it_in_its_direction(text
     sign = -1.0 if section.direction is Crossing.DOWN else 1.0
     # An oblique slice has all signs of the other momentum, and some starts then cross in the other direction.
     leaves = sign * (motion @ coefficients) > 0.0
-    assert leaves.all() if section.is_drawn_on(section.plane) else leaves.mean() > 0.5
+    assert leaves.all() if section.is_drawn_on(section.slice_of_starts) else leaves.mean() > 0.5
 
 
 def test_sections_of_coordinates_are_drawn_on_their_slices() -> None:
     assert Section.Y_UP.plane is Plane.X_PX
     assert read_section("x = 0, px > 0").plane == Plane.Y_PY
-    drawn = {text: read_section(text).is_drawn_on(read_section(text).plane) for text in ("y = 0.2", "px = 0", "angle = 30°")}
-    assert drawn == {"y = 0.2": True, "px = 0": True, "angle = 30°": False}
+    texts = {"y = 0.2": True, "px = 0": True, "py = 0.1": True, "apsis": True, "angle = 30°": False, "px + py = 0": False}
+    for text, is_drawn in texts.items():
+        section = read_section(text)
+        # A slice in a link is the equal plane, if there is one.
+        assert section.is_drawn_on(checked_slice(section.slice_of_starts)) == is_drawn
     assert not Section.Y_UP.is_drawn_on(Plane.Y_PY)
+
+
+@pytest.mark.parametrize("text", ["x + 0.3 px = 0", "px + py = 0", "pericentre about (0.5, 0)"])
+def test_a_section_without_a_slice_of_its_starts_has_none(text: str) -> None:
+    section = read_section(text)
+    assert (section.plane, section.slice_of_starts) == (None, Plane.X_PX)
+    assert section.find_start(CASES["II"], np.array([0.1, 0.0, 0.0, 0.3])) is None
+
+
+@pytest.mark.parametrize("text", [*ON_SECTION, "x + y = 0 both", "px = 0.02 both", "py = 0", "pericentre", "apsis", "apocentre"])
+def test_every_state_on_a_section_is_a_start_of_one_of_its_slices(text: str) -> None:
+    section, rng = read_section(text), np.random.default_rng(3)
+    states = rng.uniform(-0.2, 0.2, (20, 4))
+    # The states are moved onto the section along the gradient of its form, to both sides of it.
+    for _ in range(8):
+        gradients = np.stack([section.rates(states, np.broadcast_to(unit, states.shape)) for unit in np.eye(4)], axis=-1)
+        states = states - (section.values(states) / np.sum(gradients**2, axis=-1))[:, None] * gradients
+    for state in states:
+        found = section.find_start(CASES["II"], state)
+        assert found is not None
+        plane, place = found
+        (start,) = plane.states(CASES["II"], float(CASES["II"].energy(state)), *np.array(place)[:, None])
+        np.testing.assert_allclose(start, state, atol=1e-9)
+
+
+@pytest.mark.parametrize("potential", [CASES["II"], POTENTIALS["Hill"]])
+@pytest.mark.parametrize("text", ["x - 2y + px = 0.1 down", "apocentre about (0.2, -0.1)"])
+def test_rates_are_those_of_the_values_along_an_orbit(potential: Potential, text: str) -> None:
+    section, step = read_section(text), 1e-6
+    states = sample_orbits(potential, [[0.3, 0.1, 0.2, -0.3]], [1.0 - step, 1.0, 1.0 + step])
+    before, state, after = np.column_stack([states.x[0], states.y[0], states.px[0], states.py[0]])
+    expected = (section.values(after) - section.values(before)) / (2.0 * step)
+    np.testing.assert_allclose(section.rates(state, potential.derivatives(state)), expected, rtol=1e-6)
+
+
+def test_lengths_far_beyond_the_well_are_legal_in_its_units() -> None:
+    for text in ("x = 5e8", "apsis about (5e8, 0)"):
+        scaled = read_section(text).in_well_units(POTENTIALS["Earth-Moon"].units)
+        assert max(map(abs, scaled.form.values())) > 1e9
 
 
 def test_points_have_the_coordinates_of_the_section() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import pytest
 
@@ -30,10 +31,13 @@ LEGAL = {
     "apsis inward": ApsisSection(Crossing.DOWN),
     "pericentre": ApsisSection(Crossing.UP),
     "apocentre about (0.25, 0)": ApsisSection(Crossing.DOWN, (0.25, 0.0)),
+    "periapsis about (-0, 0)": ApsisSection(Crossing.UP),
 }
 ILLEGAL = (
     "", "y", "y = ", "= 0", "z = 0", "x y = 0", "x = 0 sideways", "x = 0, py > 0", "x + y = 0, px > 0", "x = 1 + 1", "x = nan",
     "0 x = 0", "angle = north", "angle = 400", "apsis about 3", "pericentre = 0", "x = 1e12", "y = 0, px > 1", "y = 0 up down",
+    "pericentre down", "apocentre both", "angle = 30, px > 0", "apsis, px > 0", "x = 0 clockwise", "y = 0 inward",
+    "1e-9 x = 1e9", "1e-320 x = 1", "1e-200 x + 1e-200 y = 0",
 )  # fmt: skip
 
 
@@ -50,6 +54,12 @@ def test_numbers_are_written_with_all_their_digits(value: float) -> None:
         assert read_section(section.text) == section
 
 
+@pytest.mark.parametrize("text", ["y = -0", "angle = -0", "apsis about (-0, 0)"])
+def test_a_section_has_no_negative_zero(text: str) -> None:
+    section = read_section(text)
+    assert "-0" not in repr(section) + section.text
+
+
 @pytest.mark.parametrize("text", ILLEGAL)
 def test_other_texts_are_refused_in_one_sentence(text: str) -> None:
     with pytest.raises(ValueError, match="section") as raised:
@@ -58,9 +68,10 @@ def test_other_texts_are_refused_in_one_sentence(text: str) -> None:
 
 
 @pytest.mark.parametrize("value", [None, 3, Section(), ("y", 0)])
-def test_values_that_are_no_section_are_refused(value: object) -> None:
-    with pytest.raises(ValueError, match="section="):
-        checked_section(value)
+def test_values_that_are_no_section_are_refused(value: Any) -> None:
+    for read in (checked_section, read_section):
+        with pytest.raises(ValueError, match="section="):
+            read(value)
 
 
 def test_wrong_numbers_are_refused() -> None:
