@@ -38,6 +38,9 @@ ADDRESS = f"{_FOLDER}/main.js"
 WATCH_ADDRESS = f"{_FOLDER}/gestures/watch.js"
 """Address of the module of the ensemble player, which the page loads when the player is first shown."""
 
+LIVE_SECTION_ADDRESS = f"{_FOLDER}/gestures/live_section.js"
+"""Address of the module of the live section, which the page loads when the section is first shown."""
+
 KERNELS_ADDRESS = f"{_FOLDER}/kernels.wasm"
 """Address of the kernels, relative to the page."""
 

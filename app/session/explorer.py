@@ -26,6 +26,7 @@ from app.state.help_texts import HELP_TEXTS, title_with_help
 from app.state.navigation import WINDOW_MOVES
 from app.state.presets import Preset
 from app.state.view import Analysis
+from app.views.analysis.live_section import LiveSection
 from app.views.analysis.statistics import StatisticsView
 from app.views.components.collapsible_section import Drawers, Stack
 from app.views.components.notice import Notice
@@ -43,6 +44,7 @@ from app.views.panels.slice_panel import SlicePanel
 from engine import System
 from engine.jobs.client import JobClient
 from engine.systems.system import TYPED
+from plots.studies.section import SECTION_STUDY
 from plots.studies.table import STUDIES
 
 
@@ -116,6 +118,7 @@ class Explorer:
                 Analysis.STATISTICS: self.statistics.parts(),
                 Analysis.MEASURES: self.analyses.measures.parts(),
                 **{name: [study.view.build] for name, study in self.studies.items()},
+                SECTION_STUDY.name: [self.studies[SECTION_STUDY.name].view.build, lambda: [LiveSection(state, results)]],
                 Analysis.WATCH: [self._build_watch],
             },
             "analysis",

@@ -68,6 +68,30 @@ def test_the_section_follows_the_map_and_a_click_on_it_starts_an_orbit(open_expl
     explorer.wait_for_view("orbits=0.")
 
 
+# The share of the pixels of a canvas on which something is painted.
+_PAINTED = """canvas => {
+  const {data} = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height)
+  let count = 0
+  for (let i = 3; i < data.length; i += 4) count += data[i] > 0
+  return count / (data.length / 4)
+}"""
+
+
+def test_the_section_follows_the_slider_until_the_server_has_that_of_its_energy(open_explorer: OpenExplorer) -> None:
+    explorer = open_explorer(link="?case=II&h=0.15&t_max=100&resolution=112&analysis=section")
+    explorer.wait_for_data("section_dots", "data.x.length > 1000")
+    canvas = explorer.page.locator("canvas.live-section")
+    expect(canvas).to_have_count(0)
+    explorer.drag_energy_to(0.25, let_go=False)
+    explorer.wait_for_preview(0.23)
+    expect(canvas).to_have_attribute("data-energy", "0.23")
+    explorer.page.wait_for_function(f"canvas => ({_PAINTED})(canvas) > 0.02", arg=canvas.element_handle())
+    explorer.page.mouse.up()
+    explorer.wait_for_view("h=0.23&")
+    expect(explorer.text("at h = 0.23.")).to_be_visible()
+    expect(canvas).to_have_count(0)
+
+
 def test_a_bounded_orbit_is_judged_by_three_indicators(open_explorer: OpenExplorer) -> None:
     explorer = open_explorer(link="?case=I&h=0.05&t_max=10000&resolution=112&orbits=0.1,0.05")
     table = explorer.page.get_by_label("chaos indicators")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
 from typing import Any, ClassVar
 
 import panel as pn
@@ -13,6 +14,9 @@ from app.state.view_state import ViewState
 
 COUNT_WHOLE = "Count the whole view"
 """Label of the buttons that remove the box."""
+
+LOADED_MODULE = Path(__file__).with_name("loaded_module.js")
+"""Script of components whose module, at their `address`, is loaded when they are first shown."""
 
 FULL_HEIGHT = {"max-height": "none"}
 """Styles of a layout as high as its content. Bokeh would limit the height to the window, and the next parts would overlap."""

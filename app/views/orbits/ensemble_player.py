@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from contextlib import suppress
 from dataclasses import asdict, astuple, replace
-from pathlib import Path
 from typing import Any
 
 import param
@@ -24,6 +23,7 @@ from app.state.watched_starts import (
     WatchedStarts,
     places_for,
 )
+from app.views.components.widgets import LOADED_MODULE
 from engine import compute_flux
 from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job
@@ -76,7 +76,7 @@ class EnsemblePlayer(JSComponent):
     box = param.List(default=[], doc="the four edges of the box; empty without one")
     rate = param.Number(default=0.0, doc="decay rate of mixed motion; 0 if it is not known")
 
-    _esm = Path(__file__).with_suffix(".js")
+    _esm = LOADED_MODULE
 
     def __init__(self, state: ViewState, results: ShownResults, jobs: JobSubmitter, locked: Locked) -> None:
         super().__init__(sizing_mode="stretch_width", margin=(0, 10), stylesheets=[_STYLE])

@@ -18,7 +18,6 @@ from app.state.view_state import ViewState
 from engine import EscapeMap
 from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job, Queue
-from engine.slices.axes import STATE
 from engine.slices.slice_text import write_slice
 from plots.layers.map_images import LAYER_COLUMNS
 from plots.pictures.image_columns import pixel_coding
@@ -121,6 +120,5 @@ def _describe_slice(state: ViewState) -> dict[str, object]:
     """
     plane, section = state.plane, state.section
     described = plane.to_dict(state.potential.units)
-    is_shown = section.is_drawn_on(plane) and all(axis in STATE for axis in plane.axes)
-    described["sectionColumns"] = [STATE.index(axis) for axis in plane.axes] if is_shown else None
+    described["sectionColumns"] = section.columns_on(plane)
     return described if section.is_mirrored else described | {"mirrored": None}

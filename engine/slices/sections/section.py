@@ -165,6 +165,12 @@ class Section:
         """Return whether the axes of a slice on the section are the coordinates in which its points are drawn."""
         return plane == self.plane and plane.axis_symbols == self.axes.symbols
 
+    def columns_on(self, plane: Slice) -> list[int] | None:
+        """Return the columns of states that the axes of a slice on the section show; None for a slice with other axes."""
+        if not self.is_drawn_on(plane) or not set(plane.axes) <= set(STATE):
+            return None
+        return [STATE.index(axis) for axis in plane.axes]
+
     def find_start(self, potential: Potential, state: np.ndarray) -> tuple[Slice, tuple[float, float]] | None:
         """Return a slice on the section and the place on it at which a state, (4,), starts; None if there is none."""
         energy, unit = float(potential.energy(state)), potential.units.state

@@ -67,17 +67,28 @@ export const computePixels = (integrator, view, part) => integrator.temporarily(
 /** @type {typeof computePixels} */
 function computePart(integrator, view, part) {
   const {system} = integrator
-  const {slice, window, columns, rows, horizon} = view
+  const {inside, exits, fate} = findInside(integrator, view, part)
+  const ends = findEnds(integrator, inside, exits, {horizon: view.horizon, tolerance: toleranceFor(system, view)}, fate)
+  return {...ends, time: Float32Array.from(ends.time, time => time * system.units.time)}
+}
+
+/**
+ * Find the starts of a part of a view that are inside all exits, and the exits at their energies.
+ *
+ * @param {import("./integrator.js").Integrator} integrator
+ * @param {Omit<View, "mostPixels" | "horizon">} view
+ * @param {Part} part
+ */
+export function findInside(integrator, {slice, window, columns, rows, energy}, part) {
   const count = part.rows.length * part.columns
-  const [axis, energy] = [energyAxis(slice), view.energy / system.units.energy]
+  const [axis, scaledEnergy] = [energyAxis(slice), energy / integrator.system.units.energy]
   const [points, energyRows] = [integrator.array("float64", [2, count]), integrator.array("int64", [count])]
   const grid = [placeWindow(integrator, window, slice.units), columns, rows, integrator.integers(part.rows), part.columns]
   integrator.call("place_pixels", ...grid, axis, points, energyRows)
-  const exits = new Exits(integrator, axis < 0 ? [energy] : energiesAlong(axis, points.at(axis).values, part))
+  const exits = new Exits(integrator, axis < 0 ? [scaledEnergy] : energiesAlong(axis, points.at(axis).values, part))
   const fate = integrator.array("int8", [count])
-  const inside = keepInside(integrator, findStarts(integrator, slice, energy, points), exits, energyRows, fate)
-  const ends = findEnds(integrator, inside, exits, {horizon, tolerance: toleranceFor(system, view)}, fate)
-  return {...ends, time: Float32Array.from(ends.time, time => time * system.units.time)}
+  const inside = keepInside(integrator, findStarts(integrator, slice, scaledEnergy, points), exits, energyRows, fate)
+  return {inside, exits, fate}
 }
 
 /**

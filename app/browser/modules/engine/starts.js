@@ -102,6 +102,24 @@ export function keepInside(integrator, {states, energies}, exits, rows, fate) {
   return {kept: kept.first(insideCount), states: inside.states.first(insideCount), rows: inside.rows.first(insideCount)}
 }
 
+/** Largest distance between the edges of two windows that are nearly equal, as a share of a side. */
+const NEAR_EDGE = 0.02
+
+/**
+ * Whether each edge of a window is near the same edge of another window. The margin of a default window is wider.
+ *
+ * @type {(one: Window, other: Window) => boolean}
+ */
+export const isNearWindow = (one, other) => {
+  const isNearEdge = (/** @type {number} */ a, /** @type {number} */ b, /** @type {number} */ side) =>
+    Math.abs(a - b) <= NEAR_EDGE * side
+  const [width, height] = [other.xHigh - other.xLow, other.ordinateHigh - other.ordinateLow]
+  const nearX = isNearEdge(one.xLow, other.xLow, width) && isNearEdge(one.xHigh, other.xHigh, width)
+  return (
+    nearX && isNearEdge(one.ordinateLow, other.ordinateLow, height) && isNearEdge(one.ordinateHigh, other.ordinateHigh, height)
+  )
+}
+
 /**
  * Return the default window of a slice at an energy; null for an energy beyond the table.
  *

@@ -6,7 +6,7 @@
 
 import {exitLines, LimitingCurves} from "../engine/curves.js"
 import {Integrator} from "../engine/integrator.js"
-import {energyAxis, showsPositions, windowAt} from "../engine/starts.js"
+import {energyAxis, isNearWindow, showsPositions, windowAt} from "../engine/starts.js"
 import {coversEnergy} from "../engine/system.js"
 import {pixelColumns, sameEnergy, showsScene} from "../painting/columns.js"
 import {Local, LocalWhenPresent} from "../painting/local.js"
@@ -33,27 +33,6 @@ import {LEAST_SIDE} from "../workers/frames.js"
  *
  * @typedef {(name: string) => any} FindModel
  */
-
-/**
- * While the energy changes, the window follows only if one of its edges is off by more than this share of the side, because
- * painting axes takes longer than painting pixels. The margin of the default window around the interior is wider.
- */
-const NEAR_EDGE = 0.02
-
-/**
- * Whether each edge of a window is within `NEAR_EDGE` of the same edge of another window.
- *
- * @type {(one: import("../engine/starts.js").Window, other: import("../engine/starts.js").Window) => boolean}
- */
-const isNear = (one, other) => {
-  const isNearEdge = (/** @type {number} */ a, /** @type {number} */ b, /** @type {number} */ side) =>
-    Math.abs(a - b) <= NEAR_EDGE * side
-  const [width, height] = [other.xHigh - other.xLow, other.ordinateHigh - other.ordinateLow]
-  const nearX = isNearEdge(one.xLow, other.xLow, width) && isNearEdge(one.xHigh, other.xHigh, width)
-  return (
-    nearX && isNearEdge(one.ordinateLow, other.ordinateLow, height) && isNearEdge(one.ordinateHigh, other.ordinateHigh, height)
-  )
-}
 
 export class Preview {
   /**
@@ -144,7 +123,8 @@ export class Preview {
     const followsDefault = view?.home && view.system === integrator?.system.key
     const isServerEnergy = view && sameEnergy(energy, view.energy)
     const defaultWindow = followsDefault && integrator && !isServerEnergy ? windowAt(integrator, view.plane, energy) : null
-    if (!defaultWindow || !isNear(defaultWindow, this.#currentWindow)) this.#defaultWindow = defaultWindow
+    // Painting axes takes longer than painting pixels, so the window follows only larger changes.
+    if (!defaultWindow || !isNearWindow(defaultWindow, this.#currentWindow)) this.#defaultWindow = defaultWindow
     if (isServerEnergy) for (const range of [this.#xRange, this.#yRange]) range.restore()
     this.#follow()
   }

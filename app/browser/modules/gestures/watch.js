@@ -427,4 +427,4 @@ class EnsemblePlayer {
  * @param {any} model
  * @param {HTMLElement} el
  */
-export const watch = (model, el) => void new EnsemblePlayer(model, el)
+export const start = (model, el) => void new EnsemblePlayer(model, el)

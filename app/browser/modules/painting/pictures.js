@@ -16,8 +16,11 @@ export function mapPictures() {
 }
 
 /** The picture of the well; undefined on a narrow screen that shows a map. @returns {Picture | undefined} */
-export function wellPicture() {
-  const view = [...Bokeh.index.all_views()].find(view => view.model.name === "well")
+export const wellPicture = () => pictureNamed("well")
+
+/** The picture or chart with a name; undefined if it is not visible. @param {string} name @returns {Picture | undefined} */
+export function pictureNamed(name) {
+  const view = [...Bokeh.index.all_views()].find(view => view.model.name === name)
   const picture = view && withBox(view)
   return picture?.box.width ? picture : undefined
 }

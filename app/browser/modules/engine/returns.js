@@ -1,0 +1,64 @@
+// @ts-check
+/** Returns of many orbits to the surface of section, in the order of time; see `engine/maps/returns.py`. */
+
+import {Ensemble} from "./ensemble.js"
+import {findInside} from "./pixels.js"
+
+/** Time by which all orbits are followed at once, in units of the well, which is shorter than the time between two returns. */
+const STEP = 0.5
+/** Longest time, in units of the well: about a hundred periods. */
+const LONGEST_TIME = 630
+
+/**
+ * What a picture of returns shows: orbits of one energy from a window of a slice, with as many starts along both sides.
+ *
+ * @typedef {object} Starts
+ * @property {import("./system.js").Slice} slice  on the section, whose axes are coordinates
+ * @property {number} energy  in units of the page
+ * @property {import("./starts.js").Window} window
+ * @property {number} side
+ */
+
+export class Returns {
+  /**
+   * @param {import("./integrator.js").Integrator} integrator  keeps the arrays of the orbits in its memory
+   * @param {Starts} starts
+   */
+  constructor(integrator, {slice, energy, window, side}) {
+    const rows = Uint32Array.from({length: side}, (_, row) => row)
+    const {inside} = findInside(integrator, {slice, energy, window, columns: side, rows: side}, {rows, columns: side})
+    this.#ensemble = new Ensemble(integrator, energy / integrator.system.units.energy, inside.states.values)
+    this.#columns = slice.sectionColumns ?? []
+    this.#units = slice.units
+    this.#last = this.#columns.map(column => Float64Array.from(this.#ensemble.atSection(column)))
+  }
+
+  #ensemble
+  #columns
+  #units
+  /** Coordinates of each orbit at its last return that was taken. */
+  #last
+
+  /** Whether all orbits have been followed to the longest time. */
+  get complete() {
+    return this.#ensemble.time >= LONGEST_TIME
+  }
+
+  /**
+   * Follow all orbits for a short time, and give each return that they make to a function.
+   *
+   * @param {(orbit: number, x: number, ordinate: number) => void} take  gets the place on the slice in units of the page
+   */
+  continue(take) {
+    this.#ensemble.advance(this.#ensemble.time + STEP)
+    const [xs, ordinates] = this.#columns.map(column => this.#ensemble.atSection(column))
+    const [lastXs, lastOrdinates] = this.#last
+    const [unitX, unitOrdinate] = this.#units
+    for (let orbit = 0; orbit < this.#ensemble.count; orbit++) {
+      if (!(xs[orbit] !== lastXs[orbit] || ordinates[orbit] !== lastOrdinates[orbit]) || Number.isNaN(xs[orbit])) continue
+      lastXs[orbit] = xs[orbit]
+      lastOrdinates[orbit] = ordinates[orbit]
+      take(orbit, xs[orbit] * unitX, ordinates[orbit] * unitOrdinate)
+    }
+  }
+}

@@ -1,0 +1,154 @@
+// @ts-check
+/**
+ * The surface of section at the energy that the visitor drags or plays, computed in the browser and painted over the chart, until
+ * the server's chart of this energy is complete.
+ */
+
+import {listen} from "../energy_events.js"
+import {Integrator} from "../engine/integrator.js"
+import {Returns} from "../engine/returns.js"
+import {isNearWindow, windowAt} from "../engine/starts.js"
+import {number} from "../numbers.js"
+import {sameEnergy} from "../painting/columns.js"
+import {LocalWhenPresent} from "../painting/local.js"
+import {pictureNamed} from "../painting/pictures.js"
+import {onPresent, present} from "./present.js"
+
+/** Name of the figure of the chart. */
+const CHART = "section"
+/** Number of starts along a side of the window. */
+const SIDE = 13
+/** Side of a dot, in pixels. */
+const DOT_SIDE = 2
+/** Time in each frame for following the orbits, in ms. */
+const FRAME_MS = 12
+/** Digits of the energy on the canvas. */
+const DIGITS = 6
+
+/** @typedef {{chart: import("../painting/pictures.js").Picture, energy: number, window: import("../engine/starts.js").Window}} Scene */
+
+class LiveSection {
+  /** @param {any} model  of the component in `app/views/analysis/live_section.py` */
+  constructor(model) {
+    this.#model = model
+    this.#canvas.style.cssText = "position:absolute;pointer-events:none;display:none;background:var(--ui-page)"
+    this.#canvas.className = "live-section"
+    const ignored = [
+      onPresent(() => this.#follow()),
+      listen("energydragged", () => this.#follow()),
+      listen("energyshown", () => this.#follow()),
+    ]
+    model.on(["slice", "energy", "colours"], () => this.#follow())
+    model.on("lifecycle:remove", () => {
+      this.#hide()
+      for (const ignore of ignored) ignore()
+    })
+    this.#follow()
+  }
+
+  #model
+  #canvas = document.createElement("canvas")
+  #range = (/** @type {string} */ name) =>
+    new LocalWhenPresent(() => Bokeh.documents[0]?.get_model_by_name(CHART)?.[name], ["start", "end"])
+  #ranges = [this.#range("x_range"), this.#range("y_range")]
+  /** @type {Returns | null} */
+  #returns = null
+  /** What the canvas shows, as text. */
+  #shownKey = ""
+  #frame = 0
+
+  /** Show the section of the present energy from the next frame on, or the server's chart. */
+  #follow() {
+    if (this.#frame === 0) this.#frame = requestAnimationFrame(() => this.#paint())
+  }
+
+  /** What to compute; null where the server's chart is shown. @returns {Scene | null} */
+  get #scene() {
+    const [shown, chart, {slice, plane}] = [present(), pictureNamed(CHART), this.#model]
+    const energy = shown?.scene()?.energy
+    if (!shown || !chart || !slice || energy === undefined || sameEnergy(energy, this.#model.energy)) return null
+    const {x_range: x, y_range: y} = chart.view.model
+    const window = {xLow: x.start, xHigh: x.end, ordinateLow: y.start, ordinateHigh: y.end}
+    const defaultWindow = windowAt(new Integrator(shown.system, shown.modules), plane, energy)
+    return {chart, energy, window: defaultWindow && !isNearWindow(defaultWindow, window) ? defaultWindow : window}
+  }
+
+  #hide() {
+    cancelAnimationFrame(this.#frame)
+    this.#frame = 0
+    this.#returns = null
+    this.#shownKey = ""
+    this.#canvas.remove()
+    for (const range of this.#ranges) range.restore()
+  }
+
+  /** Paint the returns that the orbits make in the time of a frame. */
+  #paint() {
+    this.#frame = 0
+    const scene = this.#scene
+    if (!scene) return this.#hide()
+    const key = JSON.stringify([scene.energy, present()?.system.key, scene.chart.view.frame.bbox, devicePixelRatio])
+    if (key !== this.#shownKey) this.#begin(scene)
+    this.#shownKey = key
+    const colours = this.#model.colours
+    /** @type {[number, number][][]} */
+    const places = colours.map(() => [])
+    const startTime = performance.now()
+    while (this.#returns && !this.#returns.complete && performance.now() - startTime < FRAME_MS)
+      this.#returns.continue((orbit, x, ordinate) => places[orbit % colours.length].push([x, ordinate]))
+    this.#paintDots(scene, places)
+    if (!this.#returns?.complete) this.#follow()
+  }
+
+  /** Begin with the orbits of a scene, on an empty canvas. @param {Scene} scene */
+  #begin({chart, energy, window}) {
+    const shown = present()
+    if (!shown) return
+    const {slice} = this.#model
+    this.#returns = new Returns(new Integrator(shown.system, shown.modules), {slice, energy, window, side: SIDE})
+    const [x, y] = this.#ranges
+    x.show({start: window.xLow, end: window.xHigh})
+    y.show({start: window.ordinateLow, end: window.ordinateHigh})
+    const {left, top, width, height} = chart.view.frame.bbox
+    // Elements of Bokeh show only what their shadow root contains.
+    chart.view.canvas_view.el.shadowRoot.append(this.#canvas)
+    const ratio = devicePixelRatio
+    // One more pixel covers the dots at the edge of the frame.
+    const [right, bottom] = [width + 1, height + 1]
+    Object.assign(this.#canvas, {width: Math.round(right * ratio), height: Math.round(bottom * ratio)})
+    const style = {display: "block", left: `${left}px`, top: `${top}px`, width: `${right}px`, height: `${bottom}px`}
+    Object.assign(this.#canvas.style, style)
+    this.#canvas.dataset.energy = String(energy)
+    const context = this.#canvas.getContext("2d")
+    if (!context) return
+    context.setTransform(ratio, 0, 0, ratio, 0, 0)
+    context.font = "12px system-ui, sans-serif"
+    context.fillStyle = getComputedStyle(this.#canvas).color
+    context.fillText(`h = ${number(energy, DIGITS)}`, 6, height - 6)
+  }
+
+  /**
+   * @param {Scene} scene
+   * @param {[number, number][][]} places  of new returns, by colour
+   */
+  #paintDots({chart, window}, places) {
+    const context = this.#canvas.getContext("2d")
+    const {width, height} = chart.view.frame.bbox
+    const [scaleX, scaleY] = [width / (window.xHigh - window.xLow), height / (window.ordinateHigh - window.ordinateLow)]
+    places.forEach((ofColour, colour) => {
+      if (!context) return
+      context.fillStyle = this.#model.colours[colour]
+      for (const [x, ordinate] of ofColour) {
+        const [left, top] = [(x - window.xLow) * scaleX, (window.ordinateHigh - ordinate) * scaleY]
+        context.fillRect(left - DOT_SIDE / 2, top - DOT_SIDE / 2, DOT_SIDE, DOT_SIDE)
+      }
+    })
+  }
+}
+
+/**
+ * Start the component.
+ *
+ * @param {any} model
+ */
+export const start = model => void new LiveSection(model)

@@ -1,0 +1,13 @@
+// @ts-check
+/** The returns of each orbit of a grid of starts, in the order of time. */
+
+import {Integrator} from "../../../app/browser/modules/engine/integrator.js"
+import {Returns} from "../../../app/browser/modules/engine/returns.js"
+import {input, modules} from "./read_input.js"
+
+const {system, starts} = input
+const returns = new Returns(new Integrator(system, modules), starts)
+/** @type {Record<number, [number, number][]>} */
+const found = {}
+while (!returns.complete) returns.continue((orbit, x, ordinate) => (found[orbit] ??= []).push([x, ordinate]))
+console.log(JSON.stringify(found))

@@ -1,0 +1,43 @@
+"""The section that the browser paints has the points of the server."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from engine import MapSpec, System, compute_returns, parse_formula, read_section
+from engine.slices.portable_system import make_portable_system
+from tests.node import needs_node, run_node
+
+SIDE = 6
+# Orbits of a regular well with units of its own, of an open well, and of a rotating frame with a body.
+CASES = [
+    (parse_formula("8x² + 8y² − 3x³ + 9xy²"), 1.0, "y = 0 up"),
+    (parse_formula("8x² + 8y² − 3x³ + 9xy²"), 1.0, "x = 0, px < 0"),
+    (System("III").potential, 0.3, "y = 0.1 down"),
+    (System("Hill").potential, -2.5, "y = 0 down"),
+]
+
+
+@needs_node
+@pytest.mark.parametrize(("potential", "energy", "text"), CASES)
+def test_returns_in_the_browser_are_those_of_the_server(potential, energy: float, text: str, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    section = read_section(text)
+    plane = section.slice_of_starts
+    spec = MapSpec(potential, plane, energy, (SIDE, SIDE), t_max=630.0 * potential.units.time, section=section)
+    expected = compute_returns(spec, returns=1000)
+    portable, window = make_portable_system(potential, energy, section), spec.find_window()
+    described = plane.to_dict(potential.units) | {"sectionColumns": section.columns_on(plane)}
+    edges = ("xLow", "xHigh", "ordinateLow", "ordinateHigh")
+    corners = dict(zip(edges, (*window.ranges[0], *window.ranges[1]), strict=True))
+    starts = {"slice": described, "energy": energy, "window": corners, "side": SIDE}
+    found = run_node("run_returns.js", {"system": portable.to_dict(), "module": portable.module, "starts": starts}, tmp_path)
+    assert len(found) > 3
+    wanted = expected.points()
+    # The errors of both integrations grow along an orbit.
+    for points, returns in zip(wanted, found.values(), strict=True):
+        count = min(6, len(points))
+        np.testing.assert_allclose(np.array(returns)[:count], points[:count], atol=1e-8 * potential.units.length)
+        assert abs(len(returns) - len(points)) <= 0.02 * len(points) + 1
