@@ -29,7 +29,7 @@ from engine.integrator.kernels.events import (
 from engine.integrator.kernels.exit_geometry import CLOSED, SHAPE, reached_exit
 from engine.integrator.source.recurrence import LANES, REMAINDER_ROW, ROWS, SIZE_ROW, TIME_ROW
 from engine.integrator.source.series import ORDER
-from engine.integrator.source.step_flags import CROSSES_PLACE, GATE, HIDDEN, NEAR, OVERSHOOT
+from engine.integrator.source.step_flags import CROSSES, GATE, HIDDEN, NEAR, OVERSHOOT
 
 VECTOR = 8
 """The number of active lanes is rounded up to a multiple of this, so that no lane is in the scalar remainder of a loop."""
@@ -165,7 +165,7 @@ def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget,
                     _locate_events(jets, coefficients, buffer, buffered, horizon, exits, orbits)
                     buffered = 0
             elif not ends:
-                crossed[i] += flag[i] >> CROSSES_PLACE
+                crossed[i] += 1 if flag[i] & CROSSES != 0 else 0
             if ends:
                 active, next_orbit = _refill_lane(orbits, todo, next_orbit, active, new, i, lane_orbit, crossed)
         now, new = new, now

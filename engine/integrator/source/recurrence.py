@@ -47,7 +47,7 @@ from engine.integrator.source.series import (
     cauchy,
     total,
 )
-from engine.integrator.source.step_flags import CROSSES, CROSSES_PLACE, OVERSHOOT, flag_gates, flag_hidden_crossings
+from engine.integrator.source.step_flags import CROSSES, OVERSHOOT, flag_gates, flag_hidden_crossings
 from engine.integrator.source.straight_line import StraightLine, Value, where
 
 TOLERANCE = 3e-15
@@ -238,13 +238,13 @@ def _step(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
     x, y = structure.orbit(program, remainders)
     h = _step_size(program, x, y, structure)
     x_end, y_end = _end_of_step(x, h, remainders.get("x")), _end_of_step(y, h, remainders.get("y"))
-    crossing, hidden_flag = _crossings(structure, program, (x, y), (x_end, y_end), h)
+    crosses, hidden_flag = _crossings(structure, program, (x, y), (x_end, y_end), h)
     gate_places, gate_flag = flag_gates(structure.setting, program, (x, y), (x_end[0], y_end[0]), h)
     t_end = program.input("t0") + h
     flags = hidden_flag + gate_flag + where(t_end <= program.input("horizon"), 0, OVERSHOOT)
     writes = {
-        Place("crossed"): where(flags.equals(0), crossing >> CROSSES_PLACE, 0),
-        Place("flag"): flags + where(flags.equals(0), 0, crossing),
+        Place("crossed"): where(crosses & flags.equals(0), 1, 0),
+        Place("flag"): where(crosses & (flags > 0), flags + CROSSES, flags),
         **_end_of_lane(x_end, y_end, t_end, h),
     }
     arguments = "tolerance, horizon, gates, now, new, flag, crossed"
@@ -256,13 +256,13 @@ def _step(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
 def _crossings(
     structure: Structure, program: StraightLine, series: tuple[Series, Series], ends: tuple[_AxisEnd, _AxisEnd], h: Value
 ) -> tuple[Value, Value]:
-    """Return CROSSES or 0, whether the ends of a step are on both sides of the section, and the flag of hidden crossings."""
+    """Return whether the ends of a step are on both sides of the section, and the flag of hidden crossings."""
     (x, px, _), (y, py, _) = ends
     if structure.setting.section is not None:
         return flag_crossings(program, structure.setting.section, series, (x, y, px, py), h)
     _, y_series = series
     hidden_flag = flag_hidden_crossings(y_series, y, h) if structure.can_hide_crossings else program.constant(0)
-    return where((y_series[0] < 0.0) & (y >= 0.0), CROSSES, 0), hidden_flag
+    return (y_series[0] < 0.0) & (y >= 0.0), hidden_flag
 
 
 def _limited_step(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from engine.integrator.source.section_numbers import NAMES, ROUNDING, SectionForm
 from engine.integrator.source.series import ORDER, Series, cauchy
-from engine.integrator.source.step_flags import CROSSES, HIDDEN, flag_hidden_crossings, largest_sag
+from engine.integrator.source.step_flags import HIDDEN, flag_hidden_crossings, largest_sag
 from engine.integrator.source.straight_line import StraightLine, Value, where
 
 _State = tuple[Value, Value, Value, Value]
@@ -23,7 +23,7 @@ def section_places(first_row: int) -> dict[str, tuple[int, int]]:
 def flag_crossings(
     program: StraightLine, form: SectionForm, series: tuple[Series, Series], end: _State, h: Value
 ) -> tuple[Value, Value]:
-    """Return CROSSES or 0, whether a step crosses the section between its ends, and HIDDEN or 0, whether that can be wrong.
+    """Return whether a step crosses the section between its ends, and HIDDEN or 0, whether that can be wrong.
 
     series: x and y in the step; end: the state at its end. A step is flagged if it may cross the section twice, or if it crosses
     the section where it may also change the side.
@@ -38,10 +38,9 @@ def flag_crossings(
     upper = where(start_side < end_side, end_side, start_side)
     changes_side = (before * after <= 0.0) & (lower < sag) & (upper >= 0.0 - sag)
     is_on_side = end_side >= 0.0
-    rises = where((before < 0.0) & (after >= 0.0) & is_on_side, CROSSES, 0)
-    counts_falls = program.input("section_both") > 0.0
-    falls = where((before > 0.0) & (after <= 0.0) & is_on_side & counts_falls, CROSSES, 0)
-    return rises + falls, where(changes_side, HIDDEN, hidden)
+    falls = where((before > 0.0) & (after <= 0.0) & (program.input("section_both") > 0.0), 1, 0)
+    crosses = where((before < 0.0) & (after >= 0.0), 1, falls) > 0
+    return crosses & is_on_side, where(changes_side, HIDDEN, hidden)
 
 
 def _form_value(program: StraightLine, form: SectionForm, state: _State) -> Value:

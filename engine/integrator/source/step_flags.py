@@ -17,10 +17,7 @@ OVERSHOOT = 4
 NEAR = 8
 """Flag of a step that may cross and recross an exit, so that the step can end before the gate."""
 
-CROSSES_PLACE = 4
-"""Place of the bit `CROSSES`."""
-
-CROSSES = 1 << CROSSES_PLACE
+CROSSES = 16
 """Flag, besides others, of a step that crosses the section between its ends."""
 
 # Maxima of σ − σ^k for 0 ≤ σ ≤ 1, by k, rounded up; for larger k, 1 is used.
