@@ -59,8 +59,8 @@ class CatalogueEntry:
     energies
         Energies to explore at the values of `parameters`; None for the range derived from the potential.
     sections
-        Surfaces of section in use for the system besides y = 0, such as that of the reference or those through its bodies, as
-        text, see `read_section`.
+        Surfaces of section in use for the system besides y = 0, such as that of the reference or those through its bodies and
+        its libration points, as text, see `read_section`.
     """
 
     name: str

@@ -36,7 +36,7 @@ ROTATING_ENTRIES = (
         {"m": _MOON_MASS} | _UNIT_ROTATION,
         ("m",),
         EnergyRange(-1.14, -1.045, (), -1.095, 4),
-        ("x = 0 up", "x = 0 down", "pericentre"),
+        ("x = 0 up", "x = 0 down", "x = 0.1678327510078692 up", "x = -0.1509342885802875 down", "pericentre"),
     ),
     CatalogueEntry(
         "Hill",
@@ -47,7 +47,7 @@ ROTATING_ENTRIES = (
         _UNIT_ROTATION,
         (),
         EnergyRange(-3.0, -1.0, (), -2.0),
-        ("x = 0 up", "pericentre"),
+        ("x = 0 up", "x = 0.6933612743506348 up", "x = -0.6933612743506348 down", "pericentre"),
     ),
     CatalogueEntry(
         "Star cluster",

@@ -134,6 +134,13 @@ def test_only_symmetric_sections_have_the_same_crossings_on_mirror_images(text: 
     assert read_section(text).is_mirrored == (text in MIRRORED)
 
 
+@pytest.mark.parametrize("name", ["Hill", "Earth-Moon"])
+def test_sections_of_the_catalogue_pass_through_the_libration_points(name: str) -> None:
+    sections = [read_section(text) for text in CATALOGUE[name].sections if text.startswith("x = ")]
+    for x, y in POTENTIALS[name].saddles:
+        assert min(abs(section.values(np.array([x, y, 0.0, 0.0]))) for section in sections) < 1e-12
+
+
 def test_sections_of_the_catalogue_can_be_read() -> None:
     sections = [read_section(text) for entry in CATALOGUE.values() for text in entry.sections]
     assert len(sections) > 5
