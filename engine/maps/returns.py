@@ -13,7 +13,7 @@ from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.result import MapResult
 from engine.foundations.validation import check_type, checked_count, checks_types
-from engine.foundations.wording import format_count
+from engine.foundations.wording import format_count, format_number
 from engine.maps.spec import MapSpec
 from engine.propagation.batch import OrbitBatch
 from engine.propagation.fates import Fate
@@ -75,7 +75,7 @@ class Returns(MapResult):
         counts = self.count[self.count > 0]
         crossings, orbits = self.spec.section.count(int(counts.sum())), format_count(int(counts.size), "orbit")
         energy = self.spec.common_energy
-        place = "" if energy is None else f" at h = {energy:.6g}"
+        place = "" if energy is None else f" at h = {format_number(energy, 6)}"
         return f"{crossings} by {orbits}{place}{'' if self.complete else ' so far'}."
 
     def columns(self) -> Mapping[str, np.ndarray]:
