@@ -25,7 +25,14 @@ const FRAME_MS = 12
 /** Digits of the energy on the canvas. */
 const DIGITS = 6
 
-/** @typedef {{chart: import("../painting/pictures.js").Picture, energy: number, window: import("../engine/starts.js").Window}} Scene */
+/**
+ * What to compute, and the chart over which it is painted.
+ *
+ * @typedef {object} Scene
+ * @property {import("./present.js").Shown} shown
+ * @property {import("../painting/pictures.js").Picture} chart
+ * @property {number} energy
+ */
 
 class LiveSection {
   /** @param {any} model  of the component in `app/views/analysis/live_section.py` */
@@ -53,6 +60,8 @@ class LiveSection {
   #ranges = [this.#range("x_range"), this.#range("y_range")]
   /** @type {Returns | null} */
   #returns = null
+  /** The window of the chart. */
+  #window = {xLow: 0, xHigh: 1, ordinateLow: 0, ordinateHigh: 1}
   /** What the canvas shows, as text. */
   #shownKey = ""
   #frame = 0
@@ -64,13 +73,11 @@ class LiveSection {
 
   /** What to compute; null where the server's chart is shown. @returns {Scene | null} */
   get #scene() {
-    const [shown, chart, {slice, plane}] = [present(), pictureNamed(CHART), this.#model]
+    const shown = present()
     const energy = shown?.scene()?.energy
-    if (!shown || !chart || !slice || energy === undefined || sameEnergy(energy, this.#model.energy)) return null
-    const {x_range: x, y_range: y} = chart.view.model
-    const window = {xLow: x.start, xHigh: x.end, ordinateLow: y.start, ordinateHigh: y.end}
-    const defaultWindow = windowAt(new Integrator(shown.system, shown.modules), plane, energy)
-    return {chart, energy, window: defaultWindow && !isNearWindow(defaultWindow, window) ? defaultWindow : window}
+    const isWanted = energy !== undefined && this.#model.slice && !sameEnergy(energy, this.#model.energy)
+    const chart = isWanted && pictureNamed(CHART)
+    return shown && chart ? {shown, chart, energy} : null
   }
 
   #hide() {
@@ -87,28 +94,26 @@ class LiveSection {
     this.#frame = 0
     const scene = this.#scene
     if (!scene) return this.#hide()
-    const key = JSON.stringify([scene.energy, present()?.system.key, scene.chart.view.frame.bbox, devicePixelRatio])
+    const {colours} = this.#model
+    const style = [scene.chart.view.frame.bbox, devicePixelRatio, colours, document.documentElement.dataset.theme]
+    const key = JSON.stringify([scene.energy, scene.shown.system.key, style])
     if (key !== this.#shownKey) this.#begin(scene)
     this.#shownKey = key
-    const colours = this.#model.colours
     /** @type {[number, number][][]} */
     const places = colours.map(() => [])
     const startTime = performance.now()
     while (this.#returns && !this.#returns.complete && performance.now() - startTime < FRAME_MS)
       this.#returns.continue((orbit, x, ordinate) => places[orbit % colours.length].push([x, ordinate]))
-    this.#paintDots(scene, places)
-    if (!this.#returns?.complete) this.#follow()
+    this.#paintDots(scene.chart, places)
+    // The chart may move or disappear, of which no event tells.
+    this.#follow()
   }
 
   /** Begin with the orbits of a scene, on an empty canvas. @param {Scene} scene */
-  #begin({chart, energy, window}) {
-    const shown = present()
-    if (!shown) return
-    const {slice} = this.#model
-    this.#returns = new Returns(new Integrator(shown.system, shown.modules), {slice, energy, window, side: SIDE})
-    const [x, y] = this.#ranges
-    x.show({start: window.xLow, end: window.xHigh})
-    y.show({start: window.ordinateLow, end: window.ordinateHigh})
+  #begin({shown, chart, energy}) {
+    const integrator = new Integrator(shown.system, shown.modules)
+    this.#showWindow(chart, windowAt(integrator, this.#model.plane, energy))
+    this.#returns = new Returns(integrator, {slice: this.#model.slice, energy, window: this.#window, side: SIDE})
     const {left, top, width, height} = chart.view.frame.bbox
     // Elements of Bokeh show only what their shadow root contains.
     chart.view.canvas_view.el.shadowRoot.append(this.#canvas)
@@ -128,11 +133,27 @@ class LiveSection {
   }
 
   /**
-   * @param {Scene} scene
+   * Keep the window of the chart, or show the default window of an energy if it differs.
+   *
+   * @param {import("../painting/pictures.js").Picture} chart
+   * @param {import("../engine/starts.js").Window | null} defaultWindow
+   */
+  #showWindow({view}, defaultWindow) {
+    const {x_range: x, y_range: y} = view.model
+    this.#window = {xLow: x.start, xHigh: x.end, ordinateLow: y.start, ordinateHigh: y.end}
+    if (!defaultWindow || isNearWindow(defaultWindow, this.#window)) return
+    this.#window = defaultWindow
+    const [xRange, yRange] = this.#ranges
+    xRange.show({start: defaultWindow.xLow, end: defaultWindow.xHigh})
+    yRange.show({start: defaultWindow.ordinateLow, end: defaultWindow.ordinateHigh})
+  }
+
+  /**
+   * @param {import("../painting/pictures.js").Picture} chart
    * @param {[number, number][][]} places  of new returns, by colour
    */
-  #paintDots({chart, window}, places) {
-    const context = this.#canvas.getContext("2d")
+  #paintDots(chart, places) {
+    const [context, window] = [this.#canvas.getContext("2d"), this.#window]
     const {width, height} = chart.view.frame.bbox
     const [scaleX, scaleY] = [width / (window.xHigh - window.xLow), height / (window.ordinateHigh - window.ordinateLow)]
     places.forEach((ofColour, colour) => {
