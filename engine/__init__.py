@@ -10,9 +10,9 @@ programs of this repository, and may change with any version.
   `sample_starts`, `sample_entrances`, `sample_entrances_by_exit`
 - orbits: `integrate_orbit`, `Orbit`, `sample_orbits`, `classify_orbits`, `find_lyapunov_orbits`, `LyapunovOrbit`, `judge_orbit`,
   `compute_separation`, `find_divergent_start`, `compute_flux`
-- maps of escapes: `MapSpec`, `compute_map`, `EscapeMap`, `Fate`, `Evidence`, `compute_returns`, `compute_regularity`,
-  `Regularity`, `compute_trust`, `Trust`, `compute_origin_fates`, `find_stable_manifolds`, `compute_lagrangian_descriptor`,
-  `TimeDirection`
+- maps of escapes: `MapSpec`, `compute_map`, `EscapeMap`, `Fate`, `Evidence`, `compute_returns`, `store_returns`,
+  `compute_regularity`, `Regularity`, `compute_trust`, `Trust`, `compute_origin_fates`, `find_stable_manifolds`,
+  `compute_lagrangian_descriptor`, `TimeDirection`
 - measures: `MEASURES`, `Measure`; of basins and statistics `compute_basin_entropy`, `compute_wada_test`,
   `compute_uncertainty_exponent`, `compute_statistics`, `compute_islands`, `compute_chaotic_share`, `compute_exit_matching`,
   `fit_decay_laws`
@@ -64,6 +64,7 @@ from engine.slices.slice import Slice as Slice
 from engine.slices.window import Window as Window
 from engine.sweeps.plan import plan_sweep as plan_sweep
 from engine.sweeps.spec import SweepSpec as SweepSpec
+from engine.sweeps.stored_returns import store_returns as store_returns
 from engine.sweeps.sweep import compute_sweep as compute_sweep
 from engine.systems.formulas.formula_parser import parse_formula as parse_formula
 from engine.systems.formulas.formula_tokens import FormulaError as FormulaError

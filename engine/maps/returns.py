@@ -12,9 +12,9 @@ from engine.exits.exit_rows import exit_curves_at
 from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.result import MapResult
-from engine.foundations.validation import check_type, checked_count, checks_types
+from engine.foundations.validation import checked_count, checks_types
 from engine.foundations.wording import format_count, format_number
-from engine.maps.spec import MapSpec
+from engine.maps.spec import MapSpec, read_spec
 from engine.propagation.batch import OrbitBatch
 from engine.propagation.fates import Fate
 from engine.propagation.passages import find_passages
@@ -94,30 +94,40 @@ class Returns(MapResult):
 
     def to_xarray(self) -> xr.Dataset:
         """Return the states and times as a dataset with the dimensions "return" and the axes of the map."""
-        # The import is slow and seldom needed.
-        import xarray as xr
-
-        x, ordinate = self.spec.pixel_centres()
-        names = ("return", *self.spec.plane.axis_names[::-1])
-        places = {"return": np.arange(1, len(self.time) + 1), names[1]: ordinate, names[2]: x}
-        coordinates = {name: (name, values, {"units": "1"}) for name, values in places.items()}
-        arrays = {name: self.states[..., k] for k, name in enumerate(_VARIABLES)} | {_TIME_VARIABLE: self.time}
-        variables = {
-            name: (names, values, {"units": "1", "long_name": f"{_VARIABLES.get(name, 'time')} at the return"})
-            for name, values in arrays.items()
-        }
         attributes = {"result": type(self).__name__, **self.spec.provenance(), "complete": int(self.complete)}
-        return xr.Dataset(variables, coordinates, attributes)
+        return _write_dataset(self.spec, self.spec.pixel_centres()[1], self.states, self.time).assign_attrs(attributes)
 
     @classmethod
     def read_parts(cls, dataset: xr.Dataset) -> dict[str, Any]:
-        """Return the states and times, which files store as variables."""
-        states = np.stack([dataset[name].values for name in _VARIABLES], axis=-1)
-        return {"states": read_only(states), "time": read_only(dataset[_TIME_VARIABLE].values)}
+        """Return the states and times, which files store as variables. A store may lack rows, and has them first."""
+        spec = read_spec(dataset)
+        (_, ordinate), names = spec.pixel_centres(), spec.plane.axis_names[::-1]
+        is_whole = dataset.sizes[names[0]] == ordinate.size
+        whole = dataset if is_whole else dataset.reindex({names[0]: ordinate})
+        arrays = {name: whole[name].transpose("return", *names).values for name in (*_VARIABLES, _TIME_VARIABLE)}
+        states = np.stack([arrays[name] for name in _VARIABLES], axis=-1)
+        parts = {"states": read_only(states), "time": read_only(arrays[_TIME_VARIABLE])}
+        return parts if "complete" in dataset.attrs else parts | {"complete": is_whole}
+
+
+def _write_dataset(spec: MapSpec, ordinate: np.ndarray, states: np.ndarray, time: np.ndarray) -> xr.Dataset:
+    """Return states (returns, rows, columns, 4) and times of the rows at some ordinates as a dataset without attributes."""
+    # The import is slow and seldom needed.
+    import xarray as xr
+
+    names = ("return", *spec.plane.axis_names[::-1])
+    places = {"return": np.arange(1, len(time) + 1), names[1]: ordinate, names[2]: spec.pixel_centres()[0]}
+    coordinates = {name: (name, values, {"units": "1"}) for name, values in places.items()}
+    arrays = {name: states[..., k] for k, name in enumerate(_VARIABLES)} | {_TIME_VARIABLE: time}
+    variables = {
+        name: (names, values, {"units": "1", "long_name": f"{_VARIABLES.get(name, 'time')} at the return"})
+        for name, values in arrays.items()
+    }
+    return xr.Dataset(variables, coordinates)
 
 
 @shows_progress("returns")
-@checks_types(execution=Execution)
+@checks_types(spec=MapSpec, execution=Execution)
 def compute_returns(
     spec: MapSpec,
     returns: int = 1,
@@ -158,12 +168,9 @@ def compute_returns(
     >>> found.states.shape, round(float(found.time[2, 4, 4]), 3)
     ((3, 9, 9, 4), 18.368)
     """
-    check_type("spec", spec, MapSpec)
-    if spec.plane.parameter is not None:
-        raise ValueError(f"spec: its plane {spec.plane.title} has a parameter as axis; must be a slice of one potential")
     columns, rows = spec.resolution
-    checked_count("returns", returns, 1, min(MOST_RETURNS, _MOST_POINTS // (columns * rows)))
-    run = _ReturnsRun(spec, returns)
+    check_request(spec, returns, columns * rows)
+    run = _ReturnsRun(spec, returns, np.arange(rows))
     for part in np.array_split(run.inside(execution), _PARTS):
         if execution.is_cancelled:
             break
@@ -174,17 +181,39 @@ def compute_returns(
     return run.frame()
 
 
-class _ReturnsRun:
-    """Follows the orbits of a map in units of the well."""
+def check_request(spec: MapSpec, returns: int, starts: int) -> None:
+    """Raise a ValueError for a request of `compute_returns` with this number of starts at a time, if it is not legal."""
+    if spec.plane.parameter is not None:
+        raise ValueError(f"spec: its plane {spec.plane.title} has a parameter as axis; must be a slice of one potential")
+    checked_count("returns", returns, 1, min(MOST_RETURNS, _MOST_POINTS // starts))
 
-    def __init__(self, spec: MapSpec, returns: int) -> None:
+
+def compute_row(spec: MapSpec, returns: int, row: int, execution: Execution) -> xr.Dataset:
+    """Return the returns of the starts in one row of a map as a dataset without attributes, see `compute_returns`.
+
+    Raises
+    ------
+    concurrent.futures.CancelledError
+        If cancelled.
+    """
+    run = _ReturnsRun(spec, returns, np.array([row]))
+    run.follow(run.inside(execution), execution)
+    execution.raise_if_cancelled()
+    return run.dataset()
+
+
+class _ReturnsRun:
+    """Follows the orbits of some rows of a map in units of the well."""
+
+    def __init__(self, spec: MapSpec, returns: int, rows: np.ndarray) -> None:
         self._spec, self._well_spec = spec, spec.in_well_units()
-        columns, rows = spec.resolution
-        x, ordinate = (grid.ravel() for grid in np.meshgrid(*self._well_spec.pixel_centres()))
+        self._rows = rows
+        x_axis, ordinate_axis = self._well_spec.pixel_centres()
+        x, ordinate = (grid.ravel() for grid in np.meshgrid(x_axis, ordinate_axis[rows]))
         energies, self._curve_row = np.unique(self._well_spec.energies(x, ordinate), return_inverse=True)
         self._curves = exit_curves_at(self._well_spec.potential, energies)
         self._starts = self._well_spec.start_states(x, ordinate)
-        self._found = np.full((rows * columns, returns, _COLUMNS), np.nan)
+        self._found = np.full((x.size, returns, _COLUMNS), np.nan)
         # Number of pixels whose orbits have not been followed yet; unknown until `inside` is called.
         self._pending = len(self._found)
 
@@ -214,10 +243,16 @@ class _ReturnsRun:
         return 1.0 - self._pending / max(len(self._found), 1)
 
     def frame(self) -> Returns:
-        """Return the returns so far, in the units of the potential."""
-        units = self._spec.potential.units
-        columns, rows = self._spec.resolution
-        by_return = self._found.transpose(1, 0, 2).reshape(-1, rows, columns, _COLUMNS)
-        states = self._spec.section.settle(by_return[..., :4] * units.state)
-        time = by_return[..., 4] * units.time
+        """Return the returns so far of all rows, in the units of the potential."""
+        states, time = self._arrays()
         return Returns(self._spec, read_only(states), read_only(time), complete=self._pending == 0)
+
+    def dataset(self) -> xr.Dataset:
+        """Return the returns of the rows as a dataset without attributes, in the units of the potential."""
+        return _write_dataset(self._spec, self._spec.pixel_centres()[1][self._rows], *self._arrays())
+
+    def _arrays(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return the states, (returns, rows, columns, 4), and times so far, in the units of the potential."""
+        units = self._spec.potential.units
+        by_return = self._found.transpose(1, 0, 2).reshape(-1, self._rows.size, self._spec.resolution[0], _COLUMNS)
+        return self._spec.section.settle(by_return[..., :4] * units.state), by_return[..., 4] * units.time

@@ -45,7 +45,7 @@ def open_store(path: Path, attributes: Mapping[str, Any]) -> Iterator[SweepStore
     Raises
     ------
     ValueError
-        If the folder contains another sweep or other files, or its parent folder does not exist.
+        If the folder contains another request or other files, or its parent folder does not exist.
     OSError
         If the store cannot be written to.
     BlockingIOError
@@ -112,7 +112,7 @@ class SweepStore:
         import zarr
 
         if not (self._path / _METADATA_FILE).exists():
-            raise ValueError(f"store={self._path}: holds other files; must be new, empty, or the store of this sweep")
+            raise ValueError(f"store={self._path}: holds other files; must be new, empty, or the store of this request")
         axis = self._attributes["axis"]
         with _damage_named(self._path):
             group = zarr.open_group(self._path, mode="r+", use_consolidated=False)
@@ -139,7 +139,7 @@ class SweepStore:
 
 
 def check_same_sweep(label: str, found: Mapping[str, Any], wanted: Mapping[str, Any], *, ignored: Sequence[str] = ()) -> None:
-    """Raise a ValueError that states the difference if the attributes `found` belong to another sweep.
+    """Raise a ValueError that states the difference if the attributes `found` belong to another request.
 
     Attributes that are `ignored` are not compared.
     """
@@ -148,7 +148,7 @@ def check_same_sweep(label: str, found: Mapping[str, Any], wanted: Mapping[str, 
     for name, value in sorted(wanted.items(), key=lambda item: item[0] == "window"):
         is_compared = name not in {*ignored, *_WORDED_ATTRIBUTES}
         if is_compared and (name not in found or np.ravel(found[name]).tolist() != np.ravel(value).tolist()):
-            raise ValueError(f"{label}: holds another sweep, with {name}={found.get(name)!r}; must have {name}={value!r}")
+            raise ValueError(f"{label}: holds another request, with {name}={found.get(name)!r}; must have {name}={value!r}")
 
 
 def _consolidate(path: Path) -> None:

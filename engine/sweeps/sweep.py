@@ -150,7 +150,7 @@ def compute_sweep(
     concurrent.futures.CancelledError
         When cancelled; a store keeps the finished values.
     ValueError
-        When no exit is defined at one of the values, `earlier` has another request, or the store holds another sweep or other
+        When no exit is defined at one of the values, `earlier` has another request, or the store holds another request or other
         files.
     OSError
         When the store cannot be written to; finished values stay valid. BlockingIOError when another process computes into the

@@ -222,7 +222,7 @@ WRONG_CALLS = (
     ("compute_sweep(sw, 3)", "store=3: must be text or a path or None"),
     ('compute_sweep(sw, tmp / "no" / "such" / "folder")', "store=…/no/such/folder: the folder …/no/such does not exist; make"),
     ("compute_sweep(sw, earlier=sw)", "earlier=…: must be a Sweep or None"),
-    ("compute_sweep(sw, earlier=other)", "earlier: holds another sweep, with resolution=(12, 12); must have resolution="),
+    ("compute_sweep(sw, earlier=other)", "earlier: holds another request, with resolution=(12, 12); must have resolution="),
     ("compute_sweep(sw, on_frame=3)", "on_frame=3: must be a function or None"),
     ("compute_sweep(sw, measure=3)", "measure=3: must be a function or None"),
     ("compute_sweep(sw, execution=3)", "execution=3: must be an Execution"),

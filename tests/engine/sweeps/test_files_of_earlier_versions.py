@@ -45,7 +45,7 @@ def test_the_sweep_of_an_earlier_version_is_continued(tmp_path: Path) -> None:
     group = zarr.open_group(tmp_path / "sweep.zarr")
     group.attrs.put({name: value for name, value in group.attrs.items() if name != "section"})
     xr.testing.assert_equal(compute_sweep(SWEEP, tmp_path / "sweep.zarr").dataset, compute_sweep(SWEEP).dataset)
-    with pytest.raises(ValueError, match="holds another sweep, with section='y = 0 up'; must have section='x = 0 up'"):
+    with pytest.raises(ValueError, match="holds another request, with section='y = 0 up'; must have section='x = 0 up'"):
         compute_sweep(replace(SWEEP, section=read_section("x = 0")), tmp_path / "sweep.zarr")
 
 
@@ -57,5 +57,5 @@ def test_measures_take_the_dataset_of_an_earlier_version() -> None:
 def test_a_store_without_a_sweep_is_not_continued(tmp_path: Path) -> None:
     maps = xr.Dataset({"crossings": ("h", [3]), "done": ("h", [True])}, {"h": [0.3]})
     maps.to_zarr(tmp_path / "store", consolidated=False, zarr_format=3)
-    with pytest.raises(ValueError, match=r"store=.*: holds another sweep"):
+    with pytest.raises(ValueError, match=r"store=.*: holds another request"):
         compute_sweep(SWEEP, tmp_path / "store")

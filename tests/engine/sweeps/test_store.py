@@ -126,7 +126,7 @@ def test_arrays_are_read_on_access_and_missing_data_are_not_computed(tmp_path: P
 )
 def test_store_of_another_request_is_refused(finished: Path, change: dict[str, Any], name: str) -> None:
     before = files_of(finished)
-    with pytest.raises(ValueError, match=f"holds another sweep, with {name}"):
+    with pytest.raises(ValueError, match=f"holds another request, with {name}"):
         compute_sweep(replace(SPEC, **change), finished)
     assert files_of(finished) == before
 
@@ -274,7 +274,7 @@ def test_dask_cluster_is_byte_identical(tmp_path: Path, processes: bool) -> None
 def test_a_sweep_with_less_provenance_is_another_sweep() -> None:
     wanted = {"energy": 0.2, "t_max": 100.0}
     check_same_sweep("store", wanted, wanted)
-    with pytest.raises(ValueError, match=r"store: holds another sweep, with t_max=None; must have t_max=100.0"):
+    with pytest.raises(ValueError, match=r"store: holds another request, with t_max=None; must have t_max=100.0"):
         check_same_sweep("store", {"energy": 0.2}, wanted)
 
 
