@@ -11,6 +11,7 @@ import numpy as np
 from engine import Execution, Plane, Potential, Section, Slice
 from engine.slices.default_window import default_window
 from engine.slices.portable_system import PortableSystem, make_portable_system
+from engine.slices.slice_text import write_slice
 
 EXIT_NUMBER_DISTANCE = 0.86
 """Distance of the number of an exit from the origin, as a share of the distance of the middle of the exit."""
@@ -53,6 +54,11 @@ class BrowserSystem:
         return {**self.portable.to_dict(), "key": self.key, "module": self.portable.module, **page_data}
 
 
+def slice_name(plane: Slice) -> str:
+    """Return the name of a slice in the tables of windows."""
+    return ";".join(filter(None, write_slice(plane)))
+
+
 def system_key(potential: Potential, section: Section = Section.Y_UP) -> str:
     """Return a hash of a potential and the section at which crossings are counted, as 16 hexadecimal digits."""
     definition = potential.form, potential.rotation, potential.ends, section
@@ -66,8 +72,9 @@ def make_browser_system(
 
     Crossings are counted at the section.
     """
-    planes = [plane for plane in Plane if plane.energy_axis is None]
-    windows = {plane.key: _tabulate_windows(potential, plane, (low, high), execution) for plane in planes}
+    planes: dict[str, Slice] = {slice_name(plane): plane for plane in Plane if plane.energy_axis is None}
+    planes |= {slice_name(section.slice_of_starts): section.slice_of_starts}
+    windows = {name: _tabulate_windows(potential, plane, (low, high), execution) for name, plane in planes.items()}
     return BrowserSystem(system_key(potential, section), make_portable_system(potential, high, section), windows)
 
 

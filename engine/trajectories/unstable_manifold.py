@@ -30,6 +30,11 @@ _MIN_MULTIPLIER = 1.5
 # Such an orbit is itself a point of the section, where one infinite curve begins. The image ends where a displacement that
 # continued to grow by the multiplier would reach this size.
 _FIRST_IMAGE_END = 6.0
+# Share of a period after which a displacement of that size passes the section: the time of the downward passage of y = 0 in Case
+# II. Orbits that pass at another time have other displacements at the start, so that their images have the same ends.
+_USUAL_PASSAGE = 0.75
+# Differences of that share below this value are rounding errors.
+_ROUNDING = 1e-9
 # Number of tiles that a thread computes at a time; a tile takes about 0.3 ms.
 _TILES_PER_TASK = 16
 
@@ -165,12 +170,14 @@ class UnstableManifold:
 
 def _choose_displacement(orbit: LyapunovOrbit, multiplier: float, section: SectionNumbers) -> tuple[float, int]:
     """Return `max_displacement`, without nonlinear terms, and `near_passages`, see `UnstableManifold`."""
-    passages = len(find_passages_of_orbit(orbit.potential, orbit.start, 2, orbit.period, section))
-    if passages > 1:
+    times = find_passages_of_orbit(orbit.potential, orbit.start, 2, orbit.period, section)[:, 4]
+    if times.size > 1:
         raise ValueError(f"the Lyapunov orbit of channel {orbit.channel} crosses the section more than once in a period")
-    if passages == 0:
+    if times.size == 0:
         return _MAX_DISPLACEMENT, 0
-    end = _FIRST_IMAGE_END * float(np.hypot(*orbit.potential.saddles[orbit.channel - 1]))
+    earlier = _USUAL_PASSAGE - float(times[0]) / orbit.period
+    growth = 1.0 if abs(earlier) < _ROUNDING else multiplier**earlier
+    end = _FIRST_IMAGE_END * float(np.hypot(*orbit.potential.saddles[orbit.channel - 1])) * growth
     periods = math.ceil(math.log(end / _MAX_DISPLACEMENT) / math.log(multiplier))
     return end * multiplier**-periods, periods - 1
 

@@ -56,7 +56,8 @@ def _changes(subject: Subject, axis: str, found: Returns, x: float, y: float) ->
     """Return the start of the return nearest to the click, on a slice on the section, if there is one."""
     section, states = found.spec.section, found.states[np.isfinite(found.time)]
     points = section.axes.points(states)
-    steps = (points - [x, y]) / np.ptp(points, axis=0)
+    extents = np.ptp(points, axis=0)
+    steps = (points - [x, y]) / np.where(extents > 0.0, extents, 1.0)
     start = section.find_start(subject.potential, states[np.argmin(np.hypot(*steps.T))])
     if start is None:
         return {}

@@ -5,12 +5,12 @@ from __future__ import annotations
 import param
 from panel.custom import JSComponent
 
+from app.browser.browser_system import slice_name
 from app.browser.module_files import LIVE_SECTION_ADDRESS
 from app.job_clients.shown_results import ShownResults
 from app.state.view_state import ViewState
 from app.views.components.widgets import LOADED_MODULE
 from engine import Section, System
-from engine.slices.slice_text import write_slice
 from plots.studies.section import SECTION_STUDY
 
 
@@ -30,6 +30,7 @@ class LiveSection(JSComponent):
     plane = param.String(doc="name of the slice in the tables of windows")
     energy = param.Number(default=None, allow_None=True, doc="energy of the complete chart of the server; None without one")
     colours = param.List(doc="colours of the orbits")
+    duration = param.Number(doc="longest time of the orbits")
 
     _esm = LOADED_MODULE
 
@@ -38,6 +39,7 @@ class LiveSection(JSComponent):
         self._results = results
         state.follow(self._show_slice, "section", "system")
         state.follow(lambda name: self.param.update(colours=list(state.colours.orbits)), "palette")
+        state.follow(lambda t_max: self.param.update(duration=t_max), "t_max")
         results.param.watch(lambda event: self._show_energy(), "studies")
         self._show_energy()
 
@@ -45,7 +47,7 @@ class LiveSection(JSComponent):
         plane = section.slice_of_starts
         columns = section.columns_on(plane)
         described = None if columns is None else plane.to_dict(system.potential.units) | {"sectionColumns": columns}
-        self.param.update(slice=described, plane=";".join(filter(None, write_slice(plane))))
+        self.param.update(slice=described, plane=slice_name(plane))
 
     def _show_energy(self) -> None:
         found = self._results.studies.get(SECTION_STUDY.name)

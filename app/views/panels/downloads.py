@@ -20,7 +20,7 @@ from app.views.panels.figure_form import FigureForm
 from engine import Result
 from plots.studies.study import Study
 from plots.studies.table import STUDIES
-from plots.texts.exports import file_stem, netcdf_bytes, orbits_csv, python_lines, stem_of, table_csv
+from plots.texts.exports import file_stem, netcdf_bytes, orbits_csv, python_lines, table_csv
 
 File = tuple[str, Callable[[], bytes]]
 """Name of a file, and the function that makes its content. Calling the function may take seconds."""
@@ -105,8 +105,7 @@ def file_choices(results: ShownResults, state: ViewState) -> dict[str, File]:
         choices[ORBITS] = name("-orbits.csv"), lambda: orbits_csv(orbits, verdicts=verdicts).encode()
     for study_name, found in results.studies.items():
         study = STUDIES[study_name]
-        stem = stem_of(f"escapes-{system.case}-{study.files}", state.section)
-        choices[_table_label(study)] = f"{stem}.csv", partial(_table_bytes, found)
+        choices[_table_label(study)] = f"escapes-{system.case}-{study.files}.csv", partial(_table_bytes, found)
     return choices
 
 

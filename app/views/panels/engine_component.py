@@ -10,7 +10,7 @@ from typing import Any
 import param
 from panel.custom import JSComponent
 
-from app.browser.browser_system import BrowserSystem, make_browser_system, system_key
+from app.browser.browser_system import BrowserSystem, make_browser_system, slice_name, system_key
 from app.browser.module_files import ADDRESS
 from app.job_clients.latest_request import LatestRequest, Locked
 from app.job_clients.shown_results import ShownResults
@@ -18,7 +18,6 @@ from app.state.view_state import ViewState
 from engine import EscapeMap
 from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job, Queue
-from engine.slices.slice_text import write_slice
 from plots.layers.map_images import LAYER_COLUMNS
 from plots.pictures.image_columns import pixel_coding
 
@@ -101,7 +100,7 @@ def describe_view(state: ViewState) -> dict[str, Any]:
     outcomes = state.potential.outcomes_at(state.energy)
     return {
         "system": system_key(state.potential, state.section),
-        "plane": ";".join(filter(None, write_slice(state.plane))),
+        "plane": slice_name(state.plane),
         # Only the server knows the potentials along a parameter.
         "slice": _describe_slice(state) if state.plane.parameter is None else None,
         "energy": state.energy,

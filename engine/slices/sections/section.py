@@ -150,9 +150,9 @@ class Section:
     def plane(self) -> Slice | None:
         """A slice whose starts are on the section; None if there is none.
 
-        A ray is one half of the line of its slice. From a section of positions, starts go upward, unless crossings are downward;
-        on an oblique line or a ray not where the momentum across it is small compared with that along it, because the slice has
-        the sign of px or py.
+        A ray is one half of the line of its slice. From a section of positions, starts go upward, unless crossings are downward.
+        On an oblique line or a ray, some starts with a large momentum along the line go in the other direction, because the slice
+        fixes the sign of px or py.
         """
         raise NotImplementedError
 

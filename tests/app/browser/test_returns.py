@@ -18,6 +18,8 @@ CASES = [
     (parse_formula("8x² + 8y² − 3x³ + 9xy²"), 1.0, "x = 0, px < 0"),
     (System("III").potential, 0.3, "y = 0.1 down"),
     (System("Hill").potential, -2.5, "y = 0 down"),
+    (System("I").potential, 0.08, "y = 0.1 both"),
+    (System("III").potential, 0.2, "apsis"),
 ]
 
 
@@ -32,12 +34,13 @@ def test_returns_in_the_browser_are_those_of_the_server(potential, energy: float
     described = plane.to_dict(potential.units) | {"sectionColumns": section.columns_on(plane)}
     edges = ("xLow", "xHigh", "ordinateLow", "ordinateHigh")
     corners = dict(zip(edges, (*window.ranges[0], *window.ranges[1]), strict=True))
-    starts = {"slice": described, "energy": energy, "window": corners, "side": SIDE}
+    starts = {"slice": described, "energy": energy, "window": corners, "side": SIDE, "duration": spec.t_max}
     found = run_node("run_returns.js", {"system": portable.to_dict(), "module": portable.module, "starts": starts}, tmp_path)
     assert len(found) > 3
     wanted = expected.points()
-    # The errors of both integrations grow along an orbit.
     for points, returns in zip(wanted, found.values(), strict=True):
-        count = min(6, len(points))
-        np.testing.assert_allclose(np.array(returns)[:count], points[:count], atol=1e-8 * potential.units.length)
-        assert abs(len(returns) - len(points)) <= 0.02 * len(points) + 1
+        # The errors of both integrations grow along an orbit.
+        distance = np.linalg.norm(np.array(returns)[:6, None] - points[None, :12], axis=2).min(axis=1)
+        assert distance.max() < 1e-8 * potential.units.length
+        # Of two returns within a short time, the browser gives one.
+        assert -0.03 * len(points) - 1 <= len(returns) - len(points) <= 1

@@ -100,6 +100,20 @@ def test_arcs_do_not_depend_on_the_way_in_which_a_section_is_written() -> None:
         np.testing.assert_allclose([arc.x, arc.ordinate], [other.x, other.ordinate], atol=1e-9)
 
 
+def lines_of(found: StableManifolds, channel: int, image: int) -> shapely.MultiLineString:
+    """Return the arcs of an image as lines."""
+    arcs = [arc for arc in found.arcs if (arc.channel, arc.image) == (channel, image)]
+    return shapely.MultiLineString([np.column_stack([arc.x, arc.ordinate]) for arc in arcs])
+
+
+@pytest.mark.parametrize("image", [1, 2])
+def test_images_of_an_orbit_that_crosses_the_section_end_alike_in_both_directions(image: int) -> None:
+    # The mirror image of case II under y → −y maps upward crossings to downward ones, and keeps channel 1.
+    up, down = (lines_of(manifolds(CASES["II"], 0.2, section=read_section(text)), 1, image) for text in ("y = 0", "y = 0 down"))
+    assert down.length == pytest.approx(up.length, rel=1e-3)
+    assert shapely.hausdorff_distance(up, down) < 1e-2
+
+
 @pytest.mark.parametrize("text", ["px = 0", "pericentre", "y = 0 both"])
 def test_sections_that_every_tube_crosses_at_the_exit_are_refused(text: str) -> None:
     with pytest.raises(ValueError, match="must be a section of positions that is crossed in one direction"):

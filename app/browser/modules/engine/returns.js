@@ -4,8 +4,11 @@
 import {Ensemble} from "./ensemble.js"
 import {findInside} from "./pixels.js"
 
-/** Time by which all orbits are followed at once, in units of the well, which is shorter than the time between two returns. */
-const STEP = 0.5
+/**
+ * Time by which all orbits are followed at once, in units of the well. Of returns that follow each other in a shorter time, as to
+ * a section that is crossed in both directions, only the last is given.
+ */
+const STEP = 0.25
 /** Longest time, in units of the well: about a hundred periods. */
 const LONGEST_TIME = 630
 
@@ -17,6 +20,7 @@ const LONGEST_TIME = 630
  * @property {number} energy  in units of the page
  * @property {import("./starts.js").Window} window
  * @property {number} side
+ * @property {number} duration  longest time of the orbits, in units of the page
  */
 
 export class Returns {
@@ -24,16 +28,19 @@ export class Returns {
    * @param {import("./integrator.js").Integrator} integrator  keeps the arrays of the orbits in its memory
    * @param {Starts} starts
    */
-  constructor(integrator, {slice, energy, window, side}) {
+  constructor(integrator, {slice, energy, window, side, duration}) {
     const rows = Uint32Array.from({length: side}, (_, row) => row)
     const {inside} = findInside(integrator, {slice, energy, window, columns: side, rows: side}, {rows, columns: side})
-    this.#ensemble = new Ensemble(integrator, energy / integrator.system.units.energy, inside.states.values)
+    const {units} = integrator.system
+    this.#ensemble = new Ensemble(integrator, energy / units.energy, inside.states.values)
+    this.#end = Math.min(duration / units.time, LONGEST_TIME)
     this.#columns = slice.sectionColumns ?? []
     this.#units = slice.units
     this.#last = this.#columns.map(column => Float64Array.from(this.#ensemble.atSection(column)))
   }
 
   #ensemble
+  #end
   #columns
   #units
   /** Coordinates of each orbit at its last return that was taken. */
@@ -41,7 +48,7 @@ export class Returns {
 
   /** Whether all orbits have been followed to the longest time. */
   get complete() {
-    return this.#ensemble.time >= LONGEST_TIME
+    return this.#ensemble.time >= this.#end
   }
 
   /**
@@ -50,7 +57,7 @@ export class Returns {
    * @param {(orbit: number, x: number, ordinate: number) => void} take  gets the place on the slice in units of the page
    */
   continue(take) {
-    this.#ensemble.advance(this.#ensemble.time + STEP)
+    this.#ensemble.advance(Math.min(this.#ensemble.time + STEP, this.#end))
     const [xs, ordinates] = this.#columns.map(column => this.#ensemble.atSection(column))
     const [lastXs, lastOrdinates] = this.#last
     const [unitX, unitOrdinate] = this.#units

@@ -38,14 +38,17 @@ class LiveSection {
   /** @param {any} model  of the component in `app/views/analysis/live_section.py` */
   constructor(model) {
     this.#model = model
-    this.#canvas.style.cssText = "position:absolute;pointer-events:none;display:none;background:var(--ui-page)"
+    this.#canvas.style.cssText = "position:absolute;display:none;background:var(--ui-page)"
     this.#canvas.className = "live-section"
+    // The dots below, of another energy, get no clicks.
+    for (const event of ["pointerdown", "pointermove", "pointerup", "click"])
+      this.#canvas.addEventListener(event, each => each.stopPropagation())
     const ignored = [
       onPresent(() => this.#follow()),
       listen("energydragged", () => this.#follow()),
       listen("energyshown", () => this.#follow()),
     ]
-    model.on(["slice", "energy", "colours"], () => this.#follow())
+    model.on(["slice", "energy", "colours", "duration"], () => this.#follow())
     model.on("lifecycle:remove", () => {
       this.#hide()
       for (const ignore of ignored) ignore()
@@ -55,8 +58,7 @@ class LiveSection {
 
   #model
   #canvas = document.createElement("canvas")
-  #range = (/** @type {string} */ name) =>
-    new LocalWhenPresent(() => Bokeh.documents[0]?.get_model_by_name(CHART)?.[name], ["start", "end"])
+  #range = (/** @type {string} */ name) => new LocalWhenPresent(() => pictureNamed(CHART)?.view.model[name], ["start", "end"])
   #ranges = [this.#range("x_range"), this.#range("y_range")]
   /** @type {Returns | null} */
   #returns = null
@@ -75,9 +77,12 @@ class LiveSection {
   get #scene() {
     const shown = present()
     const energy = shown?.scene()?.energy
-    const isWanted = energy !== undefined && this.#model.slice && !sameEnergy(energy, this.#model.energy)
-    const chart = isWanted && pictureNamed(CHART)
-    return shown && chart ? {shown, chart, energy} : null
+    if (!shown || energy === undefined || !this.#model.slice) return null
+    // While the server's chart is being completed, what is shown stays.
+    const served = this.#model.energy
+    const isServed = served === null ? !this.#returns : sameEnergy(energy, served)
+    const chart = isServed ? undefined : pictureNamed(CHART)
+    return chart ? {shown, chart, energy} : null
   }
 
   #hide() {
@@ -94,11 +99,9 @@ class LiveSection {
     this.#frame = 0
     const scene = this.#scene
     if (!scene) return this.#hide()
+    if (this.#keyOf(scene) !== this.#shownKey) this.#begin(scene)
+    this.#shownKey = this.#keyOf(scene)
     const {colours} = this.#model
-    const style = [scene.chart.view.frame.bbox, devicePixelRatio, colours, document.documentElement.dataset.theme]
-    const key = JSON.stringify([scene.energy, scene.shown.system.key, style])
-    if (key !== this.#shownKey) this.#begin(scene)
-    this.#shownKey = key
     /** @type {[number, number][][]} */
     const places = colours.map(() => [])
     const startTime = performance.now()
@@ -109,11 +112,20 @@ class LiveSection {
     this.#follow()
   }
 
+  /** Return everything that determines the canvas of a scene, as text. @param {Scene} scene */
+  #keyOf({shown, chart, energy}) {
+    const {x_range: x, y_range: y} = chart.view.model
+    const {colours, duration} = this.#model
+    const style = [chart.view.frame.bbox, devicePixelRatio, colours, document.documentElement.dataset.theme]
+    return JSON.stringify([energy, shown.system.key, duration, x.start, x.end, y.start, y.end, style])
+  }
+
   /** Begin with the orbits of a scene, on an empty canvas. @param {Scene} scene */
   #begin({shown, chart, energy}) {
     const integrator = new Integrator(shown.system, shown.modules)
     this.#showWindow(chart, windowAt(integrator, this.#model.plane, energy))
-    this.#returns = new Returns(integrator, {slice: this.#model.slice, energy, window: this.#window, side: SIDE})
+    const {slice, duration} = this.#model
+    this.#returns = new Returns(integrator, {slice, energy, window: this.#window, side: SIDE, duration})
     const {left, top, width, height} = chart.view.frame.bbox
     // Elements of Bokeh show only what their shadow root contains.
     chart.view.canvas_view.el.shadowRoot.append(this.#canvas)

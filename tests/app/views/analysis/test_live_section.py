@@ -6,10 +6,11 @@ from dataclasses import replace
 
 import pytest
 
+from app.browser.browser_system import make_browser_system
 from app.job_clients.shown_results import ShownResults
 from app.state.view_state import ViewState
 from app.views.analysis.live_section import LiveSection
-from engine import Execution, MapSpec, Plane, compute_returns, read_section
+from engine import CASES, Execution, MapSpec, Plane, compute_returns, read_section
 
 
 @pytest.mark.parametrize(("text", "columns"), [("y = 0.1 down", [0, 2]), ("x = 0", [1, 3]), ("px = 0 both", [0, 1])])
@@ -35,6 +36,15 @@ def test_the_energy_is_that_of_a_complete_chart() -> None:
     assert live.energy == 0.15
     results.studies = {}
     assert live.energy is None
+
+
+def test_the_window_of_the_slice_is_tabulated_for_the_browser() -> None:
+    section = read_section("y = 0.1 down")
+    live = LiveSection(ViewState(section=section), ShownResults())
+    system = make_browser_system(CASES["III"], 0.3, 0.4, section, execution=Execution())
+    (x_low, x_high, *_), *_ = system.windows[live.plane]["windows"]
+    expected = MapSpec(CASES["III"], section.slice_of_starts, 0.3).find_window()
+    assert (x_low, x_high) == pytest.approx((expected.x_low, expected.x_high), rel=0.02)
 
 
 def test_the_colours_are_those_of_the_orbits() -> None:
