@@ -66,10 +66,8 @@ def store_returns(
     axis, _ = spec.plane.axis_names[::-1]
     attributes = {"result": Returns.__name__, **spec.provenance(), "returns": returns, "axis": axis, "count": rows}
     with open_store(Path(store), attributes) as storage:
-        dataset = storage.read()
-        for row in range(dataset.sizes[axis], rows):
+        for row in range(storage.read().sizes[axis], rows):
             execution.report(lambda done=row: done / rows)  # type: ignore[misc]
             storage.append(compute_row(spec, returns, row, execution).transpose(axis, ...))
-            dataset = storage.read()
         execution.report(lambda: 1.0)
-        return dataset
+        return storage.read()
