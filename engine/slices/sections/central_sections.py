@@ -118,7 +118,7 @@ class ApsisSection(Section):
     @property
     def words(self) -> CrossingWords:
         """See `Section.words`."""
-        name, place = _APSIDES[self.direction], _about(self.centre)
+        name, place = _APSIDES[self.direction], _about(self.centre).replace("-", "−")
         article, plural = ("a" if name[0] == "p" else "an"), ("apsides" if name == "apsis" else f"{name}s")
         return CrossingWords(name, plural, place, f"without {article} {name}{place}", f"{plural.capitalize()}{place}")
 

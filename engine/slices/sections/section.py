@@ -250,6 +250,8 @@ def opposite_slice(plane: Slice) -> Slice:
 
 def words_of(place: str, direction: str | None) -> CrossingWords:
     """Return the words for the crossings of a place in a direction, "upward"; None for both directions."""
+    # As in other texts, the minus sign is the typographic one.
+    place = place.replace("-", "−")
     noun = f"{direction} crossing" if direction else "crossing"
     absence = f"without crossing {place}{f' {direction}' if direction else ''}"
     return CrossingWords(noun, f"{noun}s", f" of {place}", absence, f"Crossings of {place}")

@@ -13,6 +13,8 @@ from engine.systems.catalogue.table import CATALOGUE
 WORDS = {
     "y = 0": ("upward crossings of y = 0", "1 upward crossing of y = 0", "Crossings of y = 0"),
     "x = 0.1 both": ("crossings of x = 0.1", "1 crossing of x = 0.1", "Crossings of x = 0.1"),
+    "x = -0.1 both": ("crossings of x = −0.1", "1 crossing of x = −0.1", "Crossings of x = −0.1"),
+    "apsis about (-0.5, 0)": ("apsides about (−0.5, 0)", "1 apsis about (−0.5, 0)", "Apsides about (−0.5, 0)"),
     "angle = 30°": (
         "counterclockwise crossings of the ray at 30°",
         "1 counterclockwise crossing of the ray at 30°",
