@@ -12,7 +12,8 @@ from playwright.sync_api import Locator, expect
 from app.state.help_texts import HELP_TEXTS
 from app.views.maps.picture_grid import SHORT_TITLES
 from app.views.maps.well import TITLE
-from engine import CASES
+from engine import CASES, MapSpec, Plane
+from plots.layers.table import PICTURES as PICTURE_ENTRIES
 from plots.layers.table import TITLES
 from plots.pictures.palette import PALETTES
 from tests.browser.conftest import QUICK
@@ -21,6 +22,8 @@ from tests.browser.explorer_page import ExplorerPage
 OpenExplorer = Callable[..., ExplorerPage]
 MAPS = ("basins", "times", "crossings")
 PICTURES = ("well", *MAPS)
+# The map of `QUICK`, in titles.
+SPEC = MapSpec(CASES["I"], Plane.X_PX, 0.19)
 Box = tuple[float, float, float, float]
 
 # Left, top, right and bottom of each visible figure on the screen, clipped by parts that scroll; width and height of its frame.
@@ -320,7 +323,7 @@ def help_text(explorer: ExplorerPage, name: str) -> Locator:
 def test_a_help_button_opens_its_text(explorer: ExplorerPage) -> None:
     for name in PICTURES:
         expect(help_text(explorer, name)).to_be_hidden()
-        explorer.press(f"About: {TITLE if name == 'well' else TITLES[name]}")
+        explorer.press(f"About: {TITLE if name == 'well' else PICTURE_ENTRIES[name].title_for(SPEC)}")
         expect(help_text(explorer, name)).to_be_visible()
         assert unescape(help_text(explorer, name).inner_text()) == HELP_TEXTS[name]
     # Opening one closes the others.

@@ -93,8 +93,8 @@ def test_manifolds_csv_has_full_precision(run: Run, tmp_path: Path) -> None:
         rows = list(csv.DictReader(file))
     spec = MapSpec(CASES["I"], Plane.X_PX, 0.19)
     arcs = find_stable_manifolds(CASES["I"], 0.19, images=1, window=spec.window).arcs
-    for name in ("x", "px"):
-        assert [float(row[name]) for row in rows] == np.concatenate([getattr(arc, name) for arc in arcs]).tolist()
+    for column, name in (("x", "x"), ("px", "ordinate")):
+        assert [float(row[column]) for row in rows] == np.concatenate([getattr(arc, name) for arc in arcs]).tolist()
     assert [int(row["arc"]) for row in rows] == [n for n, arc in enumerate(arcs, 1) for _ in range(arc.x.size)]
 
 

@@ -111,7 +111,7 @@ def test_all_images_of_manifolds_or_one_are_drawn_over_their_section(begin: Call
     session = begin(layers=frozenset({"manifolds"}), settings={**default_settings(), "images": 1})
     session.show(compute_map(MapSpec(CASES["II"], Plane.X_Y, 0.25, (16, 16), t_max=100.0)))
     assert session.jobs.in_flight == 0
-    assert "drawn on maps forward in time there only" in session.presenter.notes.object
+    assert "(x, y) is not such a slice" in session.presenter.notes.object
     session.show(frame)
     session.wait_for(lambda: "manifolds" in session.analyses)
     numbers = []

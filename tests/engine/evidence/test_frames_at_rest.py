@@ -14,6 +14,7 @@ from engine import (
     MapSpec,
     Plane,
     Potential,
+    Section,
     compute_flux,
     compute_map,
     compute_regularity,
@@ -45,7 +46,7 @@ WITH_RADIUS = replace(CASES["I"], escape_radius=3.0)
         find_stable_manifolds,
         find_entry_points,
         lambda potential, energy: sample_entrances(potential, energy, 10),
-        lambda potential, energy: UnstableManifold.from_orbit(find_lyapunov_orbits(potential, energy)[0]),
+        lambda potential, energy: UnstableManifold.from_orbit(find_lyapunov_orbits(potential, energy)[0], Section.Y_UP.numbers),
     ],
 )
 def test_analyses_that_need_time_reversal_refuse_rotating_frames(call: Callable[[Potential, float], Any]) -> None:

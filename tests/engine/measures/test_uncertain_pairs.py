@@ -14,9 +14,9 @@ from engine.foundations.execution import Execution, SerialExecutor
 from engine.maps.spec import MapSpec
 from engine.measures.basins.power_law_fit import UncertaintyExponent
 from engine.measures.uncertain_pairs import compute_uncertainty_exponent
-from engine.propagation.classification import classify_orbits
 from engine.slices.planes import Plane
 from engine.systems.potential import Potential
+from engine.trajectories.classified_orbits import classify_orbits
 
 # x and y are uncoupled, and an orbit escapes if the energy of its motion along y exceeds 1/4. So all boundaries are smooth.
 SEPARABLE = Potential("separable", ((2, 0, 0.5), (0, 2, 0.5), (0, 4, -0.25)))
