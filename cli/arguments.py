@@ -15,7 +15,7 @@ from typing import Annotated, Any
 import numpy as np
 import typer
 
-from cli.layer_options import LayerOptions, read_layers
+from cli.layer_options import LayerOptions, read_layers, read_study_settings
 from cli.option_marks import DocumentedBy
 from engine import MEASURES, POTENTIALS, Plane, Potential, Section, Slice, System, read_section, review_potential
 from engine.foundations.validation import checked_count
@@ -25,6 +25,7 @@ from engine.slices.window import GivenWindow
 from engine.sweeps.spec import MOST_VALUES
 from engine.systems.system import TYPED
 from plots.pictures.palette import PALETTES, Palette
+from plots.pictures.setting import Settings
 from plots.texts.accepted_potentials import page_refusal
 
 PLANE_HELP = (
@@ -248,6 +249,7 @@ READERS: Mapping[Any, Callable[..., Any]] = {
     OneEnergy: require_energy,
     Palette: find_palette,
     LayerOptions: read_layers,
+    Settings: read_study_settings,
 }
 """Functions that make values from options, by type of the value. A parameter of a function may also have a type listed here."""
 

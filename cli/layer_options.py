@@ -1,17 +1,20 @@
-"""Make options of a command from the layers of a map."""
+"""Make options of a command from the layers of a map, and from the settings of the studies."""
 
 from __future__ import annotations
 
 import inspect
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from enum import StrEnum
 from typing import Annotated, Any
 
 import typer
 
 from engine import MapSpec
-from plots.layers.layer import Layer, Setting
+from plots.layers.layer import Layer
 from plots.layers.table import LAYERS, LAYERS_BY_PICTURE
+from plots.pictures.setting import Setting, Settings
+from plots.studies.table import STUDIES
 
 
 @dataclass(frozen=True)
@@ -55,6 +58,11 @@ def read_layers(**values: Any) -> LayerOptions:
     return LayerOptions(values)
 
 
+def read_study_settings(**values: Any) -> Settings:
+    """Return the settings of the studies from the values of options."""
+    return {name: setting.choices[values[name]] for name, setting in _STUDY_SETTINGS.items()}
+
+
 def _list_options(layers: Iterable[Layer[Any]]) -> list[inspect.Parameter]:
     """Return the options of the layers and of their settings, as parameters."""
     options = []
@@ -79,5 +87,18 @@ def _setting_option(setting: Setting) -> tuple[Any, Any]:
     return Annotated[type(setting.default), typer.Option(help=setting.help)], setting.default
 
 
-# `cli.options` makes options from this signature.
+def _choice_option(setting: Setting) -> inspect.Parameter:
+    """Return the option of a setting whose value is the name of a choice."""
+    # Typer lists the members of an enumeration in the help.
+    names = StrEnum("names", list(setting.choices))  # type: ignore[misc]
+    (default,) = (name for name in names if setting.choices[name] == setting.default)
+    return _option(setting.name, Annotated[names, typer.Option(help=setting.help)], default)
+
+
+_STUDY_SETTINGS = {setting.name: setting for study in STUDIES.values() for setting in study.settings}
+
+# `cli.options` makes options from these signatures.
 read_layers.__signature__ = inspect.Signature(_list_options(LAYERS.values()))  # type: ignore[attr-defined]
+read_study_settings.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
+    [_choice_option(setting) for setting in _STUDY_SETTINGS.values()]
+)

@@ -8,8 +8,8 @@ programs of this repository, and may change with any version.
   `review_potential`
 - starts: `Plane`, `Slice`, `Coordinate`, `Direction`, `ParameterAxis`, `Window`, `Section`, `read_section`, `start_states`,
   `sample_starts`, `sample_entrances`, `sample_entrances_by_exit`
-- orbits: `integrate_orbit`, `Orbit`, `sample_orbits`, `classify_orbits`, `find_lyapunov_orbits`, `LyapunovOrbit`, `judge_orbit`,
-  `compute_separation`, `find_divergent_start`, `compute_flux`
+- orbits: `integrate_orbit`, `Orbit`, `sample_orbits`, `classify_orbits`, `find_returns`, `find_lyapunov_orbits`, `LyapunovOrbit`,
+  `judge_orbit`, `compute_separation`, `find_divergent_start`, `compute_flux`
 - maps of escapes: `MapSpec`, `compute_map`, `EscapeMap`, `Fate`, `Evidence`, `compute_returns`, `store_returns`,
   `compute_regularity`, `Regularity`, `compute_trust`, `Trust`, `compute_origin_fates`, `find_stable_manifolds`,
   `compute_lagrangian_descriptor`, `TimeDirection`
@@ -80,6 +80,7 @@ from engine.trajectories.classified_orbits import classify_orbits as classify_or
 from engine.trajectories.entrances import sample_entrances as sample_entrances
 from engine.trajectories.entrances import sample_entrances_by_exit as sample_entrances_by_exit
 from engine.trajectories.nearest_divergent_start import find_divergent_start as find_divergent_start
+from engine.trajectories.orbit_returns import find_returns as find_returns
 from engine.trajectories.orbit_verdicts import judge_orbit as judge_orbit
 from engine.trajectories.sampled_orbits import sample_orbits as sample_orbits
 from engine.trajectories.separation import compute_separation as compute_separation

@@ -22,6 +22,7 @@ from engine.sweeps.sweep import Sweep as Sweep
 from engine.systems.review.potential_review import PotentialReview as PotentialReview
 from engine.trajectories.birkhoff_digits import BirkhoffDigits as BirkhoffDigits
 from engine.trajectories.nearest_divergent_start import DivergentStart as DivergentStart
+from engine.trajectories.orbit_returns import OrbitReturns as OrbitReturns
 from engine.trajectories.orbit_verdicts import OrbitVerdict as OrbitVerdict
 from engine.trajectories.sampled_orbits import SampledOrbits as SampledOrbits
 from engine.trajectories.separation import Separation as Separation

@@ -29,6 +29,7 @@ from engine import (
     compute_wada_test,
     find_divergent_start,
     find_lyapunov_orbits,
+    find_returns,
     find_stable_manifolds,
     fit_decay_laws,
     integrate_orbit,
@@ -68,6 +69,7 @@ _MAKERS: dict[str, Callable[[], Result | None]] = {
     "Wada test": lambda: compute_wada_test(compute_map(SPEC)),
     "exponent": lambda: compute_uncertainty_exponent(SPEC, pairs=20, separations=8, work=1e6),
     "returns": lambda: compute_returns(replace(SPEC, resolution=(6, 5)), returns=4),
+    "returns of orbits": lambda: find_returns(POTENTIAL, ENERGY, sample_starts(POTENTIAL, ENERGY, 9), returns=4, section="x = 0"),
     "sweep": lambda: compute_sweep(SweepSpec(POTENTIAL, Plane.X_PX, (0.3, 0.36), (20, 20), t_max=100.0, measures="shares")),
 }
 

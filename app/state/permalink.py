@@ -23,13 +23,22 @@ from app.state.link_formats import (
 )
 from app.state.link_system import SYSTEM_FORMATS, system_of, write_system
 from app.state.system_review import PageReview
-from app.state.view import ANALYSES, FIRST_VIEW, PICTURES, View, allowed_resolutions, allowed_t_max, default_settings
+from app.state.view import (
+    ANALYSES,
+    FIRST_VIEW,
+    PICTURES,
+    SETTINGS,
+    View,
+    allowed_resolutions,
+    allowed_t_max,
+    default_settings,
+)
 from app.state.view_state import ViewState, longest_first_t_max
 from engine import Plane
 from engine.foundations.validation import LARGEST_NUMBER
 from engine.slices.slice_text import read_slice, write_slice
 from engine.systems.formulas.formula_parser import LONGEST_TEXT
-from plots.layers.table import LAYERS, LAYERS_BY_PICTURE, SETTINGS
+from plots.layers.table import LAYERS, LAYERS_BY_PICTURE
 from plots.pictures.palette import MOST_ORBITS, PALETTES
 
 LONGEST_VALUE = LONGEST_TEXT

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from enum import StrEnum
+from types import MappingProxyType
 from typing import Any
 
 from app.runtime.process_state import process_state
@@ -11,9 +13,9 @@ from app.state.watched_starts import WatchedStarts
 from engine import MapSpec, Plane, Section, Slice, System, Window
 from engine.slices.axes import Energy
 from engine.systems.review.potential_review import SystemReview
-from plots.layers.layer import Settings
+from plots.layers.table import LAYERS
 from plots.layers.table import PICTURES as PICTURE_ENTRIES
-from plots.layers.table import SETTINGS
+from plots.pictures.setting import Setting, Settings
 from plots.studies.table import STUDIES
 
 Start = tuple[float, float]
@@ -62,8 +64,17 @@ PICTURES = ("well", *(name for name in PICTURE_ENTRIES if name != "curves"))
 """Names of the pictures: the well, the maps of starts, and the comparison with another view."""
 
 
+SETTINGS: Mapping[str, Setting] = MappingProxyType(
+    {
+        **{setting.name: setting for layer in LAYERS.values() for setting in layer.settings},
+        **{setting.name: setting for study in STUDIES.values() for setting in study.settings},
+    }
+)
+"""The settings of all layers and studies, by name."""
+
+
 def default_settings() -> dict[str, Any]:
-    """Return the default of each setting of the layers."""
+    """Return the default of each setting."""
     return {name: setting.default for name, setting in SETTINGS.items()}
 
 
@@ -90,7 +101,7 @@ class View:
     layers
         Names of the layers that are on, as in `plots.layers.table.LAYERS`.
     settings
-        The values of all `plots.layers.table.SETTINGS`, by name.
+        The values of all `SETTINGS`, by name.
     section
         The surface of section at which crossings are counted.
     analysis

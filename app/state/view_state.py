@@ -15,6 +15,7 @@ from app.state.view import (
     FIRST_VIEW,
     PICTURES,
     RESOLUTION_CHOICES,
+    SETTINGS,
     T_MAX_CHOICES,
     Start,
     View,
@@ -42,7 +43,7 @@ from engine.propagation.fates import describe_fate
 from engine.systems.catalogue.entry import EnergyRange
 from engine.systems.catalogue.table import PAPER_ENERGIES
 from engine.systems.system import TYPED
-from plots.layers.table import LAYERS, SETTINGS
+from plots.layers.table import LAYERS
 from plots.pictures.palette import MOST_ORBITS, PALETTES, Palette
 from plots.pictures.time_scale import TimeScale
 from plots.studies.study import Subject

@@ -26,6 +26,7 @@ from cli.printing import AsJson, list_rows, print_result
 from engine import Potential, Result, Section, Slice, SweepSpec, System
 from engine.jobs.job import run_job
 from engine.systems.review.potential_review import review_system
+from plots.pictures.setting import NO_SETTINGS, Settings
 from plots.printed.figure_files import study_figure_bytes
 from plots.printed.figure_style import FigureFormat, FigureStyle
 from plots.studies.study import Study, Subject
@@ -48,6 +49,7 @@ def run(
     energy: GivenEnergy,
     t_max: Annotated[float, DocumentedBy(SweepSpec)],
     against: Annotated[str | None, typer.Option(help=AGAINST_HELP)] = None,
+    settings: Settings,
     style: FigureStyle,
     output: Stem = None,
     place: Annotated[Place, THREADS_ONLY],
@@ -64,7 +66,7 @@ def run(
     with reserve_output(output or stem):
         with place.run() as context:
             found = run_job(job, context.start_stage(entry.files), {})
-        files = write_files({path: study_content(entry, found, ending, style) for ending, path in paths.items()})
+        files = write_files({path: study_content(entry, found, ending, style, settings) for ending, path in paths.items()})
     _print(entry, found, files, as_json)
 
 
@@ -82,13 +84,13 @@ def _choose_axis(study: Study[Any], system: System, against: str | None) -> str:
     return against or next(iter(axes), "")
 
 
-def study_content(study: Study[Any], found: Result, ending: str, style: FigureStyle) -> Content:
+def study_content(study: Study[Any], found: Result, ending: str, style: FigureStyle, settings: Settings = NO_SETTINGS) -> Content:
     """Return the content of the output file with an ending."""
     if ending == "nc":
         return dataset_bytes(found.to_xarray())
     if ending == "csv":
         return table_csv(found)
-    return study_figure_bytes(study, found, FigureFormat(ending), style)
+    return study_figure_bytes(study, found, settings, FigureFormat(ending), style)
 
 
 def _print(study: Study[Any], found: Result, files: Sequence[str], as_json: bool) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -12,28 +12,20 @@ from engine.exits.exit_rows import exit_curves_at
 from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.result import MapResult
-from engine.foundations.validation import checked_count, checks_types
-from engine.foundations.wording import format_count, format_number
+from engine.foundations.validation import checks_types
+from engine.foundations.wording import describe_codes, format_count, format_number
 from engine.maps.spec import MapSpec, read_spec
-from engine.propagation.batch import OrbitBatch
 from engine.propagation.fates import Fate
-from engine.propagation.passages import find_passages
+from engine.propagation.followed_orbits import FollowedOrbits, checked_returns
+from engine.slices.sections.section import Section
+from engine.systems.outcomes import Outcome
 
 if TYPE_CHECKING:
     import xarray as xr
 
-MOST_RETURNS = 100_000
-"""Largest number of returns of an orbit."""
-
-# Largest number of returns of all orbits, which take 5 numbers each.
-_MOST_POINTS = 5_000_000
-# Number of parts of the starts. Progress is reported, and the computation can be cancelled, after each part.
-_PARTS = 16
-# Numbers of a return: x, y, px, py and the time.
-_COLUMNS = 5
 # Names of the variables in files, in the order of the columns of `Returns.states`, and of the times.
 _VARIABLES = {"return_x": "x", "return_y": "y", "return_px": "px", "return_py": "py"}
-_TIME_VARIABLE = "return_time"
+_TIME_VARIABLE, _FATE_VARIABLE = "return_time", "fate"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -49,6 +41,9 @@ class Returns(MapResult):
         before, for starts that are forbidden or outside, and for orbits that are not followed yet. Read-only.
     time
         (returns, rows, columns) time of each crossing, in the units of the potential; NaN as for `states`. Read-only.
+    fate
+        (rows, columns) int8 codes of how the orbit of each start ended, as in maps; `Fate.NOT_COMPUTED` for an orbit with all
+        returns, which was followed to the last one only. Read-only.
     complete
         Whether the orbits of all starts were followed.
     """
@@ -56,7 +51,9 @@ class Returns(MapResult):
     spec: MapSpec
     states: np.ndarray
     time: np.ndarray
+    fate: np.ndarray
     complete: bool = True
+    codes: ClassVar = {"fate": Fate}
     held_as: ClassVar[dict[str, str]] = {"spec": "terms", "states": "return_x", "time": _TIME_VARIABLE}
 
     @property
@@ -66,9 +63,27 @@ class Returns(MapResult):
 
     def points(self) -> list[np.ndarray]:
         """Return the returns of each orbit that returns, (n, 2), in the order of the pixels and of time, see `Section.axes`."""
-        points = self.spec.section.axes.points(self.states).reshape(len(self.states), -1, 2)
-        counts = self.count.ravel()
-        return [points[: counts[k], k] for k in np.flatnonzero(counts)]
+        return self.spec.section.axes.points_of_orbits(self.states.reshape(len(self.states), -1, 4))
+
+    @property
+    def fates_of_points(self) -> np.ndarray:
+        """The fate of each orbit that returns, in the order of `points`."""
+        return self.fate[self.count > 0]
+
+    @property
+    def outcomes(self) -> tuple[Outcome, ...]:
+        """The outcomes with the fates 1, 2, …"""
+        return self.spec.outcomes
+
+    @property
+    def section(self) -> Section:
+        """The surface of section."""
+        return self.spec.section
+
+    @property
+    def fate_labels(self) -> Sequence[str]:
+        """Labels of the fates 1, 2, …"""
+        return [outcome.label for outcome in self.outcomes]
 
     def describe(self) -> str:
         """Return the numbers of crossings and of orbits in one sentence."""
@@ -95,7 +110,8 @@ class Returns(MapResult):
     def to_xarray(self) -> xr.Dataset:
         """Return the states and times as a dataset with the dimensions "return" and the axes of the map."""
         attributes = {"result": type(self).__name__, **self.spec.provenance(), "complete": int(self.complete)}
-        return _write_dataset(self.spec, self.spec.pixel_centres()[1], self.states, self.time).assign_attrs(attributes)
+        ordinate = self.spec.pixel_centres()[1]
+        return _write_dataset(self.spec, ordinate, self.states, self.time, self.fate).assign_attrs(attributes)
 
     @classmethod
     def read_parts(cls, dataset: xr.Dataset) -> dict[str, Any]:
@@ -103,15 +119,17 @@ class Returns(MapResult):
         spec = read_spec(dataset)
         (_, ordinate), names = spec.pixel_centres(), spec.plane.axis_names[::-1]
         is_whole = dataset.sizes[names[0]] == ordinate.size
-        whole = dataset if is_whole else dataset.reindex({names[0]: ordinate})
+        absent = {_FATE_VARIABLE: Fate.NOT_COMPUTED.value}
+        whole = dataset if is_whole else dataset.reindex({names[0]: ordinate}, fill_value=absent)
         arrays = {name: whole[name].transpose("return", *names).values for name in (*_VARIABLES, _TIME_VARIABLE)}
         states = np.stack([arrays[name] for name in _VARIABLES], axis=-1)
-        parts = {"states": read_only(states), "time": read_only(arrays[_TIME_VARIABLE])}
+        fate = whole[_FATE_VARIABLE].transpose(*names).values.astype(np.int8)
+        parts = {"states": read_only(states), "time": read_only(arrays[_TIME_VARIABLE]), "fate": read_only(fate)}
         return parts if "complete" in dataset.attrs else parts | {"complete": is_whole}
 
 
-def _write_dataset(spec: MapSpec, ordinate: np.ndarray, states: np.ndarray, time: np.ndarray) -> xr.Dataset:
-    """Return states (returns, rows, columns, 4) and times of the rows at some ordinates as a dataset without attributes."""
+def _write_dataset(spec: MapSpec, ordinate: np.ndarray, states: np.ndarray, time: np.ndarray, fate: np.ndarray) -> xr.Dataset:
+    """Return states (returns, rows, columns, 4), times and fates of rows, given by their ordinates, without attributes."""
     # The import is slow and seldom needed.
     import xarray as xr
 
@@ -123,7 +141,8 @@ def _write_dataset(spec: MapSpec, ordinate: np.ndarray, states: np.ndarray, time
         name: (names, values, {"units": "1", "long_name": f"{_VARIABLES.get(name, 'time')} at the return"})
         for name, values in arrays.items()
     }
-    return xr.Dataset(variables, coordinates)
+    meanings = describe_codes(Fate, [outcome.label for outcome in spec.outcomes])
+    return xr.Dataset({_FATE_VARIABLE: (names[1:], fate, meanings), **variables}, coordinates)
 
 
 @shows_progress("returns")
@@ -171,11 +190,11 @@ def compute_returns(
     columns, rows = spec.resolution
     check_request(spec, returns, columns * rows)
     run = _ReturnsRun(spec, returns, np.arange(rows))
-    for part in np.array_split(run.inside(execution), _PARTS):
+    for part in run.orbits.parts(execution):
         if execution.is_cancelled:
             break
-        run.follow(part, execution)
-        execution.report(run.share_done)
+        run.orbits.follow(part, execution)
+        execution.report(run.orbits.share_done)
         if on_frame is not None and part.size:
             on_frame(run.frame())
     return run.frame()
@@ -185,7 +204,7 @@ def check_request(spec: MapSpec, returns: int, starts: int) -> None:
     """Raise a ValueError for a request of `compute_returns` with this number of starts at a time, if it is not legal."""
     if spec.plane.parameter is not None:
         raise ValueError(f"spec: its plane {spec.plane.title} has a parameter as axis; must be a slice of one potential")
-    checked_count("returns", returns, 1, min(MOST_RETURNS, _MOST_POINTS // starts))
+    checked_returns(returns, starts)
 
 
 def compute_row(spec: MapSpec, returns: int, row: int, execution: Execution) -> xr.Dataset:
@@ -197,62 +216,36 @@ def compute_row(spec: MapSpec, returns: int, row: int, execution: Execution) -> 
         If cancelled.
     """
     run = _ReturnsRun(spec, returns, np.array([row]))
-    run.follow(run.inside(execution), execution)
+    run.orbits.follow(np.concatenate(run.orbits.parts(execution)), execution)
     execution.raise_if_cancelled()
     return run.dataset()
 
 
 class _ReturnsRun:
-    """Follows the orbits of some rows of a map in units of the well."""
+    """The orbits of some rows of a map."""
 
     def __init__(self, spec: MapSpec, returns: int, rows: np.ndarray) -> None:
-        self._spec, self._well_spec = spec, spec.in_well_units()
-        self._rows = rows
-        x_axis, ordinate_axis = self._well_spec.pixel_centres()
+        self._spec, self._rows = spec, rows
+        well_spec = spec.in_well_units()
+        x_axis, ordinate_axis = well_spec.pixel_centres()
         x, ordinate = (grid.ravel() for grid in np.meshgrid(x_axis, ordinate_axis[rows]))
-        energies, self._curve_row = np.unique(self._well_spec.energies(x, ordinate), return_inverse=True)
-        self._curves = exit_curves_at(self._well_spec.potential, energies)
-        self._starts = self._well_spec.start_states(x, ordinate)
-        self._found = np.full((x.size, returns, _COLUMNS), np.nan)
-        # Number of pixels whose orbits have not been followed yet; unknown until `inside` is called.
-        self._pending = len(self._found)
-
-    def inside(self, execution: Execution) -> np.ndarray:
-        """Return the numbers of the pixels whose starts are inside all exits."""
-        batch = OrbitBatch.from_starts(self._starts, self._curve_row)
-        allowed = np.flatnonzero(batch.fate == Fate.NOT_COMPUTED)
-        tested = batch.mark_outside(self._well_spec.potential, allowed, self._curves, execution=execution)
-        pixels = tested[batch.fate[tested] == Fate.NOT_COMPUTED]
-        # A cancelled test leaves pixels of which it is not known whether they are inside.
-        self._pending = pixels.size + allowed.size - tested.size
-        return pixels
-
-    def follow(self, pixels: np.ndarray, execution: Execution) -> None:
-        """Find the returns of the orbits of some pixels."""
-        spec = self._well_spec
-        found = find_passages(
-            spec.potential, self._starts[pixels], self._curve_row[pixels], self._curves, self._found.shape[1], spec.t_max,
-            spec.section.numbers, execution=execution,
+        energies, curve_row = np.unique(well_spec.energies(x, ordinate), return_inverse=True)
+        self.orbits = FollowedOrbits(
+            well_spec.potential, well_spec.start_states(x, ordinate), curve_row,
+            exit_curves_at(well_spec.potential, energies), returns, well_spec.t_max, well_spec.section.numbers,
         )  # fmt: skip
-        if not execution.is_cancelled:
-            self._found[pixels] = found
-            self._pending -= pixels.size
-
-    def share_done(self) -> float:
-        """Return the share of the pixels whose orbits have been followed."""
-        return 1.0 - self._pending / max(len(self._found), 1)
 
     def frame(self) -> Returns:
         """Return the returns so far of all rows, in the units of the potential."""
-        states, time = self._arrays()
-        return Returns(self._spec, read_only(states), read_only(time), complete=self._pending == 0)
+        states, time, fate = map(read_only, self._arrays())
+        return Returns(self._spec, states, time, fate, complete=self.orbits.complete)
 
     def dataset(self) -> xr.Dataset:
         """Return the returns of the rows as a dataset without attributes, in the units of the potential."""
         return _write_dataset(self._spec, self._spec.pixel_centres()[1][self._rows], *self._arrays())
 
-    def _arrays(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return the states, (returns, rows, columns, 4), and times so far, in the units of the potential."""
-        units = self._spec.potential.units
-        by_return = self._found.transpose(1, 0, 2).reshape(-1, self._rows.size, self._spec.resolution[0], _COLUMNS)
-        return self._spec.section.settle(by_return[..., :4] * units.state), by_return[..., 4] * units.time
+    def _arrays(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return the states, (returns, rows, columns, 4), times and fates so far, in the units of the potential."""
+        shape = (self._rows.size, self._spec.resolution[0])
+        states, time = self._spec.section.restore_returns(self.orbits.points, self._spec.potential.units)
+        return states.reshape(-1, *shape, 4), time.reshape(-1, *shape), self.orbits.fate.reshape(shape).copy()

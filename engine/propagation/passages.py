@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from engine.exits.exit_shapes import exit_gates
@@ -10,13 +12,31 @@ from engine.integrator.kernels.dense_output import without_exits
 from engine.integrator.kernels.propagate import VECTOR, Exits
 from engine.integrator.source.recurrence import TOLERANCE
 from engine.integrator.source.section_numbers import SectionForm, SectionNumbers
-from engine.propagation.tiles import map_tiles
+from engine.propagation.fates import Fate
+from engine.propagation.tiles import run_tiles
 from engine.systems.potential import Potential
 
 # Columns of a passage that the kernel writes.
 _X, _PX, _TIME, _PY, _Y = range(5)
 # The order of these columns in results.
 _ORDER = [_X, _Y, _PX, _PY, _TIME]
+
+
+class Passages(NamedTuple):
+    """Passages of n orbits through a section, and how the orbits ended.
+
+    Attributes
+    ----------
+    points
+        (n, count, 5) x, y, px, py and the time of each crossing; NaN for missing crossings, and for orbits that were not followed
+        because of a cancellation.
+    fate
+        (n,) int8 `Fate` or number of the outcome at which the orbit ended. `Fate.NOT_COMPUTED` for orbits that have all
+        crossings, because they were followed to the last one only, and for those that were not followed.
+    """
+
+    points: np.ndarray
+    fate: np.ndarray
 
 
 def find_passages(
@@ -30,7 +50,7 @@ def find_passages(
     *,
     execution: Execution = DEFAULT_EXECUTION,
     tiles_per_task: int = 1,
-) -> np.ndarray:
+) -> Passages:
     """Find the first crossings of a section by orbits before they end, not counting the starts.
 
     All quantities are in units of the well.
@@ -55,18 +75,18 @@ def find_passages(
         How the computation runs.
     tiles_per_task
         See `map_tiles`.
-
-    Returns
-    -------
-    (n, count, 5) x, y, px, py and the time of each crossing; NaN for missing crossings, and for orbits that were not followed
-    because of a cancellation.
     """
     orbits = np.column_stack([states, curve_row])
-    passages = map_tiles(
+    points = np.full((len(states), count, len(_ORDER)), np.nan)
+    fate = np.full(len(states), Fate.NOT_COMPUTED, np.int8)
+    tiles = run_tiles(
         _find_passages_of_tile, potential, orbits, count, curves, exit_gates(curves, section), duration, section.form,
-        shape=(count, len(_ORDER)), execution=execution, tiles_per_task=tiles_per_task,
+        execution=execution, tiles_per_task=tiles_per_task,
     )  # fmt: skip
-    return passages[..., _ORDER]
+    for begin, lanes in tiles:
+        end = begin + len(lanes)
+        points[begin:end], fate[begin:end] = lanes["points"][..., _ORDER], lanes["fate"]
+    return Passages(points, fate)
 
 
 def find_passages_of_orbit(
@@ -95,10 +115,11 @@ def find_passages_of_orbit(
     lanes = np.full((len(start), VECTOR), np.nan)
     lanes[:, 0] = start
     passages, counts = np.full((1, count, len(_ORDER)), np.nan), np.zeros(VECTOR, np.int64)
+    fates = np.zeros(VECTOR, np.int8)
     exits = without_exits(len(potential.outcomes), VECTOR, section)
     with np.errstate(invalid="ignore"):
         kernels = potential.well.kernels_of(section.form)
-        kernels.find_section_passages(TOLERANCE, duration, exits, lanes, passages, counts)
+        kernels.find_section_passages(TOLERANCE, duration, exits, lanes, passages, counts, fates)
     return passages[0, : counts[0], _ORDER].T
 
 
@@ -111,12 +132,19 @@ def _find_passages_of_tile(
     duration: float,
     section: SectionForm | None,
 ) -> np.ndarray:
-    """Return the passages of the orbits in a tile (5, lanes), of shape (lanes, count, columns); called in a worker."""
-    passages = np.full((tile.shape[1], count, len(_ORDER)), np.nan)
-    counts = np.zeros(tile.shape[1], np.int64)
+    """Return `points`, with columns in the order of the kernel, and `fate` of the orbits in a tile (5, lanes).
+
+    Called in a worker. The result is a structured array, with an element for each lane.
+    """
+    lanes = tile.shape[1]
+    passages, counts = np.full((lanes, count, len(_ORDER)), np.nan), np.zeros(lanes, np.int64)
+    fates = np.full(lanes, Fate.NOT_COMPUTED, np.int8)
     exits = Exits(gates, curves, tile[4].astype(np.int64))
     kernels = potential.well.kernels_of(section)
     # The kernel writes the passages of each orbit and their number.
     with np.errstate(invalid="ignore"):
-        kernels.find_section_passages(TOLERANCE, duration, exits, tile[:4].copy(), passages, counts)
-    return passages
+        kernels.find_section_passages(TOLERANCE, duration, exits, tile[:4].copy(), passages, counts, fates)
+    fates[counts == count] = Fate.NOT_COMPUTED
+    result = np.empty(lanes, [("points", float, passages.shape[1:]), ("fate", np.int8)])
+    result["points"], result["fate"] = passages, fates
+    return result

@@ -64,7 +64,7 @@ def classify_orbits(
     >>> outcomes.fate.tolist(), outcomes.escape_time.round(2).tolist()
     ([1, 1, 1], [45.7, 2.03, 1.82])
     """
-    states = _checked_states(potential, energy, states)
+    states = checked_states_of_energy(potential, energy, states)
     t_max = potential.checked_t_max(t_max)
     units, section = potential.units, checked_section(section)
     outcomes = classify_in_well_units(
@@ -75,7 +75,7 @@ def classify_orbits(
     return replace(units.restore(outcomes), t_max=t_max, outcomes=potential.outcomes_at(energy), made_by=made_by)
 
 
-def _checked_states(potential: Potential, energy: float, states: Any) -> np.ndarray:
+def checked_states_of_energy(potential: Potential, energy: float, states: Any) -> np.ndarray:
     """Return the states as an array; ValueError unless all have the energy to within `ENERGY_TOLERANCE`."""
     energy = checked_number("energy", energy)
     array = checked_states("states", states)

@@ -145,7 +145,7 @@ class UnstableManifold:
         # The second term is the time in which the smallest displacement would grow to 1.
         duration = count * _MAX_PERIODS_PER_PASSAGE * self.orbit.period - growth_time * math.log(self.min_displacement)
         starts = self.start_states(displacements)
-        passages = find_passages(
+        passages, _ = find_passages(
             self.potential, starts, np.zeros(len(starts), np.int64), curves[None], count, duration, self.section,
             execution=execution, tiles_per_task=_TILES_PER_TASK,
         )  # fmt: skip

@@ -9,9 +9,10 @@ from engine.jobs.job import Job
 from engine.maps.analyses.descriptors import DEFAULT_DURATION, checked_choices
 from engine.maps.map_jobs import map_job
 from engine.results import DescriptorMap
-from plots.layers.layer import Layer, Pixels, Setting, Settings
+from plots.layers.layer import Layer, Pixels
 from plots.layers.picture import Legend, Picture, ShownMap
 from plots.layers.value_scale import ValueScale
+from plots.pictures.setting import Setting, Settings
 
 DURATION = Setting(
     name="descriptor_time",

@@ -18,9 +18,7 @@ from engine import EscapeMap, MapSpec, Result
 from engine.jobs.job import Job
 from plots.layers.picture import Picture
 from plots.pictures.palette import PALETTES, Entry, Palette
-
-Settings = Mapping[str, Any]
-"""Values of the settings of layers, by name. Missing settings have their defaults."""
+from plots.pictures.setting import Setting, Settings
 
 Analyses = Mapping[str, Any]
 """Complete results of layers, by name. Layers that were not requested or are not finished are missing."""
@@ -60,38 +58,6 @@ class Code:
 def occurring_entries(codes: Sequence[Code], values: np.ndarray, palette: Palette) -> list[Entry]:
     """Return the legend entries of the codes that occur among `values`, an array of any shape."""
     return [code.entry(palette) for code in codes if np.any(values == code.code)]
-
-
-@dataclass(frozen=True)
-class Setting:
-    """A setting of how a layer is computed or drawn.
-
-    Attributes
-    ----------
-    name
-        Name in links and on the command line.
-    title
-        Label of the setting on the page, for screen readers.
-    word
-        Text before the first choice.
-    choices
-        Values, by their names in links.
-    default
-        Default value, one of `choices`.
-    help
-        Help of the option on the command line; empty for a setting of the page only.
-    """
-
-    name: str
-    title: str
-    word: str
-    choices: Mapping[str, Any]
-    default: Any
-    help: str = ""
-
-    def value_in(self, settings: Settings) -> Any:
-        """Return the value of this setting among those of all settings."""
-        return settings.get(self.name, self.default)
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,9 @@ from engine import MapSpec, find_stable_manifolds
 from engine.jobs.job import Job
 from engine.results import StableManifolds
 from engine.trajectories.stable_manifolds import MOST_IMAGES, ManifoldArc, section_of_starts
-from plots.layers.layer import Count, Layer, Over, Setting, Settings, Stroke
+from plots.layers.layer import Count, Layer, Over, Stroke
 from plots.pictures.palette import Entry, Mark, Palette
+from plots.pictures.setting import Setting, Settings
 
 # Number of images that the page computes. Later images are closer together than a pixel.
 _IMAGES = 3

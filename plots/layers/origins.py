@@ -12,10 +12,11 @@ from engine.jobs.job import Job
 from engine.maps.map_jobs import map_job
 from engine.maps.origin_fates import join_origin_fates
 from engine.results import OriginFateMap
-from plots.layers.layer import Layer, Pixels, Settings
+from plots.layers.layer import Layer, Pixels
 from plots.layers.picture import ColourTable, Legend, Picture, ShownMap
 from plots.pictures.image_columns import FIRST_CLASS, at_places, end_numbers, pixel_codes
 from plots.pictures.palette import PAPER, Entry, Palette, end_places, mixed, short_label
+from plots.pictures.setting import Settings
 
 # For each origin from 1 to 13, the share of white (if positive) or black (if negative) mixed into the colour of the exit.
 _TONES = (0.6, 0.0, -0.4, -0.65, 0.35, -0.2, 0.78, -0.8, 0.48, -0.52, 0.2, -0.3, 0.7)

@@ -10,10 +10,11 @@ from engine import EscapeMap, Evidence, Fate, MapSpec, Regularity, compute_regul
 from engine.jobs.job import Job
 from engine.maps.map_jobs import map_job
 from engine.results import RegularityMap
-from plots.layers.layer import Code, Layer, Pixels, Settings, occurring_entries
+from plots.layers.layer import Code, Layer, Pixels, occurring_entries
 from plots.layers.picture import Legend, Picture, ShownMap
 from plots.pictures.image_columns import FIRST_CLASS, pixel_codes
 from plots.pictures.palette import COLOUR_BLIND_SAFE, PAPER, Entry, Palette
+from plots.pictures.setting import Settings
 
 # Each code has a colour as in the paper, and a colour-blind safe colour.
 CODES = (

@@ -9,7 +9,7 @@ from typing import Any
 
 from plots.layers.descriptors import DESCRIPTORS
 from plots.layers.escapes import BASINS, COMPARED, CROSSINGS, CURVES, DIFFERENCES, TIMES
-from plots.layers.layer import Layer, Setting
+from plots.layers.layer import Layer
 from plots.layers.manifolds import MANIFOLDS
 from plots.layers.origins import ORIGINS
 from plots.layers.picture import Legend, Picture, ShownMap
@@ -18,15 +18,12 @@ from plots.layers.trust import TRUST
 from plots.pictures.palette import Entry
 
 
-def _by_name[Named: (Layer[Any], Picture, Setting)](*entries: Named) -> Mapping[str, Named]:
+def _by_name[Named: (Layer[Any], Picture)](*entries: Named) -> Mapping[str, Named]:
     return MappingProxyType({entry.name: entry for entry in entries})
 
 
 LAYERS: Mapping[str, Layer[Any]] = _by_name(REGULARITY, TRUST, MANIFOLDS, ORIGINS, DESCRIPTORS)
 """The layers by name, in the order of their switches."""
-
-SETTINGS = _by_name(*(setting for layer in LAYERS.values() for setting in layer.settings))
-"""The settings of all layers."""
 
 LAYERS_BY_PICTURE = MappingProxyType({layer.picture.name: layer for layer in LAYERS.values() if layer.picture is not None})
 """The layers that have a picture, by the name of the picture."""

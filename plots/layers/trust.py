@@ -8,8 +8,9 @@ from engine import EscapeMap, MapSpec, Trust, compute_trust
 from engine.jobs.job import Job
 from engine.maps.map_jobs import map_job
 from engine.results import TrustMap
-from plots.layers.layer import Code, Layer, Over, Pixels, Settings, occurring_entries
+from plots.layers.layer import Code, Layer, Over, Pixels, occurring_entries
 from plots.pictures.palette import CLEAR, Entry, Mark, Palette
+from plots.pictures.setting import Settings
 
 TONES = ("#000000", "#ffffff")
 """Two colours of doubtful pixels. They alternate as on a chessboard, and at least one is visible on any colour."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -11,22 +10,12 @@ import numpy as np
 from engine import EscapeMap, Fate
 from plots.layers.picture import ColourScale, Legend, ShownMap
 from plots.pictures.image_columns import FIRST_CLASS, pixel_codes
-from plots.pictures.palette import Entry, Palette
+from plots.pictures.palette import Entry, Palette, value_colours
 
 # Number of classes of equal width. Their codes and the codes of other pixels fit into uint8.
 _CLASSES = 240
 # Share of the values below the scale, and equal share above the scale. They are drawn in the colours of its ends.
 _CLIPPED_SHARE = 0.01
-
-
-@functools.cache
-def _scale_colours() -> tuple[str, ...]:
-    # Matplotlib is slow to import, and only pictures need it.
-    from matplotlib import colormaps
-    from matplotlib.colors import to_hex
-
-    scale = colormaps["viridis"].resampled(_CLASSES)
-    return tuple(to_hex(scale(k)) for k in range(_CLASSES))
 
 
 @dataclass(frozen=True)
@@ -48,7 +37,7 @@ class ValueScale[Found]:
 
     def colours(self, palette: Palette) -> list[str]:
         """Return the colours of the codes."""
-        return [*palette.outcome_colours, *_scale_colours()]
+        return [*palette.outcome_colours, *value_colours(_CLASSES)]
 
     def limits(self, result: Found) -> tuple[float, float]:
         """Return the ends of the scale. Few pixels have values beyond the ends."""
@@ -78,4 +67,4 @@ class ValueScale[Found]:
         fates_without_orbit = {Fate.FORBIDDEN, Fate.OUTSIDE}
         others: list[Entry] = [entry for fate, entry in shown.outcome_entries().items() if fate in fates_without_orbit]
         low, high = (float(f"{end:.3g}") for end in self.limits(result))
-        return Legend(others=others, scale=ColourScale(low, high, _scale_colours(), is_logarithmic=False))
+        return Legend(others=others, scale=ColourScale(low, high, value_colours(_CLASSES), is_logarithmic=False))

@@ -10,7 +10,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
-from functools import cached_property
+from functools import cache, cached_property
 from itertools import accumulate
 
 import numpy as np
@@ -181,6 +181,17 @@ class Palette:
 def short_label(label: str) -> str:
     """Return the short form of a label: the number of an exit, the kind of a bounded orbit, or what stands before a remark."""
     return _OMITTED.sub("", label)
+
+
+@cache
+def value_colours(count: int) -> tuple[str, ...]:
+    """Return colours of a scale of continuous values, from low to high; they differ for colour-blind readers as well."""
+    # Matplotlib is slow to import, and only pictures need it.
+    from matplotlib import colormaps
+    from matplotlib.colors import to_hex
+
+    scale = colormaps["viridis"].resampled(count)
+    return tuple(to_hex(scale(k)) for k in range(count))
 
 
 def rgba(colours: Sequence[str]) -> np.ndarray:

@@ -15,6 +15,7 @@ from engine import Result
 from engine.results import EscapeStatistics
 from plots.pictures.charts import Chart, Series, Shape
 from plots.pictures.palette import PAPER, THRESHOLD
+from plots.pictures.setting import Settings
 from plots.printed.figure_axes import Corner, add_panel_legend, new_figure, set_title, style_axes
 from plots.printed.figure_style import SCREEN, FigureStyle
 from plots.studies.escape_charts import probabilities_chart, times_chart
@@ -32,7 +33,7 @@ _MARKERS = {Shape.POINTS: "o", Shape.JOINED_POINTS: "o", Shape.DOTS: "o"}
 _POINT, _DOT = 2.5, 0.9
 
 
-def draw_study_figure(study: Study[Any], found: Result, style: FigureStyle) -> Figure:
+def draw_study_figure(study: Study[Any], found: Result, style: FigureStyle, settings: Settings) -> Figure:
     """Draw the charts of a study, with error bars, under the caption of the result.
 
     Raises
@@ -40,7 +41,7 @@ def draw_study_figure(study: Study[Any], found: Result, style: FigureStyle) -> F
     ValueError
         If there is nothing to draw yet.
     """
-    charts = study.charts(found, PAPER)
+    charts = study.charts(found, PAPER, settings)
     if not charts:
         raise ValueError(f"{study.files}: there must be at least one point")
     columns = min(style.columns(2), len(charts))

@@ -9,6 +9,7 @@ from engine import EscapeMap, Potential, Result, Window, compute_statistics
 from plots.layers.layer import NO_ANALYSES, Analyses
 from plots.pictures.orbit_curves import OrbitCurves, initial_state
 from plots.pictures.palette import Palette
+from plots.pictures.setting import Settings
 from plots.pictures.time_scale import TimeScale
 from plots.printed.figure_style import FigureFormat, FigureStyle
 from plots.studies.study import Study
@@ -119,7 +120,7 @@ def statistics_figure_bytes(frame: EscapeMap, box: Window | None, format: Figure
     return _figure_bytes(lambda: draw_statistics_figure(statistics, style), format, facts)
 
 
-def study_figure_bytes(study: Study[Any], found: Result, format: FigureFormat, style: FigureStyle) -> bytes:
+def study_figure_bytes(study: Study[Any], found: Result, settings: Settings, format: FigureFormat, style: FigureStyle) -> bytes:
     """Return the content of a file with the figure of `plots.printed.curve_figures.draw_study_figure`.
 
     The metadata contain the attributes of the result's dataset.
@@ -127,7 +128,7 @@ def study_figure_bytes(study: Study[Any], found: Result, format: FigureFormat, s
     from plots.printed.curve_figures import draw_study_figure
 
     facts = {str(name): value for name, value in found.to_xarray().attrs.items()}
-    return _figure_bytes(lambda: draw_study_figure(study, found, style), format, facts)
+    return _figure_bytes(lambda: draw_study_figure(study, found, style, settings), format, facts)
 
 
 def _figure_bytes(draw: Callable[[], Figure], format: FigureFormat, facts: Mapping[str, object]) -> bytes:

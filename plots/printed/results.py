@@ -17,7 +17,16 @@ from matplotlib.figure import Figure
 from engine import EscapeMap, LyapunovOrbit, Orbit, Potential, Result, Window
 from engine.foundations.extras import require_package
 from engine.maps.pixels import PixelAnalysis
-from engine.results import DecayLaws, EscapeStatistics, PotentialReview, Returns, SampledOrbits, Sweep, UncertaintyExponent
+from engine.results import (
+    DecayLaws,
+    EscapeStatistics,
+    OrbitReturns,
+    PotentialReview,
+    Returns,
+    SampledOrbits,
+    Sweep,
+    UncertaintyExponent,
+)
 from engine.slices.default_window import default_window
 from engine.slices.planes import SPACE
 from plots.layers.layer import Layer
@@ -123,7 +132,7 @@ def _find_charts(result: Result, palette: Palette) -> list[Chart]:
             return [times_chart(result), probabilities_chart(result)]
         case UncertaintyExponent():
             return [pairs_chart(result)]
-        case Returns():
+        case Returns() | OrbitReturns():
             return section_charts(result, palette)
     return []
 

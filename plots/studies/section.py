@@ -6,11 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from engine import MapSpec, Section, compute_returns
+from engine import Fate, MapSpec, Section, compute_returns
 from engine.jobs.job import Job
-from engine.results import Returns
-from plots.pictures.charts import Chart, Frame, Series, Shape
-from plots.pictures.palette import Palette
+from engine.results import OrbitReturns, Returns
+from plots.pictures.charts import Chart, Frame, Limits, Series, Shape
+from plots.pictures.palette import Palette, value_colours
+from plots.pictures.setting import NO_SETTINGS, Setting, Settings
 from plots.studies.study import Changes, Study, Subject
 
 RETURNS = 100
@@ -23,13 +24,30 @@ FRAME = Frame(
     "section",
     "Surface of section",
     Section.Y_UP.axes.symbols,
-    "Where many orbits of this energy cross the surface of section, up to their exits, each in one of a few colours. A regular "
-    "orbit stays on a curve: nested curves are an island, and chains of small islands are resonances. A chaotic orbit fills an "
-    'area, or leaves a few points and escapes. Controls, "Axes …", chooses the section.',
+    "Where many orbits of this energy cross the surface of section, up to their exits. Their colours tell the orbits apart, or "
+    "show how the orbits end, or how close together the points are. A regular orbit stays on a curve: nested curves are an "
+    "island, and chains of small islands are resonances. A chaotic orbit fills an area, or leaves a few points and escapes. "
+    'Controls, "Axes …", chooses the section.',
     "Click to follow the orbit from (@x{number}, @y{number})",
     described=Shape.DOTS,
     is_square=True,
 )
+
+
+COLOURS = Setting(
+    name="section_colours",
+    title="Colours of the section",
+    word="Colours:",
+    choices={"orbits": "orbits", "fates": "fates", "density": "density"},
+    default="orbits",
+    help="Colours of the points of a section.",
+)
+"""What the colour of a point says: which orbit it belongs to, how its orbit ends, or how many points are near it."""
+
+# Lower ends of the classes of the number of points in a cell.
+_DENSITIES = (1, 2, 4, 8, 16, 32)
+# Cells along each side of the chart, in which points are counted.
+_CELLS = 80
 
 
 def _job(subject: Subject, axis: str) -> Job[Returns]:
@@ -38,18 +56,61 @@ def _job(subject: Subject, axis: str) -> Job[Returns]:
     return Job(compute_returns, (spec,), (("returns", RETURNS),))
 
 
-def section_charts(found: Returns, palette: Palette) -> list[Chart]:
+def section_charts(found: Returns | OrbitReturns, palette: Palette, settings: Settings = NO_SETTINGS) -> list[Chart]:
     """Return the chart of the points of the orbits, in the window of starts on the section; empty without points."""
+    if not found.count.any():
+        return []
+    text = FRAME.text if found.section.plane is not None else ""
+    frame = replace(FRAME, labels=found.section.axes.symbols, text=text)
+    limits: tuple[Limits | None, Limits | None] = (None, None)
+    if isinstance(found, Returns) and found.section.is_drawn_on(found.spec.plane):
+        limits = found.spec.find_window().ranges
+    return [Chart(frame, _COLOURED[COLOURS.value_in(settings)](found, palette), limits)]
+
+
+def _dots(points: np.ndarray, colour: str, label: str = "") -> Series:
+    return Series(label, colour, points[:, 0], points[:, 1], Shape.DOTS)
+
+
+def _by_orbit(found: Returns | OrbitReturns, palette: Palette) -> list[Series]:
     colours = palette.orbits
-    series = [
-        Series("", colours[number % len(colours)], points[:, 0], points[:, 1], Shape.DOTS)
-        for number, points in enumerate(found.points())
-    ]
-    spec = found.spec
-    text = FRAME.text if spec.section.plane is not None else ""
-    frame = replace(FRAME, labels=spec.section.axes.symbols, text=text)
-    limits = spec.find_window().ranges if spec.section.is_drawn_on(spec.plane) else (None, None)
-    return [Chart(frame, series, limits)] if series else []
+    return [_dots(points, colours[number % len(colours)]) for number, points in enumerate(found.points())]
+
+
+def _by_fate(found: Returns | OrbitReturns, palette: Palette) -> list[Series]:
+    """Return the points of the orbits that stay, behind those of the orbits that end at each outcome."""
+    fates = found.fates_of_points
+    # An orbit with all returns has not ended.
+    fates = np.where(fates == Fate.NOT_COMPUTED, Fate.BOUNDED, fates)
+    series = []
+    for fate in np.unique(fates):
+        entry = palette.entry(int(fate), found.outcomes)
+        label = "not escaped" if fate == Fate.BOUNDED else entry.label
+        points = np.concatenate([each for each, own in zip(found.points(), fates, strict=True) if own == fate])
+        series.append(_dots(points, entry.colour, label))
+    return series
+
+
+def _by_density(found: Returns | OrbitReturns, palette: Palette) -> list[Series]:
+    """Return the points by the number of points in their cells of the chart, the densest in front."""
+    points = np.concatenate(found.points())
+    low, size = points.min(axis=0), np.ptp(points, axis=0)
+    cells = np.minimum((points - low) / np.where(size > 0.0, size, 1.0) * _CELLS, _CELLS - 1).astype(int)
+    _, cell, counts = np.unique(cells @ [1, _CELLS], return_inverse=True, return_counts=True)
+    classes = np.searchsorted(_DENSITIES, counts[cell], side="right") - 1
+    colours = value_colours(len(_DENSITIES))
+    return [_dots(points[classes == k], colours[k], _density_label(k)) for k in np.unique(classes)]
+
+
+def _density_label(k: int) -> str:
+    """Return the range of a class of `_DENSITIES`. The first label also says what is counted."""
+    low, high = _DENSITIES[k], (*_DENSITIES[1:], None)[k]
+    if high is None:
+        return f"≥ {low}"
+    return "1 point in a cell" if k == 0 else f"{low}–{high - 1}"
+
+
+_COLOURED = {"orbits": _by_orbit, "fates": _by_fate, "density": _by_density}
 
 
 def _changes(subject: Subject, axis: str, found: Returns, x: float, y: float) -> Changes:
@@ -88,5 +149,6 @@ SECTION_STUDY = Study(
     files="section",
     figure="Surface of section",
     caption=_caption,
+    settings=(COLOURS,),
 )
 """Islands of regular orbits, resonances and the chaotic sea."""

@@ -15,6 +15,7 @@ from engine.jobs.job import Job
 from engine.systems.catalogue.entry import EnergyRange
 from plots.pictures.charts import Chart, Frame
 from plots.pictures.palette import Palette
+from plots.pictures.setting import Setting, Settings
 
 Changes = Mapping[str, Any]
 """New values of fields of a view, by name. A new `system` is reviewed before it is shown; `start` is added to the starts."""
@@ -79,7 +80,9 @@ class Study[Found: Result]:
     frames
         The charts, in order. Each has a help text.
     charts
-        Returns the charts of a result that are not empty, in the order of the frames.
+        Returns the charts of a result that are not empty, in the order of the frames, given the palette and all settings.
+    settings
+        Settings of how the charts are drawn.
     changes
         Returns the changes of the view at a click, given the subject and the axis of the shown result, the result, and x and y.
     files
@@ -96,7 +99,7 @@ class Study[Found: Result]:
     job: Callable[[Subject, str], Job[Found]]
     sentence: Callable[[Found], str]
     frames: Sequence[Frame]
-    charts: Callable[[Found, Palette], Sequence[Chart]]
+    charts: Callable[[Found, Palette, Settings], Sequence[Chart]]
     changes: Callable[[Subject, str, Found, float, float], Changes]
     files: str
     figure: str
@@ -105,6 +108,7 @@ class Study[Found: Result]:
     progress: Callable[[Found], float] = lambda found: 1.0
     follows_map: bool = False
     button: str = ""
+    settings: tuple[Setting, ...] = ()
 
     def is_complete(self, found: Found) -> bool:
         """Whether no further part of a result follows."""

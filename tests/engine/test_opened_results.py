@@ -79,7 +79,7 @@ SPECS = {
 # Results of `tests.results` that are tested unchanged. Variants of the others are in `RESULTS`.
 SHARED = (
     "trust", "origins", "descriptors", "separation", "divergent start", "entropy", "exponent", "Wada test",
-    "Lyapunov orbit", "manifolds", "verdict", "review", "decay laws", "returns",
+    "Lyapunov orbit", "manifolds", "verdict", "review", "decay laws", "returns", "returns of orbits",
 )  # fmt: skip
 RESULTS: dict[str, Callable[[], Result | None]] = {
     **{name: functools.partial(result_of, name) for name in SHARED},

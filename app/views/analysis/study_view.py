@@ -16,6 +16,7 @@ from app.state.view_state import ViewState
 from app.views.components.charts import ChartView
 from app.views.components.collapsible_section import InTurns, Later, at_once
 from app.views.components.plots import moving_line
+from app.views.components.setting_choice import setting_choice
 from app.views.components.texts import TextPane, plain_symbol
 from app.views.components.widgets import FULL_HEIGHT, button, flex_row
 from engine import Result, System
@@ -74,7 +75,8 @@ class StudyView:
         self._plots = pn.Column(sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=["charts"], visible=False)
         state.follow(self._follow_system, "system")
         state.follow(lambda energy: self._mark(), "energy")
-        state.param.watch(lambda event: self._redraw(), "palette")
+        self._choices = [setting_choice(state, setting) for setting in study.settings]
+        state.param.watch(lambda *events: self._redraw(), ["palette", *(["settings"] if study.settings else [])])
 
     @property
     def _hint(self) -> str:
@@ -125,7 +127,7 @@ class StudyView:
             self.text.object = escape(self._hint)
             return
         self._charts_in_turns.begin()
-        charts = {chart.frame.name: chart for chart in self._study.charts(found, self._state.colours)}
+        charts = {chart.frame.name: chart for chart in self._study.charts(found, self._state.colours, self._state.settings)}
         for name, view in self._charts.items():
             view.show(charts.get(name))
         self._mark()
@@ -145,7 +147,7 @@ class StudyView:
 
     def build(self) -> list[pn.viewable.Viewable]:
         """Return the button, the text, and the container of the figures. The first result adds the figures."""
-        row = flex_row(self.against, self.button, gap="8px", align="end")
+        row = flex_row(*self._choices, self.against, self.button, gap="8px", align="end")
         row.css_classes = ["whole-row"]
         return [row, self.text, self._plots]
 

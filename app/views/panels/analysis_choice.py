@@ -10,10 +10,12 @@ import panel as pn
 
 from app.state.view import ANALYSES, View
 from app.state.view_state import ViewState
+from app.views.components.setting_choice import setting_choice
 from app.views.components.texts import TextPane
 from app.views.components.widgets import SegmentedControl, Switches, bind, button, switch
-from plots.layers.layer import Layer, Setting
+from plots.layers.layer import Layer
 from plots.layers.table import LAYERS
+from plots.pictures.setting import Setting
 from plots.studies.table import STUDIES
 
 ANALYSIS_LABELS = {str(name): STUDIES[name].title if name in STUDIES else name.capitalize() for name in ANALYSES}
@@ -48,19 +50,8 @@ class LayerSwitches:
     def _choice(self, setting: Setting) -> SegmentedControl:
         """Return the radio buttons of a setting, which the first call makes."""
         if setting.name not in self._choices:
-            # The first label also has the word of the setting.
-            (first_label, first_value), *other_options = ((name.capitalize(), value) for name, value in setting.choices.items())
-            labels = {f"{setting.word} {first_label}": first_value, **dict(other_options)}
-            choice = self._choices[setting.name] = SegmentedControl(label=setting.title, options=labels, margin=(6, 10))
-            self._state.follow(lambda settings: choice.param.update(value=settings[setting.name]), "settings")
-            choice.param.watch(lambda event: self._write_setting(setting, event.new), "value")
+            self._choices[setting.name] = setting_choice(self._state, setting)
         return self._choices[setting.name]
-
-    def _write_setting(self, setting: Setting, value: Any) -> None:
-        # Without a chosen option, the widget only follows the state.
-        if value in setting.choices.values():
-            with pn.io.hold():
-                self._state.param.update(settings={**self._state.settings, setting.name: value})
 
 
 class ComparisonSwitch:

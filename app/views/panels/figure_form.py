@@ -185,7 +185,7 @@ def figure_choices(shown: ShownResults, state: ViewState) -> dict[str, Make]:
         choices[STATISTICS] = partial(statistics_figure_bytes, frame, state.box)
     for name, found in shown.studies.items():
         if STUDIES[name].progress(found):
-            choices[STUDIES[name].figure] = partial(study_figure_bytes, STUDIES[name], found)
+            choices[STUDIES[name].figure] = partial(study_figure_bytes, STUDIES[name], found, state.settings)
     return choices
 
 

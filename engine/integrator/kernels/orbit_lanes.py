@@ -11,7 +11,17 @@ import numpy as np
 
 from engine.integrator.jit.decorator import kernel, subroutine
 from engine.integrator.jit.function_pointers import call_jets, call_step
-from engine.integrator.kernels.events import append_crossings, crossed_exit, find_exit_time, passed_exit, series_slope
+from engine.integrator.kernels.events import (
+    BOUNDED,
+    FAILED,
+    append_crossings,
+    crossed_exit,
+    find_exit_time,
+    passed_exit,
+    series_slope,
+    series_value,
+)
+from engine.integrator.kernels.exit_geometry import reached_exit
 from engine.integrator.kernels.propagate import fill_vectors, has_failed, make_buffer, passes_exit
 from engine.integrator.source.recurrence import LANES, ROWS, SIZE_ROW, TIME_ROW
 from engine.integrator.source.series import ORDER
@@ -61,11 +71,12 @@ def fill_lanes(orbits):
 
 
 @kernel
-def find_section_passages(step, jets, coefficients, tolerance, horizon, exits, state, passages, found):
+def find_section_passages(step, jets, coefficients, tolerance, horizon, exits, state, passages, found, fate):
     """Find the first m crossings of the section by each orbit before it escapes through an exit or passes `horizon`.
 
     exits: `propagate.Exits`; state (4, lanes), lanes a multiple of `propagate.VECTOR` up to `LANES`; passages (lanes, m, 3 to 5):
-    set to x, px, time, py and y; found (lanes,): zeros, set to the numbers of crossings.
+    set to x, px, time, py and y; found (lanes,): zeros, set to the numbers of crossings; fate (lanes,): set where an orbit has
+    ended, which says nothing about an orbit with m crossings: the number of the exit, or BOUNDED or FAILED.
     """
     lanes = state.shape[1]
     most_passages = passages.shape[1]
@@ -99,21 +110,23 @@ def find_section_passages(step, jets, coefficients, tolerance, horizon, exits, s
                 buffer.channel[buffered] = channel
                 buffered += 1
                 if buffered == lanes:
-                    _locate_passages(jets, coefficients, horizon, buffer, buffered, exits, passages, found)
+                    _locate_passages(jets, coefficients, horizon, buffer, buffered, exits, passages, found, fate)
                     buffered = 0
             if fails or is_full or channel > 0 or flag[i] & OVERSHOOT != 0:
+                if channel == 0:
+                    fate[orbit] = FAILED if fails else BOUNDED
                 # The last active lane takes the place of the lane whose orbit has ended.
                 active -= 1
                 for c in range(ROWS):
                     new[c, i] = new[c, active]
                 lane_orbit[i] = lane_orbit[active]
         now, new = new, now
-    _locate_passages(jets, coefficients, horizon, buffer, buffered, exits, passages, found)
+    _locate_passages(jets, coefficients, horizon, buffer, buffered, exits, passages, found, fate)
 
 
 @subroutine
-def _locate_passages(jets, coefficients, horizon, buffer, n, exits, passages, found):
-    """Append the crossings in each of the first `n` buffered steps to the passages of the orbit of the step."""
+def _locate_passages(jets, coefficients, horizon, buffer, n, exits, passages, found, fate):
+    """Append the crossings in each of the first `n` buffered steps to the passages of the orbit of the step, and set its fate."""
     start, section = buffer.start, exits.gates[exits.curves.shape[1] :]
     work = np.empty((ORDER + 1, start.shape[1]))
     x_jet = np.empty((ORDER + 1, start.shape[1]))
@@ -122,8 +135,10 @@ def _locate_passages(jets, coefficients, horizon, buffer, n, exits, passages, fo
     for i in range(n):
         duration = start[SIZE_ROW, i]
         if buffer.channel[i] > 0:
-            exit_curve = exits.curves[exits.curve_row[buffer.orbit[i]], buffer.channel[i] - 1]
-            duration = find_exit_time(x_jet, y_jet, i, duration, exit_curve)
+            channel, curves = buffer.channel[i], exits.curves[exits.curve_row[buffer.orbit[i]]]
+            duration = find_exit_time(x_jet, y_jet, i, duration, curves[channel - 1])
+            channel = reached_exit(series_value(x_jet, i, duration), series_value(y_jet, i, duration), channel, curves)
+            fate[buffer.orbit[i]] = BOUNDED if start[TIME_ROW, i] + duration > horizon else channel
         duration = min(duration, horizon - start[TIME_ROW, i])
         append_crossings(x_jet, y_jet, i, start[TIME_ROW, i], duration, section, work, passages, found, buffer.orbit[i])
 

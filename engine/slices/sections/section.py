@@ -86,6 +86,11 @@ class SectionAxes(NamedTuple):
         """Return the coordinates of states (…, 4) x, y, px, py, of shape (…, 2)."""
         return (states - [*self.origin, 0.0, 0.0]) @ self.components.T
 
+    def points_of_orbits(self, states: np.ndarray) -> list[np.ndarray]:
+        """Return the coordinates of the returns of each orbit that returns, (m, 2), from the states (returns, n, 4) of all."""
+        counts = np.isfinite(states[..., 0]).sum(axis=0)
+        return [self.points(states[: counts[k], k]) for k in np.flatnonzero(counts)]
+
 
 @dataclass(frozen=True)
 class Section:
@@ -201,6 +206,11 @@ class Section:
     def settle(self, states: np.ndarray) -> np.ndarray:
         """Return states (…, 4) of the section without the rounding errors of a coordinate that the section fixes."""
         return states
+
+    def restore_returns(self, points: np.ndarray, units: WellUnits) -> tuple[np.ndarray, np.ndarray]:
+        """Return states (returns, n, 4) and times (returns, n) of returns (n, returns, 5) in units of the well."""
+        by_return = points.transpose(1, 0, 2)
+        return self.settle(by_return[..., :4] * units.state), by_return[..., 4] * units.time
 
     @property
     def numbers(self) -> SectionNumbers:

@@ -18,6 +18,7 @@ from engine import (
     POTENTIALS,
     EscapeMap,
     Execution,
+    Fate,
     MapSpec,
     Plane,
     System,
@@ -62,6 +63,15 @@ def test_orbits_return_as_often_as_they_cross_in_the_map(pair: tuple[EscapeMap, 
     assert found.complete
     assert found.count.max() > 1
     np.testing.assert_array_equal(found.count, np.where(escape_map.fate >= 0, escape_map.crossings, 0))
+
+
+def test_orbits_that_end_before_their_last_return_have_the_fate_of_the_map(pair: tuple[EscapeMap, Returns]) -> None:
+    escape_map, found = pair
+    np.testing.assert_array_equal(found.fate, escape_map.fate)
+    few = compute_returns(escape_map.spec, returns=2)
+    ends = few.count < 2
+    np.testing.assert_array_equal(few.fate[ends], escape_map.fate[ends])
+    assert np.all(few.fate[~ends] == Fate.NOT_COMPUTED)
 
 
 def test_returns_have_the_energy_of_the_start_and_ascending_times(pair: tuple[EscapeMap, Returns]) -> None:

@@ -22,6 +22,7 @@ from engine import (
 from engine.measures.table import CURVES
 from plots.pictures.orbit_curves import compute_orbit_curves
 from plots.pictures.palette import PAPER
+from plots.pictures.setting import NO_SETTINGS
 from plots.printed.figure_axes import MOST_PIXELS
 from plots.printed.figure_files import map_figure_bytes, orbits_figure_bytes, study_figure_bytes
 from plots.printed.figure_style import CM_PER_INCH, FigureFormat, FigureStyle
@@ -44,7 +45,7 @@ def draw_orbits(format: FigureFormat, style: FigureStyle) -> bytes:
 
 def draw_curves(format: FigureFormat, style: FigureStyle) -> bytes:
     sweep = compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.2, 0.3), (12, 12), t_max=100.0, measures=CURVES))
-    return study_figure_bytes(AGAINST, sweep, format, style)
+    return study_figure_bytes(AGAINST, sweep, NO_SETTINGS, format, style)
 
 
 @pytest.fixture(

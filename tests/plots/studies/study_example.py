@@ -13,6 +13,7 @@ from engine import Potential, Result, find_lyapunov_orbits
 from engine.jobs.job import Job, Queue
 from plots.pictures import charts
 from plots.pictures.palette import Palette
+from plots.pictures.setting import Settings
 from plots.studies import axes
 from plots.studies.study import Study
 from tests.extending import run_example
@@ -21,7 +22,7 @@ _GIVEN: dict[str, Any] = {
     **{name: getattr(charts, name) for name in ("Chart", "Frame", "Series", "Shape")},
     **{name: getattr(axes, name) for name in ("ENERGY", "changes_at", "spaced_values")},
     **{one.__name__: one for one in (Job, Palette, Potential, Queue, Result, Study, dataclass, find_lyapunov_orbits)},
-    "Sequence": Sequence, "np": np, "__name__": __name__,
+    "Settings": Settings, "Sequence": Sequence, "np": np, "__name__": __name__,
 }  # fmt: skip
 
 

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from app.views.components.charts import ChartView
-from engine import CASES, Execution, Plane, System, read_section
+from engine import CASES, Execution, Plane, System, integrate_orbit, read_section
 from engine.jobs.job import run_job
 from engine.results import Returns
 from engine.systems.review.potential_review import review_system
-from plots.pictures.charts import Shape
-from plots.pictures.palette import PAPER
-from plots.studies.section import RETURNS, SECTION_STUDY
+from plots.pictures.charts import Series, Shape
+from plots.pictures.palette import PAPER, value_colours
+from plots.pictures.setting import NO_SETTINGS
+from plots.studies.section import COLOURS, RETURNS, SECTION_STUDY
 from plots.studies.study import Subject
 
 SYSTEM = System("II")
@@ -35,7 +37,7 @@ def test_bounded_orbits_have_all_their_returns_at_the_energy_of_the_view(found: 
 
 
 def test_every_return_is_a_dot_of_the_page_and_inside_the_limiting_curve(found: Returns) -> None:
-    (chart,) = SECTION_STUDY.charts(found, PAPER)
+    (chart,) = SECTION_STUDY.charts(found, PAPER, NO_SETTINGS)
     assert {one.shape for one in chart.series} == {Shape.DOTS}
     view = ChartView(chart.frame)
     view.show(chart)
@@ -52,15 +54,71 @@ def test_a_click_starts_the_orbit_through_the_point_on_the_section(found: Return
     assert changes == {"plane": Plane.X_PX, "energy": 0.15, "start": (x, px)}
 
 
+def coloured(found: Returns, choice: str) -> dict[str, Series]:
+    """The series of the chart with one of the choices of colours, by colour."""
+    return {one.colour: one for one in series_of(found, choice)}
+
+
+def series_of(found: Returns, choice: str) -> Sequence[Series]:
+    (chart,) = SECTION_STUDY.charts(found, PAPER, {COLOURS.name: choice})
+    return chart.series
+
+
+def places(*series: Series) -> set[tuple[float, float]]:
+    return {place for one in series for place in zip(one.x.tolist(), one.y.tolist(), strict=True)}
+
+
+@pytest.fixture(scope="module")
+def escaping() -> Returns:
+    """The returns at an energy at which some orbits escape."""
+    result: Returns = run_job(SECTION_STUDY.job(replace(SUBJECT, energy=0.19), ""), Execution(), {})
+    return result
+
+
+def test_every_choice_of_colours_shows_the_same_points(escaping: Returns) -> None:
+    expected = places(*SECTION_STUDY.charts(escaping, PAPER, NO_SETTINGS)[0].series)
+    for choice in COLOURS.choices:
+        assert places(*series_of(escaping, choice)) == expected
+
+
+def test_points_have_the_colour_of_the_exit_of_their_orbit(escaping: Returns) -> None:
+    series = coloured(escaping, "fates")
+    assert series[PAPER.bounded].label == "not escaped"
+    x, ordinate = escaping.spec.pixel_centres()
+    starts = escaping.spec.start_states(*(grid.ravel() for grid in np.meshgrid(x, ordinate)))
+    checked = 0
+    for k in np.flatnonzero(escaping.fate.ravel() > 0):
+        fate = integrate_orbit(CASES["II"], starts[k], 1e4).fate
+        count = escaping.count.ravel()[k]
+        points = escaping.spec.section.axes.points(escaping.states.reshape(RETURNS, -1, 4)[:count, k])
+        assert {tuple(point) for point in points.tolist()} <= places(series[PAPER.channels[fate - 1]])
+        checked += count > 0
+    assert checked > 5
+
+
+def test_dense_points_have_the_colours_of_the_upper_classes(found: Returns) -> None:
+    series = coloured(found, "density")
+    colours = value_colours(6)
+    assert list(series) == [colour for colour in colours if colour in series]
+    assert series[colours[0]].label == "1 point in a cell"
+    nearest = []
+    for colour in (colours[0], colours[4]):
+        points = np.column_stack([series[colour].x, series[colour].y])
+        others = np.array(sorted(places(*series.values())))
+        distances = np.sort(np.hypot(*(points[:60, None] - others[None]).transpose(2, 0, 1)), axis=1)
+        nearest.append(np.median(distances[:, 8]))
+    assert nearest[1] < 0.3 * nearest[0]
+
+
 def test_an_energy_without_orbits_gives_no_chart(found: Returns) -> None:
-    empty = Returns(found.spec, np.full_like(found.states, np.nan), np.full_like(found.time, np.nan))
-    assert SECTION_STUDY.charts(empty, PAPER) == []
+    empty = replace(found, states=np.full_like(found.states, np.nan), time=np.full_like(found.time, np.nan))
+    assert SECTION_STUDY.charts(empty, PAPER, NO_SETTINGS) == []
 
 
 def test_another_section_has_its_own_axes_and_starts() -> None:
     section = read_section("x = 0, px > 0")
     found = run_job(SECTION_STUDY.job(replace(SUBJECT, section=section), ""), Execution(), {})
-    (chart,) = SECTION_STUDY.charts(found, PAPER)
+    (chart,) = SECTION_STUDY.charts(found, PAPER, NO_SETTINGS)
     assert chart.frame.labels == ("y", "py")
     assert "upward crossings of x = 0" in SECTION_STUDY.sentence(found)
     y, py = found.points()[5][2].tolist()
@@ -71,7 +129,7 @@ def test_another_section_has_its_own_axes_and_starts() -> None:
 def test_a_click_starts_the_orbit_of_the_point_in_every_direction(text: str) -> None:
     found = run_job(SECTION_STUDY.job(replace(SUBJECT, section=read_section(text)), ""), Execution(), {})
     states = found.states[np.isfinite(found.time)][::97]
-    (chart,) = SECTION_STUDY.charts(found, PAPER)
+    (chart,) = SECTION_STUDY.charts(found, PAPER, NO_SETTINGS)
     assert "Click" in SECTION_STUDY.sentence(found)
     assert "Click" in chart.frame.text
     for state in states:
@@ -83,6 +141,6 @@ def test_a_click_starts_the_orbit_of_the_point_in_every_direction(text: str) -> 
 def test_points_that_are_no_starts_of_a_slice_cannot_be_clicked() -> None:
     found = run_job(SECTION_STUDY.job(replace(SUBJECT, section=read_section("x + 0.3 px = 0")), ""), Execution(), {})
     assert found.count.any()
-    (chart,) = SECTION_STUDY.charts(found, PAPER)
+    (chart,) = SECTION_STUDY.charts(found, PAPER, NO_SETTINGS)
     assert "Click" not in SECTION_STUDY.sentence(found) + chart.frame.text
     assert SECTION_STUDY.changes(SUBJECT, "", found, 0.0, 0.0) == {}

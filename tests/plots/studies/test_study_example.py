@@ -13,6 +13,7 @@ from engine import CASES, Execution, Plane, System, find_lyapunov_orbits, open_r
 from engine.jobs.job import run_job
 from engine.systems.review.potential_review import review_system
 from plots.pictures.palette import PAPER
+from plots.pictures.setting import NO_SETTINGS
 from plots.printed.figure_files import study_figure_bytes
 from plots.printed.figure_style import FigureFormat, FigureStyle
 from plots.studies.study import Study, Subject
@@ -35,14 +36,14 @@ def test_every_chart_of_a_study_says_how_to_read_it(study: Study[Any]) -> None:
 def test_the_study_of_the_example_has_a_table_a_figure_and_a_file(tmp_path: Path) -> None:
     study = study_of_periods()
     found = run_job(study.job(SUBJECT, "h"), Execution(), {})
-    (chart,) = study.charts(found, PAPER)
+    (chart,) = study.charts(found, PAPER, NO_SETTINGS)
     assert [one.label for one in chart.series] == ["shortest", "longest"]
     rows = list(csv.DictReader(line for line in table_csv(found).splitlines() if not line.startswith("#")))
     energy = float(rows[-1]["h"])
     assert energy > CASES["II"].escape_energy
     assert float(rows[-1]["shortest"]) == min(orbit.period for orbit in find_lyapunov_orbits(CASES["II"], energy))
     assert np.isnan(float(rows[0]["longest"]))
-    assert study_figure_bytes(study, found, FigureFormat.PNG, FigureStyle()).startswith(b"\x89PNG")
+    assert study_figure_bytes(study, found, NO_SETTINGS, FigureFormat.PNG, FigureStyle()).startswith(b"\x89PNG")
     found.save(tmp_path / "periods.nc")
     np.testing.assert_array_equal(open_result(tmp_path / "periods.nc").longest, found.longest)
 
