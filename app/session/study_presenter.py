@@ -8,7 +8,7 @@ from app.job_clients.latest_request import LatestRequest
 from app.session.context import SessionContext
 from app.state.view_state import STARTS_FULL
 from app.views.analysis.study_view import StudyView
-from plots.studies.study import Study, Subject
+from plots.studies.study import Changes, Study, Subject
 
 
 class _Run(NamedTuple):
@@ -96,7 +96,11 @@ class StudyPresenter:
         """Change the view as the study says for a click at a place of a chart."""
         if self.view.shown is None or self._shown_run is None:
             return
-        changes = dict(self._study.changes(*self._shown_run, self.view.shown, x, y))
+        self.change(self._study.changes(*self._shown_run, self.view.shown, x, y))
+
+    def change(self, changes: Changes) -> None:
+        """Change the view."""
+        changes = dict(changes)
         system, start = changes.pop("system", None), changes.pop("start", None)
         if changes.get("plane", self._state.plane) != self._state.plane:
             # Window and starts belong to the other slice.

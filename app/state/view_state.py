@@ -201,7 +201,7 @@ class ViewState(param.Parameterized):
     @property
     def subject(self) -> Subject:
         """What the studies of the view are about."""
-        return Subject(self.system, self.potential, self.plane, self.energy, self.energies, self.t_max, self.section)
+        return Subject(self.system, self.potential, self.plane, self.energy, self.energies, self.t_max, self.section, self.window)
 
     @property
     def colours(self) -> Palette:

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from engine import Fate, MapSpec, Section, compute_returns
+from engine import Fate, MapSpec, Potential, Section, compute_returns
 from engine.jobs.job import Job
 from engine.results import OrbitReturns, Returns
 from plots.pictures.charts import Chart, Frame, Limits, Series, Shape
@@ -37,22 +37,27 @@ FRAME = Frame(
 COLOURS = Setting(
     name="section_colours",
     title="Colours of the section",
-    word="Colours:",
-    choices={"orbits": "orbits", "fates": "fates", "density": "density"},
-    default="orbits",
+    word="By",
+    choices={choice: choice for choice in ("orbit", "fate", "density")},
+    default="orbit",
     help="Colours of the points of a section.",
 )
 """What the colour of a point says: which orbit it belongs to, how its orbit ends, or how many points are near it."""
 
-# Lower ends of the classes of the number of points in a cell.
-_DENSITIES = (1, 2, 4, 8, 16, 32)
-# Cells along each side of the chart, in which points are counted.
-_CELLS = 80
+DENSITIES = (1, 2, 4, 8, 16, 32)
+"""Lower ends of the classes of the number of points in a cell."""
+
+CELLS = 80
+"""Cells along each side of the chart, in which points are counted."""
 
 
 def _job(subject: Subject, axis: str) -> Job[Returns]:
     section = subject.section
-    spec = MapSpec(subject.potential, section.slice_of_starts, subject.energy, _STARTS, t_max=subject.t_max, section=section)
+    # A part of a map on the section is shown larger.
+    window = subject.window if subject.plane == section.slice_of_starts else None
+    spec = MapSpec(
+        subject.potential, section.slice_of_starts, subject.energy, _STARTS, window, t_max=subject.t_max, section=section
+    )
     return Job(compute_returns, (spec,), (("returns", RETURNS),))
 
 
@@ -65,7 +70,13 @@ def section_charts(found: Returns | OrbitReturns, palette: Palette, settings: Se
     limits: tuple[Limits | None, Limits | None] = (None, None)
     if isinstance(found, Returns) and found.section.is_drawn_on(found.spec.plane):
         limits = found.spec.find_window().ranges
-    return [Chart(frame, _COLOURED[COLOURS.value_in(settings)](found, palette), limits)]
+    choice = COLOURS.value_in(settings)
+    if choice == "orbit":
+        return [Chart(frame, _by_orbit(found, palette), limits)]
+    if choice == "fate":
+        return [Chart(frame, _by_fate(found, palette), limits)]
+    chart = Chart(frame, [_dots(np.concatenate(found.points()), "")], limits)
+    return [replace(chart, series=_by_density(chart))]
 
 
 def _dots(points: np.ndarray, colour: str, label: str = "") -> Series:
@@ -91,26 +102,29 @@ def _by_fate(found: Returns | OrbitReturns, palette: Palette) -> list[Series]:
     return series
 
 
-def _by_density(found: Returns | OrbitReturns, palette: Palette) -> list[Series]:
-    """Return the points by the number of points in their cells of the chart, the densest in front."""
-    points = np.concatenate(found.points())
-    low, size = points.min(axis=0), np.ptp(points, axis=0)
-    cells = np.minimum((points - low) / np.where(size > 0.0, size, 1.0) * _CELLS, _CELLS - 1).astype(int)
-    _, cell, counts = np.unique(cells @ [1, _CELLS], return_inverse=True, return_counts=True)
-    classes = np.searchsorted(_DENSITIES, counts[cell], side="right") - 1
-    colours = value_colours(len(_DENSITIES))
+def _by_density(chart: Chart) -> list[Series]:
+    """Return the points of a chart by the number of points in their cells, the densest in front."""
+    (all_points,) = chart.series
+    points = np.column_stack([all_points.x, all_points.y])
+    low, high = np.transpose(chart.axis_limits)
+    cells = np.floor((points - low) / (high - low) * CELLS)
+    _, cell, counts = np.unique(cells, axis=0, return_inverse=True, return_counts=True)
+    classes = np.searchsorted(DENSITIES, counts[cell], side="right") - 1
+    colours = density_colours()
     return [_dots(points[classes == k], colours[k], _density_label(k)) for k in np.unique(classes)]
 
 
+def density_colours() -> tuple[str, ...]:
+    """Return the colours of the classes of `DENSITIES`."""
+    return value_colours(len(DENSITIES))
+
+
 def _density_label(k: int) -> str:
-    """Return the range of a class of `_DENSITIES`. The first label also says what is counted."""
-    low, high = _DENSITIES[k], (*_DENSITIES[1:], None)[k]
+    """Return the range of a class of `DENSITIES`. The first label also says what is counted."""
+    low, high = DENSITIES[k], (*DENSITIES[1:], None)[k]
     if high is None:
         return f"≥ {low}"
     return "1 point in a cell" if k == 0 else f"{low}–{high - 1}"
-
-
-_COLOURED = {"orbits": _by_orbit, "fates": _by_fate, "density": _by_density}
 
 
 def _changes(subject: Subject, axis: str, found: Returns, x: float, y: float) -> Changes:
@@ -119,11 +133,16 @@ def _changes(subject: Subject, axis: str, found: Returns, x: float, y: float) ->
     points = section.axes.points(states)
     extents = np.ptp(points, axis=0)
     steps = (points - [x, y]) / np.where(extents > 0.0, extents, 1.0)
-    start = section.find_start(subject.potential, states[np.argmin(np.hypot(*steps.T))])
+    return start_through(section, subject.potential, states[np.argmin(np.hypot(*steps.T))], subject.energy)
+
+
+def start_through(section: Section, potential: Potential, state: np.ndarray, energy: float) -> Changes:
+    """Return the changes of a view that start the orbit of a state, (4,); none if it has another energy or is on no slice."""
+    start = section.find_start(potential, state, energy)
     if start is None:
         return {}
     plane, place = start
-    return {"plane": plane, "energy": subject.energy, "start": place}
+    return {"plane": plane, "energy": energy, "start": place}
 
 
 def _sentence(found: Returns) -> str:

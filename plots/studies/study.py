@@ -12,6 +12,7 @@ from typing import Any
 
 from engine import Potential, Result, Section, Slice, System
 from engine.jobs.job import Job
+from engine.slices.window import GivenWindow
 from engine.systems.catalogue.entry import EnergyRange
 from plots.pictures.charts import Chart, Frame
 from plots.pictures.palette import Palette
@@ -41,6 +42,8 @@ class Subject:
         Longest time of the orbits, in the units of the potential.
     section
         The surface of section at which crossings are counted.
+    window
+        The window of the starts in `plane`; None for the default window.
     """
 
     system: System
@@ -50,6 +53,7 @@ class Subject:
     energies: EnergyRange
     t_max: float
     section: Section = Section.Y_UP
+    window: GivenWindow | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

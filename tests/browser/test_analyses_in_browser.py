@@ -92,6 +92,47 @@ def test_the_section_follows_the_slider_until_the_server_has_that_of_its_energy(
     expect(canvas).to_have_count(0)
 
 
+def test_a_click_on_the_section_of_the_browser_starts_the_orbit_of_its_point(open_explorer: OpenExplorer) -> None:
+    explorer = open_explorer(link="?case=II&h=0.15&t_max=100&resolution=112&analysis=section&section_colours=density")
+    explorer.wait_for_data("section_dots", "data.x.length > 1000")
+    canvas = explorer.page.locator("canvas.live-section")
+    explorer.page.get_by_role("button", name="Play").click()
+    explorer.page.wait_for_function(f"canvas => ({_PAINTED})(canvas) > 0.01", arg=canvas.element_handle())
+    canvas.click()
+    explorer.wait_for_view("orbits=")
+
+
+# Note whether the browser has painted the section.
+_NOTE_CANVAS = """() => {
+  const view = [...Bokeh.index.all_views()].find(view => view.model.name === "section")
+  const root = view.canvas_view.el.shadowRoot
+  new MutationObserver(() => (window.wasLive ||= !!root.querySelector(".live-section"))).observe(root, {childList: true})
+}"""
+
+
+def test_the_section_shows_the_window_of_the_map(open_explorer: OpenExplorer) -> None:
+    explorer = open_explorer(link="?case=III&h=0.3&t_max=100&resolution=112&analysis=section&section_colours=fate")
+    explorer.wait_for_data("section_dots", "data.x.length > 1000")
+    expect(explorer.page.get_by_text("not escaped", exact=True)).to_be_visible()
+    # The engine has started when the section follows the slider.
+    canvas = explorer.page.locator("canvas.live-section")
+    explorer.drag_energy_to(0.25, let_go=False)
+    expect(canvas).to_have_count(1)
+    explorer.page.mouse.up()
+    expect(canvas).to_have_count(0)
+    explorer.page.evaluate(_NOTE_CANVAS)
+    explorer.turn_wheel("basins", 0.2, 0.0, -300)
+    for picture in ("basins", "section"):
+        explorer.wait_for_address_of(picture)
+    low, high = explorer.ranges("section")[:2]
+    assert high - low < 1.0
+    explorer.wait_for_data("section_dots", f"data.x.filter(x => x > {low} && x < {high}).length > 500")
+    assert explorer.page.evaluate("window.wasLive") is True
+    explorer.radio("Density").check()
+    explorer.wait_for_view("section_colours=density")
+    expect(explorer.page.get_by_text("1 point in a cell")).to_be_visible()
+
+
 def test_a_bounded_orbit_is_judged_by_three_indicators(open_explorer: OpenExplorer) -> None:
     explorer = open_explorer(link="?case=I&h=0.05&t_max=10000&resolution=112&orbits=0.1,0.05")
     table = explorer.page.get_by_label("chaos indicators")

@@ -1,10 +1,11 @@
 // @ts-check
 /**
- * Events of the document about the energy, which the slider, its box and the engine exchange without the server:
+ * Events of the document about the energy, which the slider, its box, the engine and the section exchange without the server:
  *
  * - `energydragged`: the user moves the slider to an energy;
  * - `energyreleased`: the user has released the slider;
  * - `energyshown`: the pictures show an energy, during a drag or while the energy is played;
+ * - `sceneshown`: the pictures show another energy or window, or will in the next frame;
  * - `energyasked`: the engine has started, and asks for the energy of a slider that the user holds.
  */
 

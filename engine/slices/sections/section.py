@@ -21,7 +21,7 @@ from engine.slices.slice import Slice
 from engine.systems.potential import Potential
 from engine.systems.well_units import WellUnits
 
-# Largest difference of a state from a start that is the same, in units of the well.
+# Largest difference of a state from a start that is the same, and of their energies, in units of the well.
 _ROUNDING = 1e-9
 
 
@@ -176,12 +176,20 @@ class Section:
             return None
         return [STATE.index(axis) for axis in plane.axes]
 
-    def find_start(self, potential: Potential, state: np.ndarray) -> tuple[Slice, tuple[float, float]] | None:
-        """Return a slice on the section and the place on it at which a state, (4,), starts; None if there is none."""
-        energy, unit = float(potential.energy(state)), potential.units.state
+    def find_start(
+        self, potential: Potential, state: np.ndarray, energy: float | None = None
+    ) -> tuple[Slice, tuple[float, float]] | None:
+        """Return a slice on the section and the place on it at which a state, (4,), starts.
+
+        None if there is none, or if the state has another energy than a given one.
+        """
+        with np.errstate(all="ignore"):
+            state_energy, unit = float(potential.energy(state)), potential.units.state
+        if energy is not None and not abs(state_energy - energy) <= _ROUNDING * potential.units.energy:
+            return None
         for plane in [] if self.plane is None else [self.plane, opposite_slice(self.plane)]:
             place = axes_of_slice(plane).points(state)
-            (start,) = plane.states(potential, energy, *place[:, None])
+            (start,) = plane.states(potential, state_energy, *place[:, None])
             if np.allclose(start / unit, state / unit, rtol=0.0, atol=_ROUNDING):
                 return plane, (float(place[0]), float(place[1]))
         return None

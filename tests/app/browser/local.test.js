@@ -36,6 +36,18 @@ test("local values are not sent, and the server's come back", () => {
   assert.deepEqual(model.sent, [])
 })
 
+test("values of the server that equal those of the preview stay", () => {
+  const model = new Model()
+  const local = new Local(/** @type {any} */ (model), ["data"])
+  local.show({data: "frame"})
+  local.settle({data: "frame"})
+  local.restore()
+  assert.equal(model.data, "frame")
+  local.show({data: "preview"})
+  local.restore()
+  assert.equal(model.data, "frame")
+})
+
 test("a change of the server is known, and can be left out of sight", () => {
   const model = new Model()
   let changes = 0

@@ -9,5 +9,12 @@ const {system, starts} = input
 const returns = new Returns(new Integrator(system, modules), starts)
 /** @type {Record<number, [number, number][]>} */
 const found = {}
-while (!returns.complete) returns.continue((orbit, x, ordinate) => (found[orbit] ??= []).push([x, ordinate]))
-console.log(JSON.stringify(found))
+/** @type {Record<number, number>} */
+const channels = {}
+const [column, other] = starts.slice.sectionColumns
+while (!returns.complete)
+  returns.continue(
+    (orbit, state) => (found[orbit] ??= []).push([state[column], state[other]]),
+    (orbit, channel) => (channels[orbit] = channel),
+  )
+console.log(JSON.stringify({found, channels}))

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from engine import MapSpec, System, compute_returns, parse_formula, read_section
+from engine import Fate, MapSpec, System, compute_returns, parse_formula, read_section
 from engine.slices.portable_system import make_portable_system
 from tests.node import needs_node, run_node
 
@@ -35,8 +35,11 @@ def test_returns_in_the_browser_are_those_of_the_server(potential, energy: float
     edges = ("xLow", "xHigh", "ordinateLow", "ordinateHigh")
     corners = dict(zip(edges, (*window.ranges[0], *window.ranges[1]), strict=True))
     starts = {"slice": described, "energy": energy, "window": corners, "side": SIDE, "duration": spec.t_max}
-    found = run_node("run_returns.js", {"system": portable.to_dict(), "module": portable.module, "starts": starts}, tmp_path)
+    sent = {"system": portable.to_dict(), "module": portable.module, "starts": starts}
+    found, channels = run_node("run_returns.js", sent, tmp_path).values()
     assert len(found) > 3
+    of_orbits = expected.fate[(expected.fate != Fate.FORBIDDEN) & (expected.fate != Fate.OUTSIDE)]
+    assert channels == {str(k): fate for k, fate in enumerate(of_orbits.tolist()) if fate > 0}
     wanted = expected.points()
     for points, returns in zip(wanted, found.values(), strict=True):
         # The errors of both integrations grow along an orbit.

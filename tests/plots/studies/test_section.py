@@ -82,7 +82,7 @@ def test_every_choice_of_colours_shows_the_same_points(escaping: Returns) -> Non
 
 
 def test_points_have_the_colour_of_the_exit_of_their_orbit(escaping: Returns) -> None:
-    series = coloured(escaping, "fates")
+    series = coloured(escaping, "fate")
     assert series[PAPER.bounded].label == "not escaped"
     x, ordinate = escaping.spec.pixel_centres()
     starts = escaping.spec.start_states(*(grid.ravel() for grid in np.meshgrid(x, ordinate)))
@@ -108,6 +108,15 @@ def test_dense_points_have_the_colours_of_the_upper_classes(found: Returns) -> N
         distances = np.sort(np.hypot(*(points[:60, None] - others[None]).transpose(2, 0, 1)), axis=1)
         nearest.append(np.median(distances[:, 8]))
     assert nearest[1] < 0.3 * nearest[0]
+
+
+def test_a_part_of_a_map_on_the_section_is_shown_larger() -> None:
+    window = (-0.1, 0.3, -0.2, 0.2)
+    on_section = replace(SUBJECT, plane=Plane.X_PX, window=window)
+    found = run_job(SECTION_STUDY.job(on_section, ""), Execution(), {})
+    (chart,) = SECTION_STUDY.charts(found, PAPER, NO_SETTINGS)
+    assert chart.axis_limits == ((-0.1, 0.3), (-0.2, 0.2))
+    assert SECTION_STUDY.job(replace(on_section, plane=Plane.X_Y), "") == SECTION_STUDY.job(SUBJECT, "")
 
 
 def test_an_energy_without_orbits_gives_no_chart(found: Returns) -> None:

@@ -34,17 +34,19 @@ export class Returns {
     const {units} = integrator.system
     this.#ensemble = new Ensemble(integrator, energy / units.energy, inside.states.values)
     this.#end = Math.min(duration / units.time, LONGEST_TIME)
-    this.#columns = slice.sectionColumns ?? []
-    this.#units = slice.units
-    this.#last = this.#columns.map(column => Float64Array.from(this.#ensemble.atSection(column)))
+    const speed = units.length / units.time
+    this.#units = [units.length, units.length, speed, speed]
+    this.#last = this.#units.map((_, column) => Float64Array.from(this.#ensemble.atSection(column)))
   }
 
   #ensemble
   #end
-  #columns
+  /** Units of x, y, px and py, in units of the page. */
   #units
-  /** Coordinates of each orbit at its last return that was taken. */
+  /** x, y, px and py of each orbit at its last return that was taken. */
   #last
+  /** Orbits of which it is known that they have ended. @type {Set<number>} */
+  #ended = new Set()
 
   /** Whether all orbits have been followed to the longest time. */
   get complete() {
@@ -52,20 +54,28 @@ export class Returns {
   }
 
   /**
-   * Follow all orbits for a short time, and give each return that they make to a function.
+   * Follow all orbits for a short time, and give each return that they make, and each orbit that ends, to a function.
    *
-   * @param {(orbit: number, x: number, ordinate: number) => void} take  gets the place on the slice in units of the page
+   * @param {(orbit: number, state: number[]) => void} take  gets x, y, px and py, in units of the page
+   * @param {(orbit: number, channel: number) => void} [end]  gets the number of the outcome
    */
-  continue(take) {
+  continue(take, end = () => {}) {
     this.#ensemble.advance(Math.min(this.#ensemble.time + STEP, this.#end))
-    const [xs, ordinates] = this.#columns.map(column => this.#ensemble.atSection(column))
-    const [lastXs, lastOrdinates] = this.#last
-    const [unitX, unitOrdinate] = this.#units
+    const columns = this.#units.map((_, column) => this.#ensemble.atSection(column))
     for (let orbit = 0; orbit < this.#ensemble.count; orbit++) {
-      if (!(xs[orbit] !== lastXs[orbit] || ordinates[orbit] !== lastOrdinates[orbit]) || Number.isNaN(xs[orbit])) continue
-      lastXs[orbit] = xs[orbit]
-      lastOrdinates[orbit] = ordinates[orbit]
-      take(orbit, xs[orbit] * unitX, ordinates[orbit] * unitOrdinate)
+      const isNew = columns.some((column, k) => column[orbit] !== this.#last[k][orbit])
+      if (isNew && !Number.isNaN(columns[0][orbit])) {
+        columns.forEach((column, k) => (this.#last[k][orbit] = column[orbit]))
+        take(
+          orbit,
+          columns.map((column, k) => column[orbit] * this.#units[k]),
+        )
+      }
+      const channel = this.#ensemble.channel[orbit]
+      if (channel > 0 && !this.#ended.has(orbit)) {
+        this.#ended.add(orbit)
+        end(orbit, channel)
+      }
     }
   }
 }

@@ -10,6 +10,7 @@ import {Returns} from "../engine/returns.js"
 import {isNearWindow, windowAt} from "../engine/starts.js"
 import {number} from "../numbers.js"
 import {sameEnergy} from "../painting/columns.js"
+import {Dots} from "../painting/dots.js"
 import {LocalWhenPresent} from "../painting/local.js"
 import {pictureNamed} from "../painting/pictures.js"
 import {onPresent, present} from "./present.js"
@@ -18,8 +19,6 @@ import {onPresent, present} from "./present.js"
 const CHART = "section"
 /** Number of starts along a side of the window. */
 const SIDE = 13
-/** Side of a dot, in pixels. */
-const DOT_SIDE = 2
 /** Time in each frame for following the orbits, in ms. */
 const FRAME_MS = 12
 /** Digits of the energy on the canvas. */
@@ -32,6 +31,7 @@ const DIGITS = 6
  * @property {import("./present.js").Shown} shown
  * @property {import("../painting/pictures.js").Picture} chart
  * @property {number} energy
+ * @property {import("../engine/starts.js").Window | null} window  that of the map; null for the default window
  */
 
 class LiveSection {
@@ -40,15 +40,12 @@ class LiveSection {
     this.#model = model
     this.#canvas.style.cssText = "position:absolute;display:none;background:var(--ui-page)"
     this.#canvas.className = "live-section"
-    // The dots below, of another energy, get no clicks.
+    // The dots below, of another energy or window, get no clicks.
     for (const event of ["pointerdown", "pointermove", "pointerup", "click"])
       this.#canvas.addEventListener(event, each => each.stopPropagation())
-    const ignored = [
-      onPresent(() => this.#follow()),
-      listen("energydragged", () => this.#follow()),
-      listen("energyshown", () => this.#follow()),
-    ]
-    model.on(["slice", "energy", "colours", "duration"], () => this.#follow())
+    this.#canvas.addEventListener("click", each => this.#pick(each.offsetX, each.offsetY))
+    const ignored = [onPresent(() => this.#follow()), listen("sceneshown", () => this.#follow())]
+    model.on(["slice", "served", "colouring", "duration", "follows_window"], () => this.#follow())
     model.on("lifecycle:remove", () => {
       this.#hide()
       for (const ignore of ignored) ignore()
@@ -62,8 +59,10 @@ class LiveSection {
   #ranges = [this.#range("x_range"), this.#range("y_range")]
   /** @type {Returns | null} */
   #returns = null
-  /** The window of the chart. */
-  #window = {xLow: 0, xHigh: 1, ordinateLow: 0, ordinateHigh: 1}
+  /** What is painted. @type {Dots | null} */
+  #dots = null
+  /** The energy of the orbits. */
+  #energy = 0
   /** What the canvas shows, as text. */
   #shownKey = ""
   #frame = 0
@@ -76,22 +75,40 @@ class LiveSection {
   /** What to compute; null where the server's chart is shown. @returns {Scene | null} */
   get #scene() {
     const shown = present()
-    const energy = shown?.scene()?.energy
-    if (!shown || energy === undefined || !this.#model.slice) return null
+    const map = shown?.scene()
+    if (!shown || !map || !this.#model.slice) return null
+    const {energy} = map
+    const window = this.#model.follows_window ? map.window : null
     // While the server's chart is being completed, what is shown stays.
-    const served = this.#model.energy
-    const isServed = served === null ? !this.#returns : sameEnergy(energy, served)
+    const {served} = this.#model
+    const isServed = served
+      ? sameEnergy(energy, served.energy) && (!window || isNearWindow(window, served.window))
+      : !this.#returns
     const chart = isServed ? undefined : pictureNamed(CHART)
-    return chart ? {shown, chart, energy} : null
+    return chart ? {shown, chart, energy, window} : null
+  }
+
+  /** Start the orbit through the point nearest to a place on the canvas. @param {number} left @param {number} top */
+  #pick(left, top) {
+    const state = this.#dots?.nearest(left, top)
+    if (state) this.#model.send_msg({state, energy: this.#energy})
   }
 
   #hide() {
     cancelAnimationFrame(this.#frame)
     this.#frame = 0
-    this.#returns = null
+    if (!this.#shownKey) return
+    this.#returns = this.#dots = null
     this.#shownKey = ""
     this.#canvas.remove()
-    for (const range of this.#ranges) range.restore()
+    const {served} = this.#model
+    if (!served) return this.#ranges.forEach(range => range.restore())
+    const {xLow, xHigh, ordinateLow, ordinateHigh} = served.window
+    const edges = [
+      {start: xLow, end: xHigh},
+      {start: ordinateLow, end: ordinateHigh},
+    ]
+    this.#ranges.forEach((range, axis) => range.settle(edges[axis]))
   }
 
   /** Paint the returns that the orbits make in the time of a frame. */
@@ -101,31 +118,32 @@ class LiveSection {
     if (!scene) return this.#hide()
     if (this.#keyOf(scene) !== this.#shownKey) this.#begin(scene)
     this.#shownKey = this.#keyOf(scene)
-    const {colours} = this.#model
-    /** @type {[number, number][][]} */
-    const places = colours.map(() => [])
+    const [column, other] = this.#model.slice.sectionColumns
     const startTime = performance.now()
     while (this.#returns && !this.#returns.complete && performance.now() - startTime < FRAME_MS)
-      this.#returns.continue((orbit, x, ordinate) => places[orbit % colours.length].push([x, ordinate]))
-    this.#paintDots(scene.chart, places)
+      this.#returns.continue(
+        (orbit, state) => this.#dots?.add(orbit, [state[column], state[other]], state),
+        (orbit, channel) => this.#dots?.end(orbit, channel),
+      )
     // The chart may move or disappear, of which no event tells.
     this.#follow()
   }
 
   /** Return everything that determines the canvas of a scene, as text. @param {Scene} scene */
-  #keyOf({shown, chart, energy}) {
+  #keyOf({shown, chart, energy, window}) {
     const {x_range: x, y_range: y} = chart.view.model
-    const {colours, duration} = this.#model
-    const style = [chart.view.frame.bbox, devicePixelRatio, colours, document.documentElement.dataset.theme]
-    return JSON.stringify([energy, shown.system.key, duration, x.start, x.end, y.start, y.end, style])
+    const {colouring, duration} = this.#model
+    const style = [chart.view.frame.bbox, devicePixelRatio, colouring, document.documentElement.dataset.theme]
+    return JSON.stringify([energy, window, shown.system.key, duration, x.start, x.end, y.start, y.end, style])
   }
 
   /** Begin with the orbits of a scene, on an empty canvas. @param {Scene} scene */
-  #begin({shown, chart, energy}) {
+  #begin({shown, chart, energy, window: mapWindow}) {
     const integrator = new Integrator(shown.system, shown.modules)
-    this.#showWindow(chart, windowAt(integrator, this.#model.plane, energy))
-    const {slice, duration} = this.#model
-    this.#returns = new Returns(integrator, {slice, energy, window: this.#window, side: SIDE, duration})
+    const window = this.#showWindow(chart, mapWindow, windowAt(integrator, this.#model.plane, energy))
+    const {slice, duration, colouring} = this.#model
+    this.#returns = new Returns(integrator, {slice, energy, window, side: SIDE, duration})
+    this.#energy = energy
     const {left, top, width, height} = chart.view.frame.bbox
     // Elements of Bokeh show only what their shadow root contains.
     chart.view.canvas_view.el.shadowRoot.append(this.#canvas)
@@ -142,40 +160,24 @@ class LiveSection {
     context.font = "12px system-ui, sans-serif"
     context.fillStyle = getComputedStyle(this.#canvas).color
     context.fillText(`h = ${number(energy, DIGITS)}`, 6, height - 6)
+    this.#dots = new Dots(context, {width, height}, window, {...colouring, ends: shown.colours()})
   }
 
   /**
-   * Keep the window of the chart, or show the default window of an energy if it differs.
+   * Show the window of the map, or a default window unless that of the chart is near it; return the window that is shown.
    *
    * @param {import("../painting/pictures.js").Picture} chart
+   * @param {import("../engine/starts.js").Window | null} mapWindow
    * @param {import("../engine/starts.js").Window | null} defaultWindow
    */
-  #showWindow({view}, defaultWindow) {
+  #showWindow({view}, mapWindow, defaultWindow) {
     const {x_range: x, y_range: y} = view.model
-    this.#window = {xLow: x.start, xHigh: x.end, ordinateLow: y.start, ordinateHigh: y.end}
-    if (!defaultWindow || isNearWindow(defaultWindow, this.#window)) return
-    this.#window = defaultWindow
+    const current = {xLow: x.start, xHigh: x.end, ordinateLow: y.start, ordinateHigh: y.end}
+    const window = mapWindow ?? (defaultWindow && !isNearWindow(defaultWindow, current) ? defaultWindow : current)
     const [xRange, yRange] = this.#ranges
-    xRange.show({start: defaultWindow.xLow, end: defaultWindow.xHigh})
-    yRange.show({start: defaultWindow.ordinateLow, end: defaultWindow.ordinateHigh})
-  }
-
-  /**
-   * @param {import("../painting/pictures.js").Picture} chart
-   * @param {[number, number][][]} places  of new returns, by colour
-   */
-  #paintDots(chart, places) {
-    const [context, window] = [this.#canvas.getContext("2d"), this.#window]
-    const {width, height} = chart.view.frame.bbox
-    const [scaleX, scaleY] = [width / (window.xHigh - window.xLow), height / (window.ordinateHigh - window.ordinateLow)]
-    places.forEach((ofColour, colour) => {
-      if (!context) return
-      context.fillStyle = this.#model.colours[colour]
-      for (const [x, ordinate] of ofColour) {
-        const [left, top] = [(x - window.xLow) * scaleX, (window.ordinateHigh - ordinate) * scaleY]
-        context.fillRect(left - DOT_SIDE / 2, top - DOT_SIDE / 2, DOT_SIDE, DOT_SIDE)
-      }
-    })
+    xRange.show({start: window.xLow, end: window.xHigh})
+    yRange.show({start: window.ordinateLow, end: window.ordinateHigh})
+    return window
   }
 }
 

@@ -4,6 +4,7 @@
  * view is complete or has at least as many pixels.
  */
 
+import {dispatch} from "../energy_events.js"
 import {exitLines, LimitingCurves} from "../engine/curves.js"
 import {Integrator} from "../engine/integrator.js"
 import {energyAxis, isNearWindow, showsPositions, windowAt} from "../engine/starts.js"
@@ -175,6 +176,7 @@ export class Preview {
       this.#maps.acceptServer()
       return
     }
+    dispatch("sceneshown", scene.energy)
     const isSameScene = this.#shownView && JSON.stringify(scene) === JSON.stringify(sceneOf(this.#shownView))
     const rows = isSameScene && this.#shownView ? this.#shownView.rows : LEAST_SIDE
     if (showsScene(this.#maps.server.data, scene, rows)) {

@@ -42,6 +42,11 @@ export class LocalWhenPresent {
   restore() {
     this.#local?.restore()
   }
+
+  /** @param {Record<string, any>} values */
+  settle(values) {
+    this.#local?.settle(values)
+  }
 }
 
 /** Shows values of a model in this browser only, and keeps the values that the server knows. */
@@ -81,6 +86,16 @@ export class Local {
   restore() {
     if (this.#showsPreview && this.#displayed !== this.server) this.#set(this.server)
     this.acceptServer()
+  }
+
+  /**
+   * Show values that the server has sent. They may be those of the preview: then the page cannot see that the server has sent them.
+   *
+   * @param {Record<string, any>} values
+   */
+  settle(values) {
+    this.server = values
+    this.restore()
   }
 
   /** After a change by the server, show again the values that the change has replaced. */
