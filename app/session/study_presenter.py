@@ -51,12 +51,13 @@ class StudyPresenter:
         self._start(_Run(self._state.subject, self.view.axis))
 
     def _follow_map(self) -> None:
-        """Start the study of a complete map, unless it is known, while its tab is open."""
-        whole_map = self._results.whole_map
-        if self._state.analysis != self._study.name or whole_map is None or whole_map.spec.potential != self._state.potential:
+        """Start the study of a map, complete or not, unless it is known, while its tab is open."""
+        frame = self._results.frame
+        if self._state.analysis != self._study.name or frame is None or frame.spec.potential != self._state.potential:
             return
         run = _Run(self._state.subject, self.view.axis)
-        if run != self._run or not (self.view.running or self._is_known(run)):
+        is_stopped = frame.complete and not (self.view.running or self._is_known(run))
+        if run != self._run or is_stopped:
             self._start(run)
 
     def _is_known(self, run: _Run) -> bool:

@@ -78,7 +78,7 @@ class Study[Found: Result]:
     progress
         Returns the computed share of a result, 0 to 1.
     follows_map
-        Whether the study takes so little time that it is computed for each complete map while its tab is open, without a button.
+        Whether the study takes so little time that it is computed for each map while its tab is open, without a button.
     sentence
         Describes a result, complete or not.
     frames

@@ -80,7 +80,7 @@ class StudyView:
 
     @property
     def _hint(self) -> str:
-        return f"{self._study.hint}{' They follow when the map is complete.' if self._study.follows_map else ''}"
+        return f"{self._study.hint}{' They follow the map.' if self._study.follows_map else ''}"
 
     @property
     def axis(self) -> str:
