@@ -1,6 +1,7 @@
 """Integrate one orbit and print its verdict, SALI, Lyapunov exponent and Birkhoff digits.
 
-With --output STEM, STEM.csv contains the path, SALI, the exponent and R² against time, and STEM.png shows them.
+With --output STEM, STEM.csv contains the path, SALI, the exponent and R² against time, STEM.crossings.csv the crossings of the
+section, and STEM.png shows them.
 With --output FILE.csv, FILE.png, FILE.svg or FILE.pdf, only this file is written.
 
 Examples:
@@ -32,10 +33,14 @@ from plots.pictures.orbit_curves import compute_orbit_curves
 from plots.pictures.palette import Palette
 from plots.printed.figure_files import orbits_figure_bytes
 from plots.printed.figure_style import FigureFormat, FigureStyle
-from plots.texts.exports import orbits_csv
+from plots.texts.exports import orbits_csv, section_csv
 
 State = tuple[float, float, float, float]
 """x, y, px, py."""
+
+
+CROSSINGS = "crossings.csv"
+"""Ending of the name of the file with the crossings of the section."""
 
 
 @with_options
@@ -64,11 +69,13 @@ def run(
         Full initial state, instead of --start and --energy.
     """
     initial_state = _find_start(potential, plane, energy, start, state)
-    paths = name_files(output, ["csv", *FigureFormat], ["csv", FigureFormat.PNG])
+    paths = name_files(output, ["csv", *FigureFormat], ["csv", CROSSINGS, FigureFormat.PNG])
 
     def make_content(ending: str) -> Content:
         if ending == "csv":
             return orbits_csv([orbit], most_rows, [verdict])
+        if ending == CROSSINGS:
+            return section_csv([orbit])
         curves = [compute_orbit_curves(potential, orbit)]
         return orbits_figure_bytes(potential, curves, palette, [verdict.describe()], FigureFormat(ending), style)
 

@@ -69,6 +69,17 @@ def orbits_csv(orbits: Sequence[Orbit], most_rows: int = MOST_ROWS, verdicts: Se
     return write_csv(("orbit", *_COLUMNS), rows, comments)
 
 
+def section_csv(orbits: Sequence[Orbit]) -> str:
+    """Return a CSV table of the crossings of the section by orbits: orbit and crossing, both from 1, t, x, y, px and py."""
+    comments, rows = [program_version()], []
+    for number, orbit in enumerate(orbits, 1):
+        comments.append(f"orbit {number}: {orbit.section.crossings_name}")
+        states, times = orbit.find_section_states()
+        columns = zip(times.tolist(), *states.T.tolist(), strict=True)
+        rows += [(number, crossing, *row) for crossing, row in enumerate(columns, 1)]
+    return write_csv(("orbit", "crossing", "t", "x", "y", "px", "py"), rows, comments)
+
+
 def write_csv(names: Iterable[str], rows: Iterable[Sequence[object]], comments: Iterable[str] = ()) -> str:
     """Return a CSV table with names of columns and numbers at full precision, below comment lines (#)."""
     lines = [*(f"# {comment}" for comment in comments), ",".join(names), *(",".join(map(repr, row)) for row in rows)]

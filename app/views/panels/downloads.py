@@ -20,13 +20,13 @@ from app.views.panels.figure_form import FigureForm
 from engine import Result
 from plots.studies.study import Study
 from plots.studies.table import STUDIES
-from plots.texts.exports import file_stem, netcdf_bytes, orbits_csv, python_lines, table_csv
+from plots.texts.exports import file_stem, netcdf_bytes, orbits_csv, python_lines, section_csv, table_csv
 
 File = tuple[str, Callable[[], bytes]]
 """Name of a file, and the function that makes its content. Calling the function may take seconds."""
 
 # Labels of the buttons that save data.
-MAPS, ORBITS, SCRIPT = "Maps (NetCDF)", "Orbits (CSV)", "Python script"
+MAPS, ORBITS, CROSSINGS, SCRIPT = "Maps (NetCDF)", "Orbits (CSV)", "Crossings of the orbits (CSV)", "Python script"
 
 
 class Downloads:
@@ -57,7 +57,7 @@ class Downloads:
         self.figure = FigureForm(state, results, self.saver, self._figure_name, on_copied)
         self.data = {
             label: button(label, partial(self._save, label))
-            for label in (MAPS, ORBITS, *map(_table_label, STUDIES.values()), SCRIPT)
+            for label in (MAPS, ORBITS, CROSSINGS, *map(_table_label, STUDIES.values()), SCRIPT)
         }
         results.param.watch(lambda *events: self._enable(), ["frame", "orbits", "studies"])
         self._enable()
@@ -103,6 +103,7 @@ def file_choices(results: ShownResults, state: ViewState) -> dict[str, File]:
     if orbits:
         verdicts = [one.verdict for one in results.orbits if one.verdict is not None]
         choices[ORBITS] = name("-orbits.csv"), lambda: orbits_csv(orbits, verdicts=verdicts).encode()
+        choices[CROSSINGS] = name("-crossings.csv"), lambda: section_csv(orbits).encode()
     for study_name, found in results.studies.items():
         study = STUDIES[study_name]
         choices[_table_label(study)] = f"escapes-{system.case}-{study.files}.csv", partial(_table_bytes, found)

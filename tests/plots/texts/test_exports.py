@@ -25,7 +25,7 @@ from engine import (
     judge_orbit,
 )
 from engine.systems.system import TYPED
-from plots.texts.exports import file_stem, netcdf_bytes, orbits_csv, python_lines, table_csv
+from plots.texts.exports import file_stem, netcdf_bytes, orbits_csv, python_lines, section_csv, table_csv
 
 START = (0.1, 0.0, 0.05, 0.6)
 SPECS = {
@@ -89,6 +89,21 @@ def test_a_table_of_orbits_contains_them_bit_for_bit(orbit: Orbit) -> None:
         assert f"# orbit {number}: {judge_orbit(one).describe()}" in comments
         assert f"# orbit {number}: energy {one.energy!r}" in comments
     assert "# orbit 1: start x = 0.1, y = 0.0, px = 0.05, py = 0.6" in comments
+
+
+def test_a_table_of_crossings_lists_them_with_their_times(orbit: Orbit) -> None:
+    other = integrate_orbit(CASES["III"], (0.1, 0.0, 0.05, 0.9), 50.0, section="x = 0 both")
+    comments, rows = table(section_csv([orbit, other]))
+    assert comments[1:] == ["# orbit 1: upward crossings of y = 0", "# orbit 2: crossings of x = 0"]
+    for number, one in enumerate((orbit, other), 1):
+        own = [row for row in rows if row["orbit"] == str(number)]
+        assert [int(row["crossing"]) for row in own] == list(range(1, one.crossings + 1))
+        found = np.array([[float(row[name]) for name in ("t", "x", "y", "px", "py")] for row in own])
+        np.testing.assert_array_equal(found[:, 0], one.find_section_states()[1])
+        np.testing.assert_allclose(
+            [np.interp(found[:, 0], one.t, each) for each in (one.x, one.px)], found[:, [1, 3]].T, atol=0.05
+        )
+        assert np.abs(found[:, 2 if number == 1 else 1]).max() < 1e-12
 
 
 def test_a_long_orbit_is_thinned_evenly_with_a_note(orbit: Orbit) -> None:

@@ -16,7 +16,7 @@ from app.job_clients.orbit_requests import StartOrbit
 from app.job_clients.shown_results import ShownResults
 from app.runtime.process_state import ProcessState
 from app.state.view_state import ViewState
-from app.views.panels.downloads import MAPS, ORBITS, SCRIPT, Downloads, file_choices
+from app.views.panels.downloads import CROSSINGS, MAPS, ORBITS, SCRIPT, Downloads, file_choices
 from engine import CASES, EscapeMap, MapSpec, Plane, SweepSpec, System, compute_map, compute_sweep, integrate_orbit
 from plots.pictures.orbit_curves import compute_orbit_curves
 from tests.app.other_loop import run_on_new_loop
@@ -70,9 +70,9 @@ def test_only_files_that_the_results_allow_can_be_saved(downloads_view: Download
     def enabled() -> set[str]:
         return {label for label, save in downloads_view.data.items() if not save.disabled}
 
-    assert enabled() == {MAPS, ORBITS, SCRIPT}
+    assert enabled() == {MAPS, ORBITS, CROSSINGS, SCRIPT}
     results.frame = replace(results.frame, complete=False)
-    assert enabled() == {ORBITS}
+    assert enabled() == {ORBITS, CROSSINGS}
     curves = compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.2, 0.3), (12, 12), t_max=10.0))
     results.param.update(orbits=(), studies={"energies": curves})
     assert enabled() == {"Curves (CSV)"}
