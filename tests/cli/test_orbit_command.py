@@ -77,7 +77,7 @@ def test_start_outside_writes_files(run: Run, tmp_path: Path) -> None:
     code, out, _ = run("orbit", "II", "--state", 1.3, 0, 0.1, 0, "--output", tmp_path / "orbit")
     assert code == 0
     assert "Outside" in out
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["orbit.csv", "orbit.png"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["orbit.crossings.csv", "orbit.csv", "orbit.png"]
 
 
 def test_jacobi_constant_stands_for_the_energy_of_a_rotating_frame(run: Run) -> None:
