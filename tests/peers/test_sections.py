@@ -18,7 +18,7 @@ NAMES = (
 )  # fmt: skip
 KINDS, ORBITS = 5, 20
 # Followed time in units of the well, tolerance of heyoka, and largest difference of a return in units of the well.
-T_MAX, TOLERANCE, LARGEST_DIFFERENCE = 12.0, 1e-17, 1e-10
+T_MAX, TOLERANCE, LARGEST_DIFFERENCE = 8.0, 1e-17, 1e-10
 # One of both integrators may miss a crossing this near to the end of an orbit, in units of the well.
 END = 1e-7
 DIRECTIONS = {
