@@ -40,9 +40,11 @@ def split_ending(path: Path, endings: Collection[str], default: Sequence[str]) -
     >>> split_ending(Path("map-0.19"), ["nc", "pdf"], ["nc"])
     (PosixPath('map-0.19'), ['nc'])
     """
+    # An ending of two words is longer than the other one.
+    for ending in sorted(endings, key=len, reverse=True):
+        if path.name.endswith(f".{ending}") and path.name != f".{ending}":
+            return path.with_name(path.name.removesuffix(f".{ending}")), [ending]
     ending = path.suffix.removeprefix(".")
-    if ending in endings:
-        return path.with_suffix(""), [ending]
     if re.fullmatch(r"[A-Za-z]\w*", ending):
         raise ValueError(f"output='{path}': the ending must be one of {', '.join(endings)}, or left out")
     return path, default

@@ -101,7 +101,7 @@ class Explorer:
         self.browser = BrowserEvents(state, keys, locked, self._press, self.links.navigate, self._copied)
         lock_times = lambda on: state.param.update(lock_times=self.maps.view.times if on else None)  # noqa: E731
         self.controls = Controls(state, self.engine, self._toggle_drawer, self.comparison.swap_views, lock_times)
-        change = locked(self.studies[SECTION_STUDY.name].change)
+        section = self.studies[SECTION_STUDY.name]
         self.drawers = Drawers(
             {
                 "potential": ("", "Potential", self.potential.panel.parts()),
@@ -119,7 +119,7 @@ class Explorer:
                 Analysis.STATISTICS: self.statistics.parts(),
                 Analysis.MEASURES: self.analyses.measures.parts(),
                 **{name: [study.view.build] for name, study in self.studies.items()},
-                SECTION_STUDY.name: [self.studies[SECTION_STUDY.name].view.build, lambda: [LiveSection(state, results, change)]],
+                SECTION_STUDY.name: [section.view.build, lambda: [LiveSection(state, results, locked, section.change)]],
                 Analysis.WATCH: [self._build_watch],
             },
             "analysis",

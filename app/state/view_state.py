@@ -201,7 +201,8 @@ class ViewState(param.Parameterized):
     @property
     def subject(self) -> Subject:
         """What the studies of the view are about."""
-        return Subject(self.system, self.potential, self.plane, self.energy, self.energies, self.t_max, self.section, self.window)
+        window = self.window if self.section.is_drawn_on(self.plane) else None
+        return Subject(self.system, self.potential, self.plane, self.energy, self.energies, self.t_max, self.section, window)
 
     @property
     def colours(self) -> Palette:

@@ -69,7 +69,7 @@ def run(
         Full initial state, instead of --start and --energy.
     """
     initial_state = _find_start(potential, plane, energy, start, state)
-    paths = name_files(output, ["csv", *FigureFormat], ["csv", CROSSINGS, FigureFormat.PNG])
+    paths = name_files(output, ["csv", CROSSINGS, *FigureFormat], ["csv", CROSSINGS, FigureFormat.PNG])
 
     def make_content(ending: str) -> Content:
         if ending == "csv":

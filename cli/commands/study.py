@@ -23,9 +23,8 @@ from cli.option_marks import DocumentedBy
 from cli.options import with_options
 from cli.output_files import Content, Stem, name_files, reserve_output, write_files
 from cli.printing import AsJson, list_rows, print_result
-from engine import MapSpec, Potential, Result, Section, Slice, SweepSpec, System
+from engine import Potential, Result, Section, Slice, SweepSpec, System
 from engine.jobs.job import run_job
-from engine.slices.window import GivenWindow
 from engine.systems.review.potential_review import review_system
 from plots.pictures.setting import NO_SETTINGS, Settings
 from plots.printed.figure_files import study_figure_bytes
@@ -48,7 +47,6 @@ def run(
     plane: Slice,
     section: Section,
     energy: GivenEnergy,
-    window: Annotated[GivenWindow | None, DocumentedBy(MapSpec)],
     t_max: Annotated[float, DocumentedBy(SweepSpec)],
     against: Annotated[str | None, typer.Option(help=AGAINST_HELP)] = None,
     settings: Settings,
@@ -61,7 +59,7 @@ def run(
     entry = _find_study(study)
     energies = review_system(system).energies
     chosen_energy = energies.first if energy is None else energy
-    subject = Subject(system, potential, plane, chosen_energy, energies, t_max, section, window)
+    subject = Subject(system, potential, plane, chosen_energy, energies, t_max, section)
     job = entry.job(subject, _choose_axis(entry, system, against))
     stem = Path(stem_of(f"{entry.files}-{file_name_part(case)}", section))
     paths = name_files(output, ["nc", "csv", *FigureFormat], ["nc", "csv"], stem)

@@ -43,7 +43,7 @@ class Returns(MapResult):
         (returns, rows, columns) time of each crossing, in the units of the potential; NaN as for `states`. Read-only.
     fate
         (rows, columns) int8 codes of how the orbit of each start ended, as in maps; `Fate.NOT_COMPUTED` for an orbit with all
-        returns, which was followed to the last one only. Read-only.
+        returns, which was followed to the last one only, and for one that is not followed yet. Read-only.
     complete
         Whether the orbits of all starts were followed.
     """

@@ -25,6 +25,8 @@ _COLUMNS = 5
 
 def checked_returns(returns: int, orbits: int) -> int:
     """Return a number of returns of each of some orbits; ValueError unless it is from 1 to 100 000, and 5 million in all."""
+    if orbits > _MOST_POINTS:
+        raise ValueError(f"states: has {orbits} orbits; must have at most {_MOST_POINTS}")
     return checked_count("returns", returns, 1, min(MOST_RETURNS, _MOST_POINTS // max(orbits, 1)))
 
 
@@ -71,7 +73,7 @@ class FollowedOrbits:
         # Number of orbits that have not been followed yet; unknown until `parts` is called.
         self._pending = len(starts)
 
-    def parts(self, execution: Execution) -> list[np.ndarray]:
+    def parts(self, execution: Execution, least_size: int = 1) -> list[np.ndarray]:
         """Return the indices of the starts that are inside all exits, in parts of similar size. The others get their fates."""
         batch = OrbitBatch.from_starts(self._starts, self._curve_row)
         allowed = np.flatnonzero(batch.fate == Fate.NOT_COMPUTED)
@@ -80,7 +82,7 @@ class FollowedOrbits:
         self.fate = batch.fate
         # A cancelled test leaves starts of which it is not known whether they are inside.
         self._pending = inside.size + allowed.size - tested.size
-        return np.array_split(inside, _PARTS)
+        return np.array_split(inside, min(_PARTS, max(inside.size // least_size, 1)))
 
     def follow(self, part: np.ndarray, execution: Execution) -> None:
         """Find the returns of the orbits with these indices."""

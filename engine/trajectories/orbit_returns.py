@@ -21,6 +21,9 @@ from engine.systems.potential import Potential
 from engine.trajectories.classified_orbits import checked_states_of_energy
 from engine.trajectories.trajectory import SectionResult
 
+# Least number of orbits that are followed at once, which keep all threads busy.
+_PART_SIZE = 1000
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class OrbitReturns(SectionResult):
@@ -30,7 +33,7 @@ class OrbitReturns(SectionResult):
     ----------
     fate
         (n,) int8 codes of how each orbit ended: k ≥ 1 for the outcome ``outcomes[k - 1]``, or a `Fate`. `Fate.NOT_COMPUTED` for
-        an orbit with all returns, which was followed to the last one only. Read-only.
+        an orbit with all returns, which was followed to the last one only, and for one that was not followed. Read-only.
     count
         (n,) number of returns of each orbit. Read-only.
     states
@@ -124,7 +127,7 @@ def find_returns(
         well, array / units.state, np.zeros(len(array), np.int64), exit_curves(well, energy / units.energy)[None], returns,
         t_max / units.time, section.in_well_units(units).numbers,
     )  # fmt: skip
-    for part in orbits.parts(execution):
+    for part in orbits.parts(execution, _PART_SIZE):
         if execution.is_cancelled:
             break
         orbits.follow(part, execution)

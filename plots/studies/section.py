@@ -53,10 +53,8 @@ CELLS = 80
 
 def _job(subject: Subject, axis: str) -> Job[Returns]:
     section = subject.section
-    # A part of a map on the section is shown larger.
-    window = subject.window if subject.plane == section.slice_of_starts else None
     spec = MapSpec(
-        subject.potential, section.slice_of_starts, subject.energy, _STARTS, window, t_max=subject.t_max, section=section
+        subject.potential, section.slice_of_starts, subject.energy, _STARTS, subject.window, t_max=subject.t_max, section=section
     )
     return Job(compute_returns, (spec,), (("returns", RETURNS),))
 

@@ -43,7 +43,7 @@ class Subject:
     section
         The surface of section at which crossings are counted.
     window
-        The window of the starts in `plane`; None for the default window.
+        The window of a map whose axes are those of the section; None for the default window, and for other maps.
     """
 
     system: System

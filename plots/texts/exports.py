@@ -73,7 +73,7 @@ def section_csv(orbits: Sequence[Orbit]) -> str:
     """Return a CSV table of the crossings of the section by orbits: orbit and crossing, both from 1, t, x, y, px and py."""
     comments, rows = [program_version()], []
     for number, orbit in enumerate(orbits, 1):
-        comments.append(f"orbit {number}: {orbit.section.crossings_name}")
+        comments += [*_origin(number, orbit), f"orbit {number}: {orbit.section.crossings_name}"]
         states, times = orbit.find_section_states()
         columns = zip(times.tolist(), *states.T.tolist(), strict=True)
         rows += [(number, crossing, *row) for crossing, row in enumerate(columns, 1)]
@@ -87,14 +87,13 @@ def write_csv(names: Iterable[str], rows: Iterable[Sequence[object]], comments: 
 
 
 def _header(number: int, orbit: Orbit, stride: int, verdict: OrbitVerdict) -> list[str]:
-    start = ", ".join(f"{name} = {float(getattr(orbit, name)[0])!r}" for name in ("x", "y", "px", "py"))
     samples = f"one in {stride} of {orbit.t.size} samples" if stride > 1 else f"all {orbit.t.size} samples"
-    return [
-        f"orbit {number}: start {start}",
-        f"orbit {number}: energy {orbit.energy!r}",
-        f"orbit {number}: {verdict.describe()}",
-        f"orbit {number}: {samples}",
-    ]
+    return [*_origin(number, orbit), f"orbit {number}: {verdict.describe()}", f"orbit {number}: {samples}"]
+
+
+def _origin(number: int, orbit: Orbit) -> list[str]:
+    start = ", ".join(f"{name} = {float(getattr(orbit, name)[0])!r}" for name in ("x", "y", "px", "py"))
+    return [f"orbit {number}: start {start}", f"orbit {number}: energy {orbit.energy!r}"]
 
 
 def python_lines(spec: MapSpec, system: System, starts: Sequence[Sequence[float]] = ()) -> str:

@@ -101,3 +101,10 @@ def test_jacobi_constant_stands_for_the_energy_of_a_rotating_frame(run: Run) -> 
 def test_wrong_energies_are_refused(words: tuple[object, ...], problem: str, run: Run) -> None:
     code, _, err = run("lyapunov", *words)
     assert (code, problem in err) == (2, True)
+
+
+def test_the_crossings_can_be_written_alone(run: Run, tmp_path: Path) -> None:
+    code, _, _ = run("orbit", "I", "--state", *STATE, "--t-max", 100, "--output", tmp_path / "orbit.crossings.csv")
+    assert code == 0
+    assert [path.name for path in tmp_path.iterdir()] == ["orbit.crossings.csv"]
+    assert "orbit,crossing,t,x,y,px,py" in (tmp_path / "orbit.crossings.csv").read_text()

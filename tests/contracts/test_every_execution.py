@@ -75,7 +75,7 @@ PARTIAL: dict[str, tuple[Compute, str, float]] = {
     "outcomes": (lambda execution: classify_orbits(III, 0.3, starts(), 300.0, execution=execution), "fate", Fate.NOT_COMPUTED),
     "regularity": (lambda execution: compute_regularity(frame(), execution=execution), "character", Regularity.NOT_JUDGED),
     "trust": (lambda execution: compute_trust(frame(), execution=execution), "trust", Trust.NOT_TESTED),
-    "returns": (lambda execution: find_returns(III, 0.3, starts(), 5, 300.0, execution=execution), "fate", Fate.NOT_COMPUTED),
+    "returns": (lambda execution: find_returns(III, 0.3, starts(), 300, 300.0, execution=execution), "fate", Fate.NOT_COMPUTED),
     "descriptors": (
         lambda execution: compute_lagrangian_descriptor(frame(), duration=3.0, execution=execution),
         "descriptor",

@@ -1,6 +1,6 @@
 // @ts-check
 /**
- * Events of the document about the energy, which the slider, its box, the engine and the section exchange without the server:
+ * Events of the document about energy and window, which the slider, its box, the engine and the section exchange without the server:
  *
  * - `energydragged`: the user moves the slider to an energy;
  * - `energyreleased`: the user has released the slider;

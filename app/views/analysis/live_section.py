@@ -11,13 +11,14 @@ from panel.custom import JSComponent
 
 from app.browser.browser_system import slice_name
 from app.browser.module_files import LIVE_SECTION_ADDRESS
+from app.job_clients.latest_request import Locked
 from app.job_clients.shown_results import ShownResults
 from app.state.view_state import ViewState
 from app.views.components.widgets import LOADED_MODULE
 from engine import Section, Slice, System
 from engine.foundations.validation import LARGEST_NUMBER
 from plots.pictures.setting import Settings
-from plots.studies.section import CELLS, COLOURS, DENSITIES, SECTION_STUDY, density_colours, start_through
+from plots.studies.section import CELLS, COLOURS, DENSITIES, RETURNS, SECTION_STUDY, density_colours, start_through
 from plots.studies.study import Changes
 
 
@@ -32,23 +33,28 @@ class LiveSection(JSComponent):
         The view state.
     results
         The results of the session, among them the study of the section.
+    locked
+        Wraps a function to run under the session's lock.
     change
-        Changes the view, under the lock of the session.
+        Changes the view.
     """
 
     address = param.String(default=LIVE_SECTION_ADDRESS, doc="address of the module")
     slice = param.Dict(default=None, allow_None=True, doc="the slice of the starts; None if the chart has other axes")
     plane = param.String(doc="name of the slice in the tables of windows")
-    served = param.Dict(default=None, allow_None=True, doc="energy and window of the server's complete chart; None without one")
-    follows_window = param.Boolean(doc="whether the starts are those of the map")
+    served = param.Dict(default=None, allow_None=True, doc="energy, window, section of the server's complete chart")
+    section = param.String(doc="the section as text")
+    follows_window = param.Boolean(doc="whether the window is that of the map")
+    returns = param.Integer(default=RETURNS, doc="largest number of returns of an orbit")
     colouring = param.Dict(default={}, doc="the colours, see `Colouring` in the module of dots")
     duration = param.Number(doc="longest time of the orbits")
 
     _esm = LOADED_MODULE
 
-    def __init__(self, state: ViewState, results: ShownResults, change: Callable[[Changes], None]) -> None:
+    def __init__(self, state: ViewState, results: ShownResults, locked: Locked, change: Callable[[Changes], None]) -> None:
         super().__init__(width=0, height=0, margin=0)
         self._state, self._results, self._change = state, results, change
+        self._take = locked(self._start_orbit)
         state.follow(self._show_slice, "section", "system")
         state.follow(self._show_window, "plane", "section")
         state.follow(self._show_colours, "palette", "settings")
@@ -60,10 +66,10 @@ class LiveSection(JSComponent):
         plane = section.slice_of_starts
         columns = section.columns_on(plane)
         described = None if columns is None else plane.to_dict(system.potential.units) | {"sectionColumns": columns}
-        self.param.update(slice=described, plane=slice_name(plane))
+        self.param.update(slice=described, plane=slice_name(plane), section=section.text)
 
     def _show_window(self, plane: Slice, section: Section) -> None:
-        self.follows_window = plane == section.slice_of_starts
+        self.follows_window = section.is_drawn_on(plane)
 
     def _show_colours(self, palette: str, settings: Settings) -> None:
         colours = self._state.colours
@@ -83,15 +89,21 @@ class LiveSection(JSComponent):
             return
         (x_low, x_high), (ordinate_low, ordinate_high) = found.spec.find_window().ranges
         window = {"xLow": x_low, "xHigh": x_high, "ordinateLow": ordinate_low, "ordinateHigh": ordinate_high}
-        self.served = {"energy": found.spec.common_energy, "window": window}
+        self.served = {"energy": found.spec.common_energy, "window": window, "section": found.section.text}
 
     def _handle_msg(self, message: Any) -> None:
         # A browser can send anything: unexpected messages are ignored.
         match message:
-            case {"state": [*state], "energy": int() | float() as energy} if _are_numbers(state, 4) and _are_numbers([energy], 1):
-                self._change(start_through(self._state.section, self._state.potential, np.array(state, float), float(energy)))
+            case {"state": [_, _, _, _] as state, "energy": energy} if all(map(_is_number, [*state, energy])):
+                self._take(np.array(state, float), float(energy))
+
+    def _start_orbit(self, start: np.ndarray, energy: float) -> None:
+        """Start the orbit of a state, if it is on the section at an energy that the page shows."""
+        state, energies = self._state, self._state.energies
+        if energy == state.energy or energies.low <= energy <= energies.high:
+            self._change(start_through(state.section, state.potential, start, energy))
 
 
-def _are_numbers(values: list[Any], count: int) -> bool:
-    """Whether a list contains as many finite numbers of legal size."""
-    return len(values) == count and all(isinstance(each, int | float) and abs(each) <= LARGEST_NUMBER for each in values)
+def _is_number(value: Any) -> bool:
+    """Whether a value is a finite number of legal size."""
+    return isinstance(value, int | float) and abs(value) <= LARGEST_NUMBER

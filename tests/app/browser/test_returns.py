@@ -34,7 +34,7 @@ def test_returns_in_the_browser_are_those_of_the_server(potential, energy: float
     described = plane.to_dict(potential.units) | {"sectionColumns": section.columns_on(plane)}
     edges = ("xLow", "xHigh", "ordinateLow", "ordinateHigh")
     corners = dict(zip(edges, (*window.ranges[0], *window.ranges[1]), strict=True))
-    starts = {"slice": described, "energy": energy, "window": corners, "side": SIDE, "duration": spec.t_max}
+    starts = {"slice": described, "energy": energy, "window": corners, "side": SIDE, "duration": spec.t_max, "most": 1000}
     sent = {"system": portable.to_dict(), "module": portable.module, "starts": starts}
     found, channels = run_node("run_returns.js", sent, tmp_path).values()
     assert len(found) > 3

@@ -10,7 +10,7 @@ import pytest
 
 from app.state.view import default_settings
 from app.state.view_state import ViewState
-from engine import CASES, Plane, System, Window
+from engine import CASES, Plane, System, Window, read_section
 from engine.systems.catalogue.table import PAPER_ENERGIES
 from plots.pictures.palette import MOST_ORBITS
 
@@ -97,3 +97,13 @@ def test_an_equal_slice_is_no_change() -> None:
     state.param.watch(lambda *events: changed.extend(event.name for event in events), ["plane", "system", "window"])
     state.show(state.reviewed, plane=deepcopy(Plane.X_PX), window=Window(-0.1, 0.1, -0.2, 0.2))
     assert changed == ["window"]
+
+
+def test_a_study_has_the_window_of_a_map_with_the_axes_of_the_section() -> None:
+    window = Window(-0.1, 0.1, -0.2, 0.2)
+    assert ViewState(plane=Plane.X_PX, window=window).subject.window == window
+    assert ViewState(plane=Plane.X_Y, window=window).subject.window is None
+    for text in ("x = 0", "x - y = 0", "x + 0.3 px = 0"):
+        section = read_section(text)
+        subject = ViewState(plane=section.slice_of_starts, section=section, window=window).subject
+        assert subject.window == (window if text == "x = 0" else None)

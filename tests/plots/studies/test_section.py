@@ -116,7 +116,6 @@ def test_a_part_of_a_map_on_the_section_is_shown_larger() -> None:
     found = run_job(SECTION_STUDY.job(on_section, ""), Execution(), {})
     (chart,) = SECTION_STUDY.charts(found, PAPER, NO_SETTINGS)
     assert chart.axis_limits == ((-0.1, 0.3), (-0.2, 0.2))
-    assert SECTION_STUDY.job(replace(on_section, plane=Plane.X_Y), "") == SECTION_STUDY.job(SUBJECT, "")
 
 
 def test_an_energy_without_orbits_gives_no_chart(found: Returns) -> None:

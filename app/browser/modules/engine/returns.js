@@ -21,6 +21,7 @@ const LONGEST_TIME = 630
  * @property {import("./starts.js").Window} window
  * @property {number} side
  * @property {number} duration  longest time of the orbits, in units of the page
+ * @property {number} most  largest number of returns of an orbit, after which its end is not told
  */
 
 export class Returns {
@@ -28,7 +29,7 @@ export class Returns {
    * @param {import("./integrator.js").Integrator} integrator  keeps the arrays of the orbits in its memory
    * @param {Starts} starts
    */
-  constructor(integrator, {slice, energy, window, side, duration}) {
+  constructor(integrator, {slice, energy, window, side, duration, most}) {
     const rows = Uint32Array.from({length: side}, (_, row) => row)
     const {inside} = findInside(integrator, {slice, energy, window, columns: side, rows: side}, {rows, columns: side})
     const {units} = integrator.system
@@ -36,6 +37,8 @@ export class Returns {
     this.#end = Math.min(duration / units.time, LONGEST_TIME)
     const speed = units.length / units.time
     this.#units = [units.length, units.length, speed, speed]
+    this.#most = most
+    this.#counts = new Uint32Array(this.#ensemble.count)
     this.#last = this.#units.map((_, column) => Float64Array.from(this.#ensemble.atSection(column)))
   }
 
@@ -43,6 +46,9 @@ export class Returns {
   #end
   /** Units of x, y, px and py, in units of the page. */
   #units
+  #most
+  /** Number of returns of each orbit. */
+  #counts
   /** x, y, px and py of each orbit at its last return that was taken. */
   #last
   /** Orbits of which it is known that they have ended. @type {Set<number>} */
@@ -63,9 +69,11 @@ export class Returns {
     this.#ensemble.advance(Math.min(this.#ensemble.time + STEP, this.#end))
     const columns = this.#units.map((_, column) => this.#ensemble.atSection(column))
     for (let orbit = 0; orbit < this.#ensemble.count; orbit++) {
+      if (this.#counts[orbit] === this.#most) continue
       const isNew = columns.some((column, k) => column[orbit] !== this.#last[k][orbit])
       if (isNew && !Number.isNaN(columns[0][orbit])) {
         columns.forEach((column, k) => (this.#last[k][orbit] = column[orbit]))
+        this.#counts[orbit]++
         take(
           orbit,
           columns.map((column, k) => column[orbit] * this.#units[k]),

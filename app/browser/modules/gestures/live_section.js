@@ -45,7 +45,7 @@ class LiveSection {
       this.#canvas.addEventListener(event, each => each.stopPropagation())
     this.#canvas.addEventListener("click", each => this.#pick(each.offsetX, each.offsetY))
     const ignored = [onPresent(() => this.#follow()), listen("sceneshown", () => this.#follow())]
-    model.on(["slice", "served", "colouring", "duration", "follows_window"], () => this.#follow())
+    model.on(["slice", "section", "served", "colouring", "duration", "follows_window"], () => this.#follow())
     model.on("lifecycle:remove", () => {
       this.#hide()
       for (const ignore of ignored) ignore()
@@ -78,9 +78,11 @@ class LiveSection {
     const map = shown?.scene()
     if (!shown || !map || !this.#model.slice) return null
     const {energy} = map
-    const window = this.#model.follows_window ? map.window : null
+    const {slice, section, follows_window: follows} = this.#model
+    // The pictures may still show another slice.
+    const window = follows && String(map.slice.axes) === String(slice.axes) ? map.window : null
     // While the server's chart is being completed, what is shown stays.
-    const {served} = this.#model
+    const served = this.#model.served?.section === section ? this.#model.served : null
     const isServed = served
       ? sameEnergy(energy, served.energy) && (!window || isNearWindow(window, served.window))
       : !this.#returns
@@ -116,8 +118,12 @@ class LiveSection {
     this.#frame = 0
     const scene = this.#scene
     if (!scene) return this.#hide()
-    if (this.#keyOf(scene) !== this.#shownKey) this.#begin(scene)
-    this.#shownKey = this.#keyOf(scene)
+    if (this.#keyOf(scene) !== this.#shownKey) {
+      // Then an error does not keep the window of the chart from being restored.
+      this.#shownKey = this.#keyOf(scene)
+      this.#begin(scene)
+      this.#shownKey = this.#keyOf(scene)
+    }
     const [column, other] = this.#model.slice.sectionColumns
     const startTime = performance.now()
     while (this.#returns && !this.#returns.complete && performance.now() - startTime < FRAME_MS)
@@ -142,7 +148,7 @@ class LiveSection {
     const integrator = new Integrator(shown.system, shown.modules)
     const window = this.#showWindow(chart, mapWindow, windowAt(integrator, this.#model.plane, energy))
     const {slice, duration, colouring} = this.#model
-    this.#returns = new Returns(integrator, {slice, energy, window, side: SIDE, duration})
+    this.#returns = new Returns(integrator, {slice, energy, window, side: SIDE, duration, most: this.#model.returns})
     this.#energy = energy
     const {left, top, width, height} = chart.view.frame.bbox
     // Elements of Bokeh show only what their shadow root contains.
