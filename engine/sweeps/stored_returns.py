@@ -58,8 +58,8 @@ def store_returns(
     >>> from escape_explorer import CASES, MapSpec, Plane, store_returns
     >>> with TemporaryDirectory() as folder:
     ...     found = store_returns(MapSpec(CASES["II"], Plane.X_PX, 0.15, (9, 7), t_max=100.0), 3, f"{folder}/returns.zarr")
-    ...     dict(found.sizes), int(found["return_time"].count())
-    ({'px': 7, 'x': 9, 'return': 3}, 111)
+    ...     dict(sorted(found.sizes.items())), int(found["return_time"].count())
+    ({'px': 7, 'return': 3, 'x': 9}, 111)
     """
     columns, rows = spec.resolution
     check_request(spec, returns, columns)
