@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from engine.exits.exit_shapes import line_points, mirrored_curve
-from engine.exits.periodic_orbits import floquet_multipliers, monodromy_matrix
+from engine.exits.periodic_orbits import floquet_multipliers, monodromy_matrix, monodromy_of_brake_orbit
 from engine.foundations.arrays import read_only
 from engine.foundations.result import Result
 from engine.integrator.kernels import exit_geometry as geometry
@@ -71,7 +71,8 @@ class LyapunovOrbit(Result):
         93.85
         """
         units = self.potential.units
-        monodromy = monodromy_matrix(self.potential.in_well_units, self.start / units.state, self.period / units.time)
+        find_matrix = monodromy_matrix if self.potential.rotation else monodromy_of_brake_orbit
+        monodromy = find_matrix(self.potential.in_well_units, self.start / units.state, self.period / units.time)
         return read_only(floquet_multipliers(monodromy))
 
     @property

@@ -11,6 +11,7 @@ section 7.3.5). All quantities are in units of the well.
 from __future__ import annotations
 
 import functools
+from types import ModuleType
 from typing import NamedTuple
 
 import numpy as np
@@ -42,6 +43,8 @@ _MOST_STEPS = 400
 _MOST_STEPS_PER_PART = 400
 # Sharpness of the smooth maximum that defines the edge of an orbit, see `_edge`.
 _SHARPNESS = 50.0
+# Largest change of the matrix of a step by computing it in two halves, relative to its largest element, and most halvings.
+_TANGENT_ERROR, _MOST_HALVINGS = 1e-11, 12
 # Largest distance between the ends of neighbouring parts of an orbit, in units of the well.
 _LARGEST_GAP = 1e-10
 
@@ -126,12 +129,48 @@ def monodromy_matrix(potential: Potential, start: np.ndarray, period: float) -> 
     """Return the monodromy matrix, (4, 4), of an orbit that begins at a state (4,), in units of the well."""
     kernels = potential.well.kernels
     steps = trace_steps(kernels, start, period, len(potential.outcomes))
-    durations = np.diff(steps[:, 4], append=period)
+    states, durations = _shortened_steps(kernels, steps[:, :4], np.diff(steps[:, 4], append=period))
     matrix = np.eye(4)
-    for state, duration in zip(steps[:, :4], durations, strict=True):
+    for state, duration in zip(states, durations, strict=True):
         # `tangent` changes the rows of the matrix in place: its columns are four deviation vectors along the same orbit.
         kernels.tangent(4, np.full(4, duration), *np.repeat(state, 4).reshape(4, 4), *matrix)
     return matrix
+
+
+def monodromy_of_brake_orbit(potential: Potential, start: np.ndarray, period: float) -> np.ndarray:
+    """Return the monodromy matrix, (4, 4), of an orbit that begins at rest in a frame at rest, in units of the well.
+
+    The orbit is at rest again after half a period, and returns on the same path. Errors thus grow over half a period only.
+    """
+    half = monodromy_matrix(potential, start, 0.5 * period)
+    (a, b), (c, d) = (np.hsplit(rows, 2) for rows in np.vsplit(half, 2))
+    # The matrix of the way back: that of the symplectic inverse, with reversed momenta before and after.
+    way_back = np.block([[d.T, b.T], [c.T, a.T]])
+    return way_back @ half
+
+
+def _shortened_steps(kernels: ModuleType, states: np.ndarray, durations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the starts (n, 4) and sizes (n,) of steps, halved until the series of deviations from the orbit is accurate.
+
+    The steps follow from the series of the orbit. On an orbit along a line of symmetry, these lack what acts across the line.
+    """
+    for _ in range(_MOST_HALVINGS):
+        halves = 0.5 * durations
+        middles = advance_states(kernels, states, halves)
+        whole, first, second = (
+            np.moveaxis(transition_matrices(kernels, begin.T, size), -1, 0)
+            for begin, size in ((states, durations), (states, halves), (middles, halves))
+        )
+        product = second @ first
+        error = np.abs(product - whole).max(axis=(1, 2)) / np.abs(product).max(axis=(1, 2))
+        # `not … <=` also halves steps that are not finite.
+        is_rough = ~(error <= _TANGENT_ERROR)
+        if not is_rough.any():
+            break
+        sizes = np.where(is_rough, halves, durations)
+        after = np.flatnonzero(is_rough) + 1
+        states, durations = np.insert(states, after, middles[is_rough], axis=0), np.insert(sizes, after, halves[is_rough])
+    return states, durations
 
 
 def _continue_to(family: _Family, sigma: float) -> np.ndarray | None:
