@@ -163,8 +163,8 @@ def _shortened_steps(kernels: ModuleType, states: np.ndarray, durations: np.ndar
         )
         product = second @ first
         error = np.abs(product - whole).max(axis=(1, 2)) / np.abs(product).max(axis=(1, 2))
-        # `not … <=` also halves steps that are not finite.
-        is_rough = ~(error <= _TANGENT_ERROR)
+        # Halving does not help a step that is not finite: its error, NaN, is not above the limit.
+        is_rough = error > _TANGENT_ERROR
         if not is_rough.any():
             break
         sizes = np.where(is_rough, halves, durations)
