@@ -12,9 +12,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from engine.exits.brake_orbits import saddle_axes
 from engine.exits.exit_shapes import absent_channel, exit_gates, reversed_curve
 from engine.exits.lyapunov_orbit import LyapunovOrbit
+from engine.exits.saddle_orbits.brake_orbits import saddle_axes
 from engine.integrator.kernels import exit_geometry as geometry
 from engine.integrator.kernels.events import NOT_COMPUTED
 from engine.integrator.kernels.propagate import NO_TRACE, Exits, Orbits

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from engine.exits.brake_orbits import saddle_axes
 from engine.exits.exit_shapes import absent_channel, closed_channel
 from engine.exits.lyapunov_orbits import UndefinedExitsError, find_orbits_in_well_units
+from engine.exits.saddle_orbits.brake_orbits import saddle_axes
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.integrator.kernels.exit_geometry import CURVE_COLUMNS
 from engine.systems.potential import Potential

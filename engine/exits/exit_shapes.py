@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from engine.exits.brake_orbits import Axes, saddle_axes
+from engine.exits.saddle_orbits.brake_orbits import Axes, saddle_axes
 from engine.foundations.root_finding import bisect
 from engine.integrator.kernels import exit_geometry as geometry
 from engine.integrator.source.section_numbers import UPWARD, SectionNumbers

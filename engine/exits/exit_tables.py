@@ -13,10 +13,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.exits.brake_orbits import chord_axes
 from engine.exits.exit_shapes import curve_along, exit_gates, find_reach
 from engine.exits.lyapunov_orbit import LyapunovOrbit
 from engine.exits.lyapunov_orbits import find_orbits_in_well_units
+from engine.exits.saddle_orbits.brake_orbits import chord_axes
 from engine.foundations.arrays import ReadOnlyArrays
 from engine.integrator.kernels import exit_geometry as geometry
 from engine.integrator.kernels.exit_geometry import MIDDLE_COLUMN, exit_points, interpolate_exit

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from engine.exits.exit_shapes import line_points, mirrored_curve
-from engine.exits.periodic_orbits import floquet_multipliers, monodromy_matrix, monodromy_of_brake_orbit
+from engine.exits.saddle_orbits.orbit_parts import floquet_multipliers, monodromy_matrix, monodromy_of_brake_orbit
 from engine.foundations.arrays import read_only
 from engine.foundations.result import Result
 from engine.integrator.kernels import exit_geometry as geometry

@@ -15,7 +15,10 @@ from dataclasses import replace
 import numpy as np
 
 from engine.exits.beyond_exits import find_extent, returning_share
-from engine.exits.brake_orbits import (
+from engine.exits.exit_shapes import closes_channel, curve_along, find_reach, line_across, paths_meet
+from engine.exits.lyapunov_orbit import LyapunovOrbit
+from engine.exits.mirrored_orbits import Images, OrbitSearchError, find_with_images, image_exits, meets_image
+from engine.exits.saddle_orbits.brake_orbits import (
     BrakeOrbit,
     chord_axes,
     continue_in_energy,
@@ -23,11 +26,8 @@ from engine.exits.brake_orbits import (
     find_from_both_ends,
     saddle_axes,
 )
-from engine.exits.exit_shapes import closes_channel, curve_along, find_reach, line_across, paths_meet
-from engine.exits.lyapunov_orbit import LyapunovOrbit
-from engine.exits.merged_orbits import axes_between, find_merged_orbits
-from engine.exits.mirrored_orbits import Images, OrbitSearchError, find_with_images, image_exits, meets_image
-from engine.exits.periodic_orbits import find_orbit_in_rotating_frame
+from engine.exits.saddle_orbits.merged_orbits import axes_between, find_merged_orbits
+from engine.exits.saddle_orbits.rotating_orbits import find_orbit_in_rotating_frame
 from engine.foundations.validation import checked_number, checks_types
 from engine.integrator.kernels import exit_geometry as geometry
 from engine.systems.landscape.hill_component import Extent

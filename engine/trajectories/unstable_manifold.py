@@ -9,7 +9,7 @@ import numpy as np
 
 from engine.exits.exit_rows import exit_curves
 from engine.exits.lyapunov_orbit import LyapunovOrbit
-from engine.exits.periodic_orbits import monodromy_matrix
+from engine.exits.saddle_orbits.orbit_parts import monodromy_matrix
 from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.integrator.kernels.dense_output import sample_path, trace_steps

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from engine.exits.brake_orbits import Axes, BrakeOrbit, find_from_outside
+from engine.exits.saddle_orbits.brake_orbits import Axes, BrakeOrbit, find_from_outside
 from engine.systems.potential import Potential
 
 # Positions at which lines of starts cross the line between the outermost saddles, as shares of its length.

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import pytest
 
-from engine.exits.continuation import StepLimits, follow
+from engine.exits.saddle_orbits.continuation import StepLimits, follow
 
 LIMITS = StepLimits(first=0.5, smallest=2.0**-5, attempts=50)
 

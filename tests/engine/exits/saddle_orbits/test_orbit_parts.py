@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from engine import CASES, Potential, find_lyapunov_orbits, parse_formula
-from engine.exits.periodic_orbits import floquet_multipliers, monodromy_matrix
+from engine.exits.saddle_orbits.orbit_parts import floquet_multipliers, monodromy_matrix
 
 
 def matrix_of(potential: Potential, state: tuple[float, ...], period: float) -> np.ndarray:

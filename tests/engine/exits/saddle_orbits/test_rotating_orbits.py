@@ -7,7 +7,8 @@ import pytest
 from scipy.optimize import brentq
 
 from engine import CASES, LyapunovOrbit, Potential, find_lyapunov_orbits
-from engine.exits.periodic_orbits import PeriodicOrbit, find_orbit_in_rotating_frame, floquet_multipliers, monodromy_matrix
+from engine.exits.saddle_orbits.orbit_parts import floquet_multipliers, monodromy_matrix
+from engine.exits.saddle_orbits.rotating_orbits import SaddleOrbit, find_orbit_in_rotating_frame
 from tests.engine.exits.rotating_systems import EARTH_MOON, at_jacobi_constant, hill, integrate, three_body
 from tests.peers.random_systems import random_well
 
@@ -23,14 +24,14 @@ L1, L2 = 2, 1
 HILL_SADDLE = -0.5 * 3.0 ** (4.0 / 3.0)
 
 
-def orbit_of(potential: Potential, energy: float, channel: int) -> PeriodicOrbit:
+def orbit_of(potential: Potential, energy: float, channel: int) -> SaddleOrbit:
     """Return the orbit, in units of the well."""
     orbit = find_orbit_in_rotating_frame(potential.in_well_units, energy / potential.units.energy, channel)
     assert orbit is not None
     return orbit
 
 
-def multipliers(potential: Potential, orbit: PeriodicOrbit) -> np.ndarray:
+def multipliers(potential: Potential, orbit: SaddleOrbit) -> np.ndarray:
     return floquet_multipliers(monodromy_matrix(potential.in_well_units, orbit.path[:, 0], orbit.period))
 
 

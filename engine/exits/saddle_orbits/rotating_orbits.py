@@ -10,15 +10,14 @@ section 7.3.5). All quantities are in units of the well.
 
 from __future__ import annotations
 
-import functools
-from types import ModuleType
 from typing import NamedTuple
 
 import numpy as np
 
-from engine.exits.brake_orbits import Axes, saddle_axes
-from engine.exits.continuation import StepLimits, follow
-from engine.integrator.kernels.dense_output import advance_states, sample_path, trace_pieces, trace_steps, transition_matrices
+from engine.exits.saddle_orbits.brake_orbits import Axes, saddle_axes
+from engine.exits.saddle_orbits.continuation import StepLimits, follow
+from engine.exits.saddle_orbits.orbit_parts import Parts, trace_parts, velocities
+from engine.integrator.kernels.dense_output import sample_path
 from engine.systems.landscape.closed_energy import ridge_bend
 from engine.systems.potential import Potential
 
@@ -39,12 +38,8 @@ _PREDICTOR_ORBITS = 4
 _SMALLEST_STEP = 2.0**-10
 # Largest number of steps of σ.
 _MOST_STEPS = 400
-# Largest number of integrator steps in a part of an orbit; an orbit with more steps passes close to a centre of attraction.
-_MOST_STEPS_PER_PART = 400
 # Sharpness of the smooth maximum that defines the edge of an orbit, see `_edge`.
 _SHARPNESS = 50.0
-# Largest change of the matrix of a step by computing it in two halves, relative to its largest element, and most halvings.
-_TANGENT_ERROR, _MOST_HALVINGS = 1e-11, 12
 # Largest distance between the ends of neighbouring parts of an orbit, in units of the well.
 _LARGEST_GAP = 1e-10
 
@@ -52,7 +47,7 @@ _LARGEST_GAP = 1e-10
 _KnownOrbits = list[tuple[float, np.ndarray]]
 
 
-class PeriodicOrbit(NamedTuple):
+class SaddleOrbit(NamedTuple):
     """One period of an orbit over a saddle, starting at the turning point with the smallest q in the axes of the saddle.
 
     Attributes
@@ -81,19 +76,7 @@ class _Family(NamedTuple):
     bend: float
 
 
-class _Parts(NamedTuple):
-    """The parts of a trial orbit between its nodes.
-
-    For each part, `steps` are its integrator steps, (m, 5), `ends` is the state at its end, (nodes, 4), and `matrices` is its
-    transition matrix, (nodes, 4, 4).
-    """
-
-    steps: list[np.ndarray]
-    ends: np.ndarray
-    matrices: np.ndarray
-
-
-def find_orbit_in_rotating_frame(potential: Potential, energy: float, channel: int) -> PeriodicOrbit | None:
+def find_orbit_in_rotating_frame(potential: Potential, energy: float, channel: int) -> SaddleOrbit | None:
     """Return the orbit over a saddle at an energy above it, followed from the small oscillations; None if it is not found.
 
     In a frame at rest, the result is the orbit that `brake_orbits` finds, up to rounding errors. Exits in such a frame are made
@@ -117,60 +100,6 @@ def find_orbit_in_rotating_frame(potential: Potential, energy: float, channel: i
     with np.errstate(all="ignore"):
         unknowns = _continue_to(family, float(np.sqrt(energy - saddle_energy)))
         return None if unknowns is None else _complete_orbit(family, energy, unknowns)
-
-
-def floquet_multipliers(matrix: np.ndarray) -> np.ndarray:
-    """Return the complex eigenvalues of a monodromy matrix, of shape (4,), in order of decreasing modulus."""
-    eigenvalues = np.linalg.eigvals(matrix).astype(complex)
-    return eigenvalues[np.argsort(-np.abs(eigenvalues), kind="stable")]
-
-
-def monodromy_matrix(potential: Potential, start: np.ndarray, period: float) -> np.ndarray:
-    """Return the monodromy matrix, (4, 4), of an orbit that begins at a state (4,), in units of the well."""
-    kernels = potential.well.kernels
-    steps = trace_steps(kernels, start, period, len(potential.outcomes))
-    states, durations = _shortened_steps(kernels, steps[:, :4], np.diff(steps[:, 4], append=period))
-    matrix = np.eye(4)
-    for state, duration in zip(states, durations, strict=True):
-        # `tangent` changes the rows of the matrix in place: its columns are four deviation vectors along the same orbit.
-        kernels.tangent(4, np.full(4, duration), *np.repeat(state, 4).reshape(4, 4), *matrix)
-    return matrix
-
-
-def monodromy_of_brake_orbit(potential: Potential, start: np.ndarray, period: float) -> np.ndarray:
-    """Return the monodromy matrix, (4, 4), of an orbit that begins at rest in a frame at rest, in units of the well.
-
-    The orbit is at rest again after half a period, and returns on the same path. Errors thus grow over half a period only.
-    """
-    half = monodromy_matrix(potential, start, 0.5 * period)
-    (a, b), (c, d) = (np.hsplit(rows, 2) for rows in np.vsplit(half, 2))
-    # The matrix of the way back: that of the symplectic inverse, with reversed momenta before and after.
-    way_back = np.block([[d.T, b.T], [c.T, a.T]])
-    return way_back @ half
-
-
-def _shortened_steps(kernels: ModuleType, states: np.ndarray, durations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the starts (n, 4) and sizes (n,) of steps, halved until the series of deviations from the orbit is accurate.
-
-    The steps follow from the series of the orbit. On an orbit along a line of symmetry, these lack what acts across the line.
-    """
-    for _ in range(_MOST_HALVINGS):
-        halves = 0.5 * durations
-        middles = advance_states(kernels, states, halves)
-        whole, first, second = (
-            np.moveaxis(transition_matrices(kernels, begin.T, size), -1, 0)
-            for begin, size in ((states, durations), (states, halves), (middles, halves))
-        )
-        product = second @ first
-        error = np.abs(product - whole).max(axis=(1, 2)) / np.abs(product).max(axis=(1, 2))
-        # Halving does not help a step that is not finite: its error, NaN, is not above the limit.
-        is_rough = error > _TANGENT_ERROR
-        if not is_rough.any():
-            break
-        sizes = np.where(is_rough, halves, durations)
-        after = np.flatnonzero(is_rough) + 1
-        states, durations = np.insert(states, after, middles[is_rough], axis=0), np.insert(sizes, after, halves[is_rough])
-    return states, durations
 
 
 def _continue_to(family: _Family, sigma: float) -> np.ndarray | None:
@@ -254,16 +183,12 @@ def _linearise(family: _Family, sigma: float, unknowns: np.ndarray) -> tuple[np.
     The equations: each part ends where the next part begins, the energy is σ² above the saddle, and q̇ = 0 at the start.
     """
     states = family.saddle_state + sigma * unknowns[:-1].reshape(_NODES, 4)
-    parts = _trace(family.potential, states, unknowns[-1])
+    parts = _trace(family, states, unknowns[-1])
     if parts is None:
         return None
     jacobian, residual = np.zeros((4 * _NODES + 2, unknowns.size)), np.empty(4 * _NODES + 2)
-    residual[:-2] = ((parts.ends - np.roll(states, -1, axis=0)) / sigma).ravel()
-    jacobian[:-2, -1] = (_velocities(family.potential, parts.ends) / (_NODES * sigma)).ravel()
-    for k in range(_NODES):
-        node, next_node = slice(4 * k, 4 * k + 4), slice(4 * ((k + 1) % _NODES), 4 * ((k + 1) % _NODES) + 4)
-        jacobian[node, node] += parts.matrices[k]
-        jacobian[node, next_node] -= np.eye(4)
+    residual[:-2], jacobian[:-2, :-1] = parts.gaps(states) / sigma, parts.changes_of_gaps()
+    jacobian[:-2, -1] = (velocities(family.potential, parts.ends) / (_NODES * sigma)).ravel()
     start, outward = states[0], family.axes.outward
     residual[-2] = (family.potential.energy(start) - family.saddle_energy) / sigma**2 - 1.0
     jacobian[-2, :4] = np.array([*family.potential.gradient(start[0], start[1]), start[2], start[3]]) / sigma
@@ -272,52 +197,24 @@ def _linearise(family: _Family, sigma: float, unknowns: np.ndarray) -> tuple[np.
     return (jacobian, residual) if np.isfinite(residual).all() and np.isfinite(jacobian).all() else None
 
 
-def _velocities(potential: Potential, states: np.ndarray) -> np.ndarray:
-    """Return the time derivatives of n states, of shape (n, 4)."""
-    x, y, vx, vy = states.T
-    slope_x, slope_y = potential.gradient(x, y)
-    coriolis = 2.0 * potential.rotation
-    return np.column_stack([vx, vy, coriolis * vy - slope_x, -coriolis * vx - slope_y])
-
-
-def _trace(potential: Potential, states: np.ndarray, period: float) -> _Parts | None:
+def _trace(family: _Family, states: np.ndarray, period: float) -> Parts | None:
     """Return the parts of an orbit of some period that start at its nodes (nodes, 4); None if they cannot be integrated."""
-    if not (np.isfinite(states).all() and 0.0 < period < np.inf):
-        return None
-    kernels, duration = potential.well.kernels, period / _NODES
-    # The first piece of a part is the whole part, or has more than `_MOST_STEPS_PER_PART` steps.
-    steps = [next(trace_pieces(kernels, state, duration, len(potential.outcomes)))[0] for state in states]
-    if max(map(len, steps)) > _MOST_STEPS_PER_PART:
-        return None
-    stops = np.cumsum([len(part_steps) for part_steps in steps])
-    durations = np.concatenate([np.diff(part_steps[:, 4], append=duration) for part_steps in steps])
-    step_states = np.concatenate(steps)[:, :4]
-    if not np.isfinite(step_states).all():
-        return None
-    matrices = np.moveaxis(transition_matrices(kernels, step_states.T, durations), -1, 0)
-    products = [_product(part_matrices) for part_matrices in np.split(matrices, stops[:-1])]
-    ends = advance_states(kernels, step_states[stops - 1], durations[stops - 1])
-    return _Parts(steps, ends, np.array(products))
+    return trace_parts(family.potential, states, np.full(_NODES, period / _NODES))
 
 
-def _product(matrices: np.ndarray) -> np.ndarray:
-    """Return the product of n transition matrices, of shape (4, 4), with the first matrix applied first."""
-    return functools.reduce(lambda earlier, matrix: matrix @ earlier, matrices)
-
-
-def _complete_orbit(family: _Family, energy: float, unknowns: np.ndarray) -> PeriodicOrbit | None:
+def _complete_orbit(family: _Family, energy: float, unknowns: np.ndarray) -> SaddleOrbit | None:
     """Return the orbit with its path and edge; None if its parts do not join within `_LARGEST_GAP`."""
     sigma, period = float(np.sqrt(energy - family.saddle_energy)), float(unknowns[-1])
     states = family.saddle_state + sigma * unknowns[:-1].reshape(_NODES, 4)
-    parts = _trace(family.potential, states, period)
+    parts = _trace(family, states, period)
     # `not … <` also rejects NaN.
-    if parts is None or not np.abs(parts.ends - np.roll(states, -1, axis=0)).max() < _LARGEST_GAP:
+    if parts is None or not np.abs(parts.gaps(states)).max() < _LARGEST_GAP:
         return None
     kernels, duration = family.potential.well.kernels, period / _NODES
     times = np.arange(_POINTS_PER_NODE) * (duration / _POINTS_PER_NODE)
     pieces = [sample_path(kernels, steps, times) for steps in parts.steps]
     path = np.concatenate([*pieces, states[:1].T], axis=1)
-    return PeriodicOrbit(period, path, _edge(family, path))
+    return SaddleOrbit(period, path, _edge(family, path))
 
 
 def _edge(family: _Family, path: np.ndarray) -> float:

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from engine.exits.continuation import StepLimits, follow
+from engine.exits.saddle_orbits.continuation import StepLimits, follow
 from engine.foundations.root_finding import find_root
 from engine.integrator.source.recurrence import TOLERANCE
 from engine.integrator.source.series import ORDER
