@@ -17,6 +17,7 @@ class ShownResults(param.Parameterized):
     analyses = param.Parameter(default=NO_ANALYSES, doc="complete results of the layers of the map, by name")
     orbits = param.Parameter(default=(), doc="a `StartOrbit` for each start")
     studies = param.Parameter(default=MappingProxyType({}), doc="results of the studies so far, by name")
+    calls = param.Parameter(default=MappingProxyType({}), doc="calls that compute these results, see `Study.call`, by name")
 
     @property
     def whole_map(self) -> EscapeMap | None:

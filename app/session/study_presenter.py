@@ -8,6 +8,7 @@ from app.job_clients.latest_request import LatestRequest
 from app.session.context import SessionContext
 from app.state.view_state import STARTS_FULL
 from app.views.analysis.study_view import StudyView
+from engine.jobs.job import Job
 from plots.studies.study import Changes, Study, Subject
 
 
@@ -33,6 +34,7 @@ class StudyPresenter:
         self._study, self._state, self._results = study, context.state, context.results
         self._open_view, self._notice = context.open_view, context.notice
         self._run: _Run | None = None
+        self._call: Job[Any] | None = None
         # The run whose result is shown. It differs from `_run` until the first result of a new run arrives.
         self._shown_run: _Run | None = None
         self.view = StudyView(study, self._state, self._toggle, self.click, context.latest)
@@ -72,7 +74,7 @@ class StudyPresenter:
             self._stop()
             self.view.say(str(error))
             return
-        self._run = run
+        self._run, self._call = run, self._study.call(job)
         self.view.show_running(True)
         self._request.submit(job)
 
@@ -90,8 +92,13 @@ class StudyPresenter:
             self._stop()
         self._shown_run = self._run
         self.view.show(found, "" if self._run is None or found is None else self._run.axis)
-        others = {name: result for name, result in self._results.studies.items() if name != self._study.name}
-        self._results.studies = others if found is None else {**others, self._study.name: found}
+        self._store("studies", found)
+        self._store("calls", None if found is None else self._call)
+
+    def _store(self, kind: str, value: Any) -> None:
+        """Store the result, or its call, under the name of the study; None removes it."""
+        others = {name: known for name, known in getattr(self._results, kind).items() if name != self._study.name}
+        setattr(self._results, kind, others if value is None else {**others, self._study.name: value})
 
     def click(self, x: float, y: float) -> None:
         """Change the view as the study says for a click at a place of a chart."""

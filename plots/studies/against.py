@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from engine import SweepSpec
+from engine import SweepSpec, compute_sweep
 from engine.foundations.wording import format_number
 from engine.jobs.job import Job
 from engine.measures.table import CURVES
@@ -68,6 +68,7 @@ AGAINST = Study(
     "a minute or more.",
     axes=energy_and_parameters,
     job=_job,
+    function=compute_sweep,
     progress=_progress,
     sentence=_sentence,
     frames=(measure_frame(SHARES), *map(measure_frame, CURVE_PANELS)),

@@ -7,7 +7,7 @@ the table and the figure among the files, the name in links, and the command ``s
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from engine import Potential, Result, Section, Slice, System
@@ -75,6 +75,8 @@ class Study[Found: Result]:
         If there are any, all charts share the axis of x, and the page marks the present value.
     job
         Returns the job, given one of `axes`, or "" if there are none; raises ValueError for a subject that cannot be studied.
+    function
+        The public function that returns the result for the arguments of the job; None if the job has this function.
     progress
         Returns the computed share of a result, 0 to 1.
     follows_map
@@ -109,10 +111,15 @@ class Study[Found: Result]:
     figure: str
     caption: Callable[[Found], str]
     axes: Callable[[System], Sequence[str]] = lambda system: ()
+    function: Callable[..., Found] | None = None
     progress: Callable[[Found], float] = lambda found: 1.0
     follows_map: bool = False
     button: str = ""
     settings: tuple[Setting, ...] = ()
+
+    def call(self, job: Job[Found]) -> Job[Found]:
+        """Return the call of a public function that returns the result of a job, for scripts."""
+        return replace(job, function=self.function or job.function)
 
     def is_complete(self, found: Found) -> bool:
         """Whether no further part of a result follows."""

@@ -1,14 +1,19 @@
-"""Write results as files: datasets as NetCDF, orbits and curves as CSV, and a Python script that reproduces a map and orbits."""
+"""Write results as files: datasets as NetCDF, orbits and curves as CSV, and a Python script that reproduces a view."""
 
 from __future__ import annotations
 
 import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import fields, is_dataclass, replace
+from enum import Enum
 from importlib.util import find_spec
+from textwrap import indent
 from typing import TYPE_CHECKING, Any
 
-from engine import CASES, EscapeMap, MapSpec, Orbit, Plane, Result, Section, Slice, System, judge_orbit
+import engine
+from engine import CASES, EscapeMap, MapSpec, Orbit, Potential, Result, Section, Slice, System, Window, judge_orbit
+from engine.jobs.job import Job
 from engine.results import OrbitVerdict
 from engine.systems.system import TYPED
 from plots.layers.layer import NO_ANALYSES, Analyses
@@ -96,8 +101,8 @@ def _origin(number: int, orbit: Orbit) -> list[str]:
     return [f"orbit {number}: start {start}", f"orbit {number}: energy {orbit.energy!r}"]
 
 
-def python_lines(spec: MapSpec, system: System, starts: Sequence[Sequence[float]] = ()) -> str:
-    """Return a Python script that reproduces a map and orbits with the engine, bit for bit, and draws them.
+def python_lines(spec: MapSpec, system: System, starts: Sequence[Sequence[float]] = (), study: Job[Any] | None = None) -> str:
+    """Return a Python script that reproduces a map, orbits and a study with the engine, bit for bit, and draws them.
 
     Parameters
     ----------
@@ -107,59 +112,59 @@ def python_lines(spec: MapSpec, system: System, starts: Sequence[Sequence[float]
         System of the map's potential.
     starts
         (x, y, px, py) of each orbit, finite.
+    study
+        The call of a study of this system, see `Study.call`; None for no study.
 
     Raises
     ------
     ValueError
         If a start is not four finite numbers.
     """
-    source, expression = _potential_expression(system)
     if spec.plane.parameter is not None:
         # Each orbit of such a map belongs to another potential.
         starts = ()
-    names = [source, "MapSpec", *_slice_names(spec.plane), "Window", "compute_map", *(["integrate_orbit"] if starts else [])]
-    energy, has_section = repr(spec.energy), spec.section != Section.Y_UP
     lines = [
-        "from matplotlib import pyplot",
-        "",
-        f"from escape_explorer import {', '.join(dict.fromkeys(names))}",
-        "",
-        f"potential = {expression}",
-        "spec = MapSpec(",
-        "    potential,",
-        f"    {spec.plane},",
-        f"    energy={energy},",
-        f"    resolution={spec.resolution!r},",
-        f"    window=Window{_numbers(spec.find_window().edges)},",
-        f"    t_max={spec.t_max!r},",
-        f"    use_evidence={spec.use_evidence!r},",
-        *(["    backward=True,"] if spec.backward else []),
-        *([f"    section={spec.section.text!r},"] if has_section else []),
-        ")",
+        f"potential = {_potential_expression(system)}",
+        f"spec = {_expression(replace(spec, window=spec.find_window()))}",
         "escape_map = compute_map(spec)",
         "escape_map.plot()",
     ]
     if starts:
         lines += ["starts = [", *(f"    {_state(start)}," for start in starts), "]"]
-        section = ", section=spec.section" if has_section else ""
-        lines += [f"orbits = [integrate_orbit(potential, start, spec.t_max{section}) for start in starts]"]
+        lines += ["orbits = [integrate_orbit(potential, start, spec.t_max, section=spec.section) for start in starts]"]
         lines += ["for orbit in orbits:", "    orbit.plot()"]
-    lines.append("pyplot.show()")
-    return "\n".join(lines) + "\n"
+    if study is not None:
+        lines += [f"study = {_expression(study)}", "study.plot()"]
+    words = re.findall(r"\w+", "\n".join(lines))
+    names = sorted({*words}.intersection(vars(engine)["__all__"]))
+    imports = ["from matplotlib import pyplot", "", f"from escape_explorer import {', '.join(names)}", ""]
+    return "\n".join([*imports, *lines, "pyplot.show()"]) + "\n"
 
 
-def _slice_names(plane: Slice) -> list[str]:
-    """Return the names that a script imports for the expression of a slice."""
-    if isinstance(plane, Plane):
-        return ["Plane"]
-    kinds = {type(axis).__name__ for axis in plane.axes} | {"Coordinate", "Slice"}
-    return sorted(kinds | ({"System"} if plane.parameter is not None else set()))
+def _expression(value: Any) -> str:
+    """Return the expression of a call or an argument in a script, in which `potential` is the only potential."""
+    match value:
+        case Job():
+            options = (f"{name}={_expression(option)}" for name, option in value.options)
+            return f"{value.function.__name__}({', '.join([*map(_expression, value.arguments), *options])})"
+        case Potential():
+            return "potential"
+        case Section():
+            return repr(value.text)
+        case Window():
+            return f"Window{_numbers(value.edges)}"
+        case Enum():
+            return f"{type(value).__name__}.{value.name}"
+        case _ if is_dataclass(value) and not isinstance(value, Slice):
+            given = ",\n".join(f"{each.name}={_expression(getattr(value, each.name))}" for each in fields(value))
+            return f"{type(value).__name__}(\n{indent(given, '    ')},\n)"
+    return repr(value)
 
 
-def _potential_expression(system: System) -> tuple[str, str]:
-    """Return the name that a script imports, and the expression of the potential."""
+def _potential_expression(system: System) -> str:
+    """Return the expression of the potential."""
     if system.parameters and not system.entry.is_well:
-        return "System", f"System({system.case!r}, parameters={dict(system.parameters)!r}).potential"
+        return f"System({system.case!r}, parameters={dict(system.parameters)!r}).potential"
     parameters = ", ".join(f"{name}={value!r}" for name, value in system.well_parameters.items())
     calls = f".with_parameters({parameters})" if parameters else ""
     rotation = system.value_of("rotation") if system.entry.is_well else 0.0
@@ -167,10 +172,8 @@ def _potential_expression(system: System) -> tuple[str, str]:
         calls += f".in_rotating_frame({rotation!r})"
     if system.case == TYPED:
         letters = f", parameters={system.letter_parameters!r}" if system.letter_parameters else ""
-        return "parse_formula", f"parse_formula({system.formula!r}{letters}){calls}"
-    if system.case in CASES:
-        return "CASES", f"CASES[{system.case!r}]{calls}"
-    return "POTENTIALS", f"POTENTIALS[{system.case!r}]{calls}"
+        return f"parse_formula({system.formula!r}{letters}){calls}"
+    return f"{'CASES' if system.case in CASES else 'POTENTIALS'}[{system.case!r}]{calls}"
 
 
 def _state(start: Sequence[float]) -> str:

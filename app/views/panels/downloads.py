@@ -1,4 +1,4 @@
-"""Sharing and downloads: the link, figures, data, and a Python script that computes maps and orbits again."""
+"""Sharing and downloads: the link, figures, data, and a Python script that computes the view again."""
 
 from __future__ import annotations
 
@@ -98,7 +98,8 @@ def file_choices(results: ShownResults, state: ViewState) -> dict[str, File]:
         starts = [one.start for one in results.orbits] if state.plane.parameter is None else []
         states = [known for known in map(state.start_state, starts) if known is not None]
         choices[MAPS] = name(".nc"), partial(netcdf_bytes, frame, results.analyses)
-        choices[SCRIPT] = name(".py"), lambda: python_lines(frame.spec, system, states).encode()
+        study = results.calls.get(state.analysis)
+        choices[SCRIPT] = name(".py"), lambda: python_lines(frame.spec, system, states, study).encode()
     orbits = [one.orbit for one in results.orbits if one.orbit is not None]
     if orbits:
         verdicts = [one.verdict for one in results.orbits if one.verdict is not None]

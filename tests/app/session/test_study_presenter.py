@@ -77,11 +77,12 @@ def test_a_study_of_one_entry_is_computed_stored_and_opens_the_clicked_energy(be
     assert not session.view.running
     found = session.context.results.studies["periods"]
     energy = float(found.h[-1])
+    assert session.context.results.calls["periods"].arguments == (session.state.potential, tuple(found.h))
     assert found.longest[-1] == max(orbit.period for orbit in find_lyapunov_orbits(session.state.potential, energy))
     session.presenter.click(energy + 0.3, 5.0)
     assert (session.state.energy, session.state.plane) == (energy, Plane.X_PX)
     session.state.param.update(system=System("III"), energy=0.4)
-    assert session.context.results.studies == {}
+    assert session.context.results.studies == session.context.results.calls == {}
 
 
 def test_a_study_that_its_subject_does_not_allow_says_why(begin: Callable[..., Session]) -> None:

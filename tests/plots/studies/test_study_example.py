@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import engine
 from engine import CASES, Execution, Plane, System, find_lyapunov_orbits, open_result
 from engine.jobs.job import run_job
 from engine.systems.review.potential_review import review_system
@@ -31,6 +32,12 @@ def test_every_chart_of_a_study_says_how_to_read_it(study: Study[Any]) -> None:
     for frame in study.frames:
         assert len(frame.help) > 20
         assert "@" in frame.text or "$" in frame.text
+
+
+@pytest.mark.parametrize("study", STUDIES.values(), ids=lambda study: study.name)
+def test_a_script_can_call_the_function_of_every_study(study: Study[Any]) -> None:
+    function = study.call(study.job(SUBJECT, next(iter(study.axes(SYSTEM)), ""))).function
+    assert getattr(engine, function.__name__) is function
 
 
 def test_the_study_of_the_example_has_a_table_a_figure_and_a_file(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from collections.abc import Callable
 from dataclasses import replace
 from io import BytesIO
 from typing import Any
@@ -16,14 +17,18 @@ from engine import (
     CASES,
     MapSpec,
     Orbit,
+    ParameterAxis,
     Plane,
+    Result,
     SweepSpec,
     System,
     compute_map,
+    compute_returns,
     compute_sweep,
     integrate_orbit,
     judge_orbit,
 )
+from engine.jobs.job import Job
 from engine.systems.system import TYPED
 from plots.texts.exports import file_stem, netcdf_bytes, orbits_csv, python_lines, section_csv, table_csv
 
@@ -46,6 +51,9 @@ SPECS = {
         backward=True,
     ),
 }
+
+EPSILON = ParameterAxis("epsilon", 0.9, 1.1, System("II"))
+ALONG_EPSILON = CASES["II"], Plane.X_PX, (0.95, 1.05)
 
 
 @pytest.fixture(scope="module")
@@ -143,6 +151,29 @@ def test_the_script_reproduces_and_draws_the_map_and_the_orbits(name: str, monke
         np.testing.assert_array_equal(one.x, expected.x)
     # The script draws the map and two orbits.
     assert len(drawn) == 3
+    pyplot.close("all")
+
+
+@pytest.mark.parametrize(
+    ("function", "request_of_study", "options"),
+    [
+        (compute_returns, SPECS["another section"], {"returns": 3}),
+        (compute_sweep, SweepSpec(CASES["II"], Plane.X_PX, (0.18, 0.2), (9, 9), t_max=50.0, measures=("shares",)), {}),
+        (compute_sweep, SweepSpec(*ALONG_EPSILON, (9, 9), t_max=50.0, measures=("shares",), along=EPSILON, energy=0.2), {}),
+    ],
+    ids=["section", "energies", "a parameter"],
+)
+def test_the_script_reproduces_the_study(
+    function: Callable[..., Result], request_of_study: Any, options: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made: dict[str, Any] = {}
+    monkeypatch.setattr(pyplot, "show", lambda: None)
+    study = Job(function, (request_of_study,), tuple(options.items()))
+    exec(python_lines(SPECS["another section"], System("II"), study=study), made)
+    expected = function(request_of_study, **options).columns()
+    assert made["study"].columns().keys() == expected.keys()
+    for name, values in made["study"].columns().items():
+        np.testing.assert_array_equal(values, expected[name])
     pyplot.close("all")
 
 

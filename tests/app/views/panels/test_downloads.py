@@ -17,7 +17,19 @@ from app.job_clients.shown_results import ShownResults
 from app.runtime.process_state import ProcessState
 from app.state.view_state import ViewState
 from app.views.panels.downloads import CROSSINGS, MAPS, ORBITS, SCRIPT, Downloads, file_choices
-from engine import CASES, EscapeMap, MapSpec, Plane, SweepSpec, System, compute_map, compute_sweep, integrate_orbit
+from engine import (
+    CASES,
+    EscapeMap,
+    MapSpec,
+    Plane,
+    SweepSpec,
+    System,
+    compute_map,
+    compute_returns,
+    compute_sweep,
+    integrate_orbit,
+)
+from engine.jobs.job import Job
 from plots.pictures.orbit_curves import compute_orbit_curves
 from tests.app.other_loop import run_on_new_loop
 from tests.waiting import SECONDS
@@ -76,6 +88,15 @@ def test_only_files_that_the_results_allow_can_be_saved(downloads_view: Download
     curves = compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.2, 0.3), (12, 12), t_max=10.0))
     results.param.update(orbits=(), studies={"energies": curves})
     assert enabled() == {"Curves (CSV)"}
+
+
+def test_the_script_contains_the_study_whose_tab_is_shown(results: ShownResults, escape_map: EscapeMap) -> None:
+    results.calls = {"section": Job(compute_returns, (escape_map.spec,))}
+    scripts = []
+    for analysis in ("section", "energies", "orbit"):
+        _, make = file_choices(results, ViewState(system=System("I"), energy=0.19, analysis=analysis))[SCRIPT]
+        scripts.append(make().decode())
+    assert ["study = compute_returns(" in script for script in scripts] == [True, False, False]
 
 
 def test_a_file_holds_what_is_shown_at_the_moment_of_the_click(results: ShownResults, escape_map: EscapeMap) -> None:
