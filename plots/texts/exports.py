@@ -120,25 +120,29 @@ def python_lines(spec: MapSpec, system: System, starts: Sequence[Sequence[float]
     ValueError
         If a start is not four finite numbers.
     """
-    if spec.plane.parameter is not None:
-        # Each orbit of such a map belongs to another potential.
-        starts = ()
+    # Each orbit of a map along a parameter belongs to another potential.
+    has_orbits = bool(starts) and spec.plane.parameter is None
     lines = [
         f"potential = {_potential_expression(system)}",
         f"spec = {_expression(replace(spec, window=spec.find_window()))}",
         "escape_map = compute_map(spec)",
         "escape_map.plot()",
+        *(_orbit_lines(starts) if has_orbits else []),
+        *([f"study = {_expression(study)}", "study.plot()"] if study is not None else []),
+        "pyplot.show()",
     ]
-    if starts:
-        lines += ["starts = [", *(f"    {_state(start)}," for start in starts), "]"]
-        lines += ["orbits = [integrate_orbit(potential, start, spec.t_max, section=spec.section) for start in starts]"]
-        lines += ["for orbit in orbits:", "    orbit.plot()"]
-    if study is not None:
-        lines += [f"study = {_expression(study)}", "study.plot()"]
     words = re.findall(r"\w+", "\n".join(lines))
     names = sorted({*words}.intersection(vars(engine)["__all__"]))
     imports = ["from matplotlib import pyplot", "", f"from escape_explorer import {', '.join(names)}", ""]
-    return "\n".join([*imports, *lines, "pyplot.show()"]) + "\n"
+    return "\n".join([*imports, *lines]) + "\n"
+
+
+def _orbit_lines(starts: Sequence[Sequence[float]]) -> list[str]:
+    return [
+        *("starts = [", *(f"    {_state(start)}," for start in starts), "]"),
+        "orbits = [integrate_orbit(potential, start, spec.t_max, section=spec.section) for start in starts]",
+        *("for orbit in orbits:", "    orbit.plot()"),
+    ]
 
 
 def _expression(value: Any) -> str:
