@@ -13,6 +13,8 @@ programs of this repository, and may change with any version.
 - maps of escapes: `MapSpec`, `compute_map`, `EscapeMap`, `Fate`, `Evidence`, `compute_returns`, `store_returns`,
   `compute_regularity`, `Regularity`, `compute_trust`, `Trust`, `compute_origin_fates`, `find_stable_manifolds`,
   `compute_lagrangian_descriptor`, `TimeDirection`
+- periodic orbits: `find_periodic_orbit`, `find_periodic_orbits`, `PeriodicOrbit`, `Stability`, `NoPeriodicOrbitError`,
+  `continue_family`, `OrbitFamily`, `SpecialKind`
 - measures: `MEASURES`, `Measure`; of basins and statistics `compute_basin_entropy`, `compute_wada_test`,
   `compute_uncertainty_exponent`, `compute_statistics`, `compute_islands`, `compute_chaotic_share`, `compute_exit_matching`,
   `fit_decay_laws`
@@ -49,6 +51,14 @@ from engine.measures.measure import Measure as Measure
 from engine.measures.table import MEASURES as MEASURES
 from engine.measures.uncertain_pairs import compute_uncertainty_exponent as compute_uncertainty_exponent
 from engine.opened_results import open_result as open_result
+from engine.periodic.continuation import continue_family as continue_family
+from engine.periodic.family import OrbitFamily as OrbitFamily
+from engine.periodic.nearest_orbit import NoPeriodicOrbitError as NoPeriodicOrbitError
+from engine.periodic.nearest_orbit import find_periodic_orbit as find_periodic_orbit
+from engine.periodic.periodic_orbit import PeriodicOrbit as PeriodicOrbit
+from engine.periodic.periodic_orbit import Stability as Stability
+from engine.periodic.search import find_periodic_orbits as find_periodic_orbits
+from engine.periodic.special_points import SpecialKind as SpecialKind
 from engine.propagation.fates import Evidence as Evidence
 from engine.propagation.fates import Fate as Fate
 from engine.propagation.fates import Regularity as Regularity

@@ -17,6 +17,8 @@ from engine.measures.basins.islands import Islands as Islands
 from engine.measures.basins.power_law_fit import UncertaintyExponent as UncertaintyExponent
 from engine.measures.basins.wada import WadaTest as WadaTest
 from engine.measures.flux import EscapeFlux as EscapeFlux
+from engine.periodic.family import SpecialPoint as SpecialPoint
+from engine.periodic.search import PeriodicOrbits as PeriodicOrbits
 from engine.propagation.classification import Outcomes as Outcomes
 from engine.sweeps.sweep import Sweep as Sweep
 from engine.systems.review.potential_review import PotentialReview as PotentialReview

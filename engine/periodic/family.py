@@ -1,0 +1,211 @@
+"""Families of periodic orbits: their members, their special points, and why they end."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from engine.foundations.arrays import read_only
+from engine.foundations.validation import checked_between, checked_count, checked_number
+from engine.foundations.wording import format_count, format_number
+from engine.periodic.periodic_orbit import DIGITS, STATE_COLUMNS, PeriodicOrbit, ResultOnSection, Stability
+from engine.periodic.shooting import close_orbit
+from engine.periodic.special_points import SpecialKind
+from engine.periodic.switching import first_orbit_of_branch
+from engine.slices.sections.section_text import section_of_file
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+NUMBERS = ("energy", "period", "stability_index", "action")
+"""Attributes that are numbers of each member."""
+
+# Periods of the family after which the orbits of a branch close.
+_PERIODS_OF_BRANCHES = {SpecialKind.BRANCHING: 1, SpecialKind.DOUBLING: 2, SpecialKind.TOUCHING: 2}
+# Smallest and largest distance of the first orbit of a branch from the special point, and the default, in units of the well.
+_STEPS, _STEP = (1e-8, 0.1), 1e-3
+
+
+@dataclass(frozen=True)
+class SpecialPoint:
+    """A special point of a family of periodic orbits.
+
+    Attributes
+    ----------
+    kind
+        What happens there.
+    member
+        Number of its member in the family, from 0.
+    energy, period
+        h and T of the member, dimensionless.
+    turns, periods
+        m and n of a resonance m : n; 0 for another kind.
+    converged
+        Whether the point was located, to about 1e-12; otherwise it lies between this member and the next one.
+    """
+
+    kind: SpecialKind
+    member: int
+    energy: float
+    period: float
+    turns: int = 0
+    periods: int = 0
+    converged: bool = True
+
+    @property
+    def name(self) -> str:
+        """The kind in words: "resonance 1:3"."""
+        return f"{self.kind.value} {self.turns}:{self.periods}" if self.periods else self.kind.value
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class OrbitFamily(ResultOnSection):
+    """A family of periodic orbits with n returns, along which the energy changes, as returned by `continue_family`.
+
+    Its columns have a row for each member. Special points are members. All quantities are dimensionless, and arrays are
+    read-only. ``len(family)`` is the number of members, and ``family[k]`` a member as a `PeriodicOrbit`.
+
+    Attributes
+    ----------
+    energy, period, stability_index, action
+        (members,) numbers of each member, see `PeriodicOrbit`.
+    states
+        (members, n, 4) x, y, px, py at the returns of each member.
+    time
+        (members, n) times of the returns, from 0.
+    special
+        The special points, in the order of the members.
+    ends
+        Why the family ends at its first member, and why at its last one.
+    section
+        The surface of section.
+    potential
+        The potential in which the orbits move.
+    """
+
+    energy: np.ndarray
+    period: np.ndarray
+    stability_index: np.ndarray
+    action: np.ndarray
+    states: np.ndarray
+    time: np.ndarray
+    special: tuple[SpecialPoint, ...] = ()
+    ends: tuple[str, ...] = ("", "")
+    row_dimension: ClassVar = "member"
+    held_as: ClassVar = ResultOnSection.held_as | {"states": "x", "time": "time"}
+
+    def __len__(self) -> int:
+        return len(self.energy)
+
+    def __iter__(self) -> Iterator[PeriodicOrbit]:
+        return (self[k] for k in range(len(self)))
+
+    def __getitem__(self, member: int) -> PeriodicOrbit:
+        numbers = (float(getattr(self, name)[member]) for name in NUMBERS)
+        energy, period, stability_index, action = numbers
+        x, y, px, py = (read_only(column) for column in self.states[member].T.copy())
+        return PeriodicOrbit(
+            energy, period, stability_index, action, self.time[member], x, y, px, py,
+            section=self.section, potential=self.potential,
+        )  # fmt: skip
+
+    @property
+    def returns(self) -> int:
+        """Number of returns in a period."""
+        return self.time.shape[1]
+
+    @property
+    def stability(self) -> np.ndarray:
+        """(members,) the `Stability` of each member."""
+        return np.array([Stability.of(index) for index in self.stability_index], object)
+
+    @property
+    def points(self) -> np.ndarray:
+        """(members, n, 2) returns in the coordinates in which the section is drawn."""
+        return self.section.axes.points(self.states)
+
+    def at(self, h: float) -> tuple[PeriodicOrbit, ...]:
+        """Return the orbits of the family at an energy: none beyond its ends, several if it has folds.
+
+        Raises
+        ------
+        ValueError
+            If `h` is not finite.
+        """
+        h = checked_number("h", h)
+        low, high = self.energy[:-1], self.energy[1:]
+        # A member at this energy belongs to one segment only.
+        segments = np.flatnonzero(((low <= h) & (h < high)) | ((high < h) & (h <= low)))
+        found = [self._between(int(k), h) for k in segments]
+        if self.energy[-1] == h:
+            found.append(self[len(self) - 1])
+        return tuple(orbit for orbit in found if orbit is not None)
+
+    def _between(self, member: int, h: float) -> PeriodicOrbit | None:
+        """Return the orbit at an energy between a member and the next one; None if it is not found."""
+        begin, end = self[member], self[member + 1]
+        share = (h - begin.energy) / (end.energy - begin.energy)
+        trial, units = begin.trial, self.potential.units
+        states = (begin.states + share * (end.states - begin.states)) / units.state
+        durations = trial.durations + share * (np.diff(end.time, append=end.period) / units.time - trial.durations)
+        # The nodes between the returns stay where they are: Newton's method moves them.
+        nodes = trial.states + (states - trial.states[trial.returns])[trial.owners]
+        guess = trial._replace(states=nodes, durations=durations, energy=h / units.energy)
+        closed = close_orbit(self.potential.in_well_units, self.section.in_well_units(units), guess)
+        return None if closed is None else PeriodicOrbit.from_trial(self.potential, self.section, closed[0])
+
+    def switch(self, number: int, step: float = _STEP) -> PeriodicOrbit:
+        """Return an orbit of the family that branches off at a special point, near that point, to be continued.
+
+        Parameters
+        ----------
+        number
+            Number of the special point in `special`, from 0. Its kind must be branching, period doubling or touching.
+        step
+            Distance from the special point, 1e-8 to 0.1, in units of the well; a negative number for the other side.
+
+        Raises
+        ------
+        ValueError
+            If a parameter is out of range, or no orbit of a branch is found.
+        """
+        if not self.special:
+            raise ValueError(f"number={number}: the family has no special points")
+        point = self.special[checked_count("number", number, 0, len(self.special) - 1)]
+        if point.kind not in _PERIODS_OF_BRANCHES:
+            raise ValueError(f"number={number}: no other family is followed from a {point.name}")
+        step = math.copysign(checked_between("step", abs(step), *_STEPS), step)
+        orbit = first_orbit_of_branch(self[point.member], _PERIODS_OF_BRANCHES[point.kind], step)
+        if orbit is None:
+            raise ValueError(f"step={step:g}: no orbit of a branch was found at this distance; choose another one")
+        return orbit
+
+    def describe(self) -> str:
+        """Describe the family in a sentence."""
+        low, high = (format_number(bound, DIGITS) for bound in (self.energy.min(), self.energy.max()))
+        folds = format_count(sum(point.kind is SpecialKind.FOLD for point in self.special), "fold")
+        others = format_count(sum(point.kind is not SpecialKind.FOLD for point in self.special), "other special point")
+        members = format_count(len(self), "member")
+        return f"Family of periodic orbits with {members} from h = {low} to {high}, {folds}, {others}."
+
+    def columns(self) -> Mapping[str, np.ndarray]:
+        """Return a table with a row for each member: its numbers and its first return."""
+        numbers = {name: getattr(self, name) for name in NUMBERS}
+        return numbers | {name: self.states[:, 0, k] for k, name in enumerate(STATE_COLUMNS)}
+
+    def to_xarray(self) -> xr.Dataset:
+        """Return the dataset with the dimensions "member" and "return"."""
+        dataset = super().to_xarray()
+        states = {name: (("member", "return"), self.states[..., k], {"units": "1"}) for k, name in enumerate(STATE_COLUMNS)}
+        return dataset.assign(states | {"time": (("member", "return"), self.time, {"units": "1"})})
+
+    @classmethod
+    def read_parts(cls, dataset: xr.Dataset) -> dict[str, Any]:
+        """Return the section, the states and the times, which files store in other forms."""
+        states = np.stack([dataset[name].transpose("member", "return").values for name in STATE_COLUMNS], axis=-1)
+        time = dataset["time"].transpose("member", "return").values
+        return {"section": section_of_file(dataset.attrs), "states": read_only(states), "time": read_only(time)}

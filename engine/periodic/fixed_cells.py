@@ -1,0 +1,45 @@
+"""Find the cells of a grid around which a return map has an index that is not 0, as around its fixed points."""
+
+from __future__ import annotations
+
+import numpy as np
+
+# Corrections of the zero of the bilinear interpolation in a cell.
+_CORRECTIONS = 4
+
+
+def cells_with_index(displacements: np.ndarray) -> np.ndarray:
+    """Return the cells whose corners have displacements that turn around, of shape (n, 2): row and column of the first corner.
+
+    The index is the number of turns of the displacement on the way around a cell. It is +1 around a fixed point that is stable or
+    unstable with reflection, and −1 around another unstable point (Greene 1979, J. Math. Phys. 20, 1183). A cell with two fixed
+    points of both kinds has the index 0. Along lines on which the map jumps, cells can have an index without a fixed point.
+
+    Parameters
+    ----------
+    displacements
+        (rows, columns, 2) the point after some returns minus the start; NaN for starts without these returns.
+    """
+    angle = np.arctan2(displacements[..., 1], displacements[..., 0])
+    corners = [angle[:-1, :-1], angle[:-1, 1:], angle[1:, 1:], angle[1:, :-1]]
+    steps = (later - earlier for earlier, later in zip(corners, np.roll(corners, -1, axis=0), strict=True))
+    turns = sum((step + np.pi) % (2.0 * np.pi) - np.pi for step in steps)
+    # NaN is no index.
+    return np.argwhere(np.abs(turns) > np.pi)
+
+
+def zero_in_cell(displacements: np.ndarray, row: int, column: int) -> np.ndarray:
+    """Return where the bilinear interpolation of the displacements in a cell vanishes, (2,) shares of its sides, 0 to 1.
+
+    The order is that of the displacements: the share along the row first. Without a zero in the cell, the place is on its edge.
+    """
+    corner, right = displacements[row, column], displacements[row, column + 1] - displacements[row, column]
+    up = displacements[row + 1, column] - corner
+    twist = displacements[row + 1, column + 1] - corner - right - up
+    place = np.array([0.5, 0.5])
+    for _ in range(_CORRECTIONS):
+        s, t = place
+        value = corner + right * s + up * t + twist * s * t
+        slopes = np.column_stack([right + twist * t, up + twist * s])
+        place = np.clip(place - np.linalg.lstsq(slopes, value, rcond=None)[0], 0.0, 1.0)
+    return place

@@ -1,0 +1,114 @@
+"""Follow a family of periodic orbits through its members, by their distance in the space of unknowns.
+
+The energy is one of the unknowns, so a family is followed through folds, where its energy turns (pseudo-arclength continuation;
+Keller 1977, in Applications of Bifurcation Theory). All quantities are in units of the well.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from engine.periodic.closed_orbits import stability_index
+from engine.periodic.shooting import Equations, Trial, close_orbit, crosses_section, divided, linearise
+from engine.slices.sections.section import Section
+from engine.systems.potential import Potential
+
+# First step, and smallest step, in the space of unknowns.
+_FIRST_STEP, _SMALLEST_STEP = 0.01, 1e-7
+# Factors by which a step grows after a success and shrinks after a failure.
+_LONGER, _SHORTER = 1.5, 0.5
+# Smallest cosine of the angle between the directions at neighbouring members. A larger angle can be a jump to another family.
+_LEAST_COSINE = 0.9
+# Largest change of the stability index between neighbouring members, relative to 1 + |a|.
+_LARGEST_CHANGE = 0.5
+
+
+class Member(NamedTuple):
+    """A member of a family: the orbit, its stability index, and the direction of the family in the space of unknowns."""
+
+    orbit: Trial
+    stability_index: float
+    direction: np.ndarray
+
+    @classmethod
+    def of(cls, potential: Potential, orbit: Trial, equations: Equations, previous: np.ndarray) -> Member:
+        """Return a closed orbit as a member. Its direction is on the side of a previous direction."""
+        null_vector = np.linalg.svd(equations.jacobian)[2][-1]
+        direction = null_vector if null_vector @ previous >= 0.0 else -null_vector
+        return cls(orbit, stability_index(potential, orbit), direction)
+
+
+def first_member(potential: Potential, section: Section, orbit: Trial, *, rising: bool) -> Member | None:
+    """Return the first member of a family, from a closed orbit, in the direction of higher or lower energy.
+
+    None if the orbit cannot be integrated, or its energy does not change along the family.
+    """
+    equations = linearise(potential, section, orbit)
+    if equations is None:
+        return None
+    upward = np.zeros(orbit.vector.size)
+    upward[-1] = 1.0 if rising else -1.0
+    return Member.of(potential, orbit, equations, upward)
+
+
+class Segment(NamedTuple):
+    """The part of a family between two neighbouring members, which have the same nodes."""
+
+    before: Member
+    after: Member
+
+
+def follow_family(potential: Potential, section: Section, first: Member, longest_step: float) -> Iterator[Segment]:
+    """Yield the segments of a family from a member. The iterator ends where the next member is not found.
+
+    Parameters
+    ----------
+    potential, section
+        See `engine.periodic.shooting.linearise`.
+    first
+        The first member.
+    longest_step
+        Largest distance of neighbouring members in the space of unknowns.
+    """
+    member, step = first, min(_FIRST_STEP, longest_step)
+    while step >= _SMALLEST_STEP:
+        following = _advance(potential, section, member, step)
+        if following is None:
+            step *= _SHORTER
+            continue
+        yield Segment(member, following)
+        member, step = _divided(potential, section, following), min(step * _LONGER, longest_step)
+
+
+def _divided(potential: Potential, section: Section, member: Member) -> Member:
+    """Return a member with further nodes if its errors grow much; its direction is found again."""
+    orbit = divided(potential, member.orbit)
+    if orbit.parts == member.orbit.parts:
+        return member
+    equations = linearise(potential, section, orbit)
+    if equations is None:
+        return member
+    # Times and energy change as before.
+    count = len(orbit.durations) + 1
+    previous = np.concatenate([np.zeros(orbit.states.size), member.direction[-count:]])
+    return Member.of(potential, orbit, equations, previous)
+
+
+def _advance(potential: Potential, section: Section, member: Member, step: float) -> Member | None:
+    """Return the member at a distance; None if it is not found, or may belong to another family."""
+    predicted = member.orbit.moved(member.orbit.vector + step * member.direction)
+    closed = close_orbit(potential, section, predicted, member.direction)
+    if closed is None:
+        return None
+    orbit, equations = closed
+    if not crosses_section(potential, section, orbit):
+        return None
+    following = Member.of(potential, orbit, equations, member.direction)
+    before, after = member.stability_index, following.stability_index
+    is_near = np.linalg.norm(orbit.vector - predicted.vector) <= step
+    changes_little = abs(after - before) <= _LARGEST_CHANGE * (1.0 + min(abs(before), abs(after)))
+    is_straight = following.direction @ member.direction >= _LEAST_COSINE
+    return following if is_near and changes_little and is_straight else None

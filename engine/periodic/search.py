@@ -1,0 +1,273 @@
+"""All periodic orbits of a slice: fixed points of the map of returns, found by its index and closed by Newton's method."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import partial
+from operator import truediv
+from typing import Any, ClassVar
+
+import numpy as np
+
+from engine.foundations.arrays import read_only
+from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
+from engine.foundations.result import Result
+from engine.foundations.validation import checked_count, checks_types
+from engine.foundations.wording import format_count, format_number
+from engine.maps.returns import compute_returns
+from engine.maps.spec import MapSpec
+from engine.periodic.fixed_cells import cells_with_index, zero_in_cell
+from engine.periodic.nearest_orbit import MOST_RETURNS, close_near
+from engine.periodic.periodic_orbit import DIGITS, STATE_COLUMNS, PeriodicOrbit, Stability
+from engine.periodic.symmetries import symmetries_of
+from engine.slices.sections.section import Section
+
+# Columns of the table of points, and those that contain numbers of orbits.
+_COLUMNS = ("orbit", "time", *STATE_COLUMNS, "period", "stability_index", "action", "image_of")
+_NUMBERS = ("orbit", "image_of")
+# Distance within which two points of orbits are the same, in cells; Newton's method leads farther only to another orbit.
+_SAME, _FARTHEST = 1e-5, 3.0
+# Distance from a known point within which a cell is not searched, in cells.
+_SEARCHED = 0.75
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class PeriodicOrbits(Result):
+    """The periodic orbits of one energy with points in a window of a section, as returned by `find_periodic_orbits`.
+
+    Its columns have a row for each return of each orbit. Iteration yields the orbits, each as a `PeriodicOrbit`.
+
+    Attributes
+    ----------
+    spec
+        The request of the starts, with the potential, the energy, the section and the window.
+    most_returns
+        Largest number of returns in a period that was searched for.
+    orbit
+        (points,) number of the orbit of each point, from 1, by the number of returns and the period.
+    time
+        (points,) time of the return, from 0.
+    x, y, px, py
+        (points,) state at the return.
+    period, stability_index, action
+        (points,) numbers of the orbit, see `PeriodicOrbit`.
+    image_of
+        (points,) number of the first orbit of which this orbit is an image under a symmetry of the motion; 0 if there is none.
+    complete
+        Whether the search has ended.
+    """
+
+    spec: MapSpec
+    most_returns: int
+    orbit: np.ndarray
+    time: np.ndarray
+    x: np.ndarray
+    y: np.ndarray
+    px: np.ndarray
+    py: np.ndarray
+    period: np.ndarray
+    stability_index: np.ndarray
+    action: np.ndarray
+    image_of: np.ndarray
+    complete: bool = True
+    row_dimension: ClassVar = "point"
+    held_as: ClassVar = {"spec": "terms"}
+
+    @property
+    def energy(self) -> float:
+        """Energy h of the orbits."""
+        return energy_of(self.spec)
+
+    @property
+    def section(self) -> Section:
+        """The surface of section."""
+        return self.spec.section
+
+    def __len__(self) -> int:
+        return int(self.orbit.max(initial=0))
+
+    def __iter__(self) -> Iterator[PeriodicOrbit]:
+        return (self[k] for k in range(len(self)))
+
+    def __getitem__(self, index: int) -> PeriodicOrbit:
+        if not -len(self) <= index < len(self):
+            raise IndexError(f"index={index}: must be below the number of orbits, {len(self)}")
+        rows = self.orbit == range(1, len(self) + 1)[index]
+        first = int(np.argmax(rows))
+        numbers = float(self.period[first]), float(self.stability_index[first]), float(self.action[first])
+        time, x, y, px, py = (read_only(getattr(self, name)[rows]) for name in ("time", *STATE_COLUMNS))
+        return PeriodicOrbit(self.energy, *numbers, time, x, y, px, py, section=self.section, potential=self.spec.potential)
+
+    @property
+    def points(self) -> np.ndarray:
+        """(points, 2) all returns in the coordinates in which the section is drawn."""
+        return self.section.axes.points(np.column_stack([getattr(self, name) for name in STATE_COLUMNS]))
+
+    @property
+    def returns(self) -> np.ndarray:
+        """(points,) number of returns of the orbit of each point."""
+        return np.bincount(self.orbit)[self.orbit]
+
+    @property
+    def stability(self) -> np.ndarray:
+        """(points,) the `Stability` of the orbit of each point."""
+        return np.array([Stability.of(index) for index in self.stability_index], object)
+
+    def nearest(self, x: float, ordinate: float) -> PeriodicOrbit | None:
+        """Return the orbit with the return nearest to a place on the section; None if there is no orbit."""
+        if not len(self):
+            return None
+        steps = (self.points - [x, ordinate]) / np.maximum(np.ptp(self.points, axis=0), np.finfo(float).tiny)
+        return self[int(self.orbit[np.argmin(np.hypot(*steps.T))]) - 1]
+
+    def describe(self) -> str:
+        """Return the numbers of orbits in one sentence."""
+        first = np.unique(self.orbit, return_index=True)[1]
+        stable = int((self.stability[first] == Stability.STABLE).sum())
+        numbers = f"{format_count(len(self), 'periodic orbit')} with up to {format_count(self.most_returns, 'return')}"
+        place = f"to {self.section.place} at h = {format_number(self.energy, DIGITS)}"
+        return f"{numbers} {place}: {stable} stable, {len(self) - stable} unstable{'' if self.complete else ', so far'}."
+
+    def provenance(self) -> dict[str, Any]:
+        """Return the potential, the request, the integrator and the version."""
+        return self.spec.provenance()
+
+
+def energy_of(spec: MapSpec) -> float:
+    """Return the energy of all starts of a request whose plane is the slice of its section; ValueError for another one."""
+    if not spec.section.is_drawn_on(spec.plane) or spec.common_energy is None:
+        raise ValueError(f"spec: its plane is {spec.plane.title}; must be the slice of its section {spec.section.place}")
+    return spec.common_energy
+
+
+@shows_progress("periodic orbits")
+@checks_types(spec=MapSpec, execution=Execution)
+def find_periodic_orbits(
+    spec: MapSpec,
+    returns: int = 1,
+    *,
+    execution: Execution = DEFAULT_EXECUTION,
+    on_frame: Callable[[PeriodicOrbits], None] | None = None,
+) -> PeriodicOrbits:
+    """Find the periodic orbits with points in the window of a slice on the section, up to a number of returns.
+
+    The displacement of the n-th return turns around a fixed point. Cells of the grid around which it has an index that is not 0
+    are the starts of Newton's method. Images under the symmetries of the motion are found as well.
+
+    Parameters
+    ----------
+    spec
+        The request of a map, which gives the potential, the energy, the grid, the window and the longest time. Its plane must be
+        the slice of its section, such as (x, px) for y = 0. A finer grid finds more orbits: two points in one cell can be missed.
+    returns
+        Largest number of returns of an orbit in a period, 1 to 100.
+    execution
+        How the computation runs. When it is cancelled, orbits not found yet are missing.
+    on_frame
+        Called with the orbits found so far, after each number of returns.
+
+    Returns
+    -------
+    The `PeriodicOrbits`. Each closes to 1e-10 in units of the well.
+
+    Raises
+    ------
+    ValueError
+        If the plane is not the slice of the section, or a parameter is out of range.
+
+    Examples
+    --------
+    >>> from escape_explorer import CASES, MapSpec, Plane, find_periodic_orbits
+    >>> found = find_periodic_orbits(MapSpec(CASES["III"], Plane.X_PX, 0.3, (40, 40), t_max=100.0), returns=1)
+    >>> len(found), [(round(orbit.period, 4), orbit.stability.value) for orbit in found][:2]
+    (7, [(6.2832, 'stable'), (6.8438, 'unstable')])
+    """
+    energy_of(spec)
+    returns = checked_count("returns", returns, 1, MOST_RETURNS)
+    search = _Search(spec)
+    found = compute_returns(spec, returns, execution=execution.part(0, 2))
+    displacements = spec.section.axes.points(found.states) - search.starts
+    for n in range(1, returns + 1):
+        for row, column in cells_with_index(displacements[n - 1]):
+            if execution.is_cancelled:
+                return search.result(returns, complete=False)
+            search.try_cell(n, row, column, displacements[n - 1])
+        execution.part(1, 2).report(partial(truediv, n, returns))
+        if on_frame is not None and n < returns:
+            on_frame(search.result(returns, complete=False))
+    return search.result(returns, complete=True)
+
+
+class _Search:
+    """The orbits found so far, and where their points are."""
+
+    def __init__(self, spec: MapSpec) -> None:
+        self._spec = spec
+        x, ordinate = spec.pixel_centres()
+        self.starts = np.stack(np.meshgrid(x, ordinate), axis=-1)
+        self._cell = np.array([x[-1] - x[0], ordinate[-1] - ordinate[0]]) / np.maximum(np.array(spec.resolution) - 1, 1)
+        self._symmetries = symmetries_of(spec.potential)
+        self._orbits: list[tuple[PeriodicOrbit, int]] = []
+        self._points, self._counts = np.empty((0, 2)), np.empty(0, int)
+
+    def try_cell(self, n: int, row: int, column: int, displacements: np.ndarray) -> None:
+        """Search for an orbit with a point in a cell after n returns, unless one is known."""
+        place = self.starts[row, column] + self._cell * zero_in_cell(displacements, row, column)
+        is_near = self._distances(place) < _SEARCHED
+        if np.any(is_near & (n % self._counts == 0)):
+            return
+        (start,) = self._spec.start_states(place[:1], place[1:])
+        orbit = self._close(start, n) if np.isfinite(start).all() else None
+        if orbit is not None and np.abs((orbit.points[0] - place) / self._cell).max() <= _FARTHEST:
+            self._add_with_images(orbit)
+
+    def _close(self, start: np.ndarray, returns: int) -> PeriodicOrbit | None:
+        spec = self._spec
+        trial = close_near(spec.potential, spec.section, start, returns, spec.t_max)
+        return None if trial is None else PeriodicOrbit.from_trial(spec.potential, spec.section, trial)
+
+    def _add_with_images(self, orbit: PeriodicOrbit) -> None:
+        """Add an orbit and its images, unless they are known."""
+        if not self._add(orbit, 0):
+            return
+        first = len(self._orbits)
+        for symmetry in self._symmetries:
+            image = self._close(orbit.state * symmetry.factors, orbit.returns)
+            if image is not None and abs(image.period - orbit.period) <= _SAME * orbit.period:
+                self._add(image, first)
+
+    def _add(self, orbit: PeriodicOrbit, image_of: int) -> bool:
+        """Add an orbit, unless it is known, and return whether it was added."""
+        if np.any((self._distances(orbit.points[0]) < _SAME) & (self._counts == orbit.returns)):
+            return False
+        self._orbits.append((orbit, image_of))
+        self._points = np.vstack([self._points, orbit.points])
+        self._counts = np.append(self._counts, np.full(orbit.returns, orbit.returns))
+        return True
+
+    def _distances(self, place: np.ndarray) -> np.ndarray:
+        """Return the distances of all known points from a place, in cells."""
+        return np.abs((self._points - place) / self._cell).max(axis=1, initial=0.0)
+
+    def result(self, most_returns: int, *, complete: bool) -> PeriodicOrbits:
+        """Return the orbits found so far, by the number of returns, the period and the order in which they were found."""
+        orbits = [orbit for orbit, _ in self._orbits]
+        order = sorted(range(len(orbits)), key=lambda k: (orbits[k].returns, round(orbits[k].period, DIGITS)))
+        # Numbers from 1 in the new order; 0 stays 0.
+        numbers = np.zeros(len(orbits) + 1, int)
+        numbers[np.array(order, int) + 1] = np.arange(1, len(orbits) + 1)
+        rows = [
+            np.column_stack([
+                np.full(orbit.returns, number), orbit.time, orbit.states,
+                np.tile([orbit.period, orbit.stability_index, orbit.action, numbers[self._orbits[k][1]]], (orbit.returns, 1)),
+            ])
+            for number, k in enumerate(order, 1)
+            for orbit in [orbits[k]]
+        ]  # fmt: skip
+        columns = np.vstack([np.empty((0, len(_COLUMNS))), *rows]).T.copy()
+        values = {
+            name: read_only(column.astype(int) if name in _NUMBERS else column)
+            for name, column in zip(_COLUMNS, columns, strict=True)
+        }
+        return PeriodicOrbits(self._spec, most_returns, **values, complete=complete)

@@ -1,0 +1,207 @@
+"""Close an orbit: correct its returns to a section by Newton's method until the orbit is periodic.
+
+The unknowns are the states at the nodes, the times between the n returns of a period, and the energy. The returns are nodes, and
+further nodes divide the time between two returns evenly. Each part of the orbit must end where the next part begins, the returns
+must be on the section, and the energy must be the given one (multiple shooting; Stoer & Bulirsch 2002, Introduction to Numerical
+Analysis, section 7.3.5). Errors grow over one part only, so very unstable orbits are found as well. All quantities are in units
+of the well.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from engine.exits.saddle_orbits.orbit_parts import trace_parts, velocities
+from engine.integrator.kernels.dense_output import sample_path
+from engine.slices.sections.section import Crossing, Section
+from engine.systems.potential import Potential
+
+_MOST_CORRECTIONS = 15
+# Largest correction of an unknown at once. A larger correction is shortened.
+_LARGEST_CORRECTION = 0.3
+# Size below which corrections that no longer decrease are rounding errors.
+_TOLERANCE = 1e-9
+# Residual after which one more correction suffices. Near a bifurcation, the corrections themselves stay large.
+_SMALL_RESIDUAL = 1e-12
+# Largest distance between the ends of neighbouring parts of a closed orbit.
+_LARGEST_GAP = 1e-10
+# Growth of an error along a part above which the part is divided, and largest number of parts between two returns.
+_LARGEST_GROWTH, _MOST_PARTS = 100.0, 64
+
+
+SINGULAR = 1e-10
+"""Share of the largest singular value below which others are 0: at a bifurcation, a direction of the orbit is not fixed."""
+
+
+class Trial(NamedTuple):
+    """A closed orbit, or a trial orbit.
+
+    Attributes
+    ----------
+    states
+        (nodes, 4) x, y, px, py at the nodes.
+    durations
+        (n,) times from each return to the next one.
+    energy
+        The energy h.
+    parts
+        (n,) numbers of parts between each return and the next one.
+    """
+
+    states: np.ndarray
+    durations: np.ndarray
+    energy: float
+    parts: tuple[int, ...]
+
+    @property
+    def returns(self) -> np.ndarray:
+        """(n,) indices of the nodes that are returns."""
+        return np.concatenate([[0], np.cumsum(self.parts)[:-1]])
+
+    @property
+    def owners(self) -> np.ndarray:
+        """(nodes,) number of the return, from 0, before or at each node."""
+        return np.repeat(np.arange(len(self.parts)), self.parts)
+
+    @property
+    def part_durations(self) -> np.ndarray:
+        """(nodes,) durations of the parts."""
+        return np.repeat(self.durations / self.parts, self.parts)
+
+    @property
+    def vector(self) -> np.ndarray:
+        """(4 nodes + n + 1,) all unknowns."""
+        return np.concatenate([self.states.ravel(), self.durations, [self.energy]])
+
+    def moved(self, vector: np.ndarray) -> Trial:
+        """Return the trial orbit with other unknowns."""
+        size = self.states.size
+        return self._replace(states=vector[:size].reshape(-1, 4), durations=vector[size:-1], energy=float(vector[-1]))
+
+    def shortened(self, returns: int) -> Trial:
+        """Return the trial orbit with the first returns only."""
+        nodes = sum(self.parts[:returns])
+        return self._replace(states=self.states[:nodes], durations=self.durations[:returns], parts=self.parts[:returns])
+
+    def repeated(self, count: int) -> Trial:
+        """Return the orbit traversed several times."""
+        return self._replace(
+            states=np.tile(self.states, (count, 1)), durations=np.tile(self.durations, count), parts=self.parts * count
+        )
+
+
+class Equations(NamedTuple):
+    """The linearised equations of a trial orbit.
+
+    Attributes
+    ----------
+    jacobian
+        (m, m) derivatives of the residual by the unknowns, the last of which is the energy.
+    residual
+        (m,) gaps between the parts, distances of the returns from the section, and error of the energy.
+    """
+
+    jacobian: np.ndarray
+    residual: np.ndarray
+
+
+def linearise(potential: Potential, section: Section, trial: Trial) -> Equations | None:
+    """Return the equations of a trial orbit; None if it cannot be integrated.
+
+    Parameters
+    ----------
+    potential
+        The potential in units of its well, `Potential.in_well_units`.
+    section
+        The section, in units of the well.
+    trial
+        The trial orbit.
+    """
+    states, gaps, returns, owners = trial.states, trial.states.size, trial.returns, trial.owners
+    parts = trace_parts(potential, states, trial.part_durations)
+    if parts is None:
+        return None
+    size = gaps + len(returns) + 1
+    jacobian, residual = np.zeros((size, size)), np.empty(size)
+    residual[:gaps], jacobian[:gaps, :gaps] = parts.gaps(states), parts.changes_of_gaps()
+    changes = velocities(potential, parts.ends) / np.array(trial.parts)[owners, None]
+    jacobian[np.arange(gaps), gaps + np.repeat(owners, 4)] = changes.ravel()
+    residual[gaps:-1] = section.values(states[returns])
+    for row, k in enumerate(returns, gaps):
+        jacobian[row, 4 * k : 4 * k + 4] = section.rates(states[k], np.eye(4))
+    x, y, px, py = states[0]
+    residual[-1] = potential.energy(states[0]) - trial.energy
+    jacobian[-1, :4] = *potential.gradient(x, y), px, py
+    jacobian[-1, -1] = -1.0
+    return Equations(jacobian, residual) if np.isfinite(residual).all() and np.isfinite(jacobian).all() else None
+
+
+def close_orbit(
+    potential: Potential, section: Section, trial: Trial, direction: np.ndarray | None = None, singular: float = SINGULAR
+) -> tuple[Trial, Equations] | None:
+    """Return the closed orbit near a trial orbit with its equations; None if the corrections do not converge.
+
+    Parameters
+    ----------
+    potential, section, trial
+        See `linearise`.
+    direction
+        Direction in the space of unknowns in which the orbit is not corrected; None to keep the energy.
+    singular
+        Share of the largest singular value below which a singular value counts as 0: the orbit is not corrected in its direction.
+    """
+    vector, previous_size = trial.vector, np.inf
+    if direction is None:
+        direction = np.zeros(vector.size)
+        direction[-1] = 1.0
+    # Trial orbits that diverge are rejected.
+    with np.errstate(all="ignore"):
+        for _ in range(_MOST_CORRECTIONS):
+            equations = linearise(potential, section, trial.moved(vector))
+            if equations is None:
+                return None
+            # The shortest solution of these equations has no part along the direction.
+            across = equations.jacobian - np.outer(equations.jacobian @ direction, direction)
+            correction = -np.linalg.lstsq(across, equations.residual, rcond=singular)[0]
+            size = float(np.abs(correction).max())
+            vector = vector + correction * min(1.0, _LARGEST_CORRECTION / max(size, _LARGEST_CORRECTION))
+            is_accurate = float(np.abs(equations.residual).max()) < _SMALL_RESIDUAL
+            if is_accurate or (size < _TOLERANCE and size >= 0.1 * previous_size):
+                return _checked(potential, section, trial.moved(vector))
+            previous_size = size
+    return None
+
+
+def _checked(potential: Potential, section: Section, trial: Trial) -> tuple[Trial, Equations] | None:
+    """Return a corrected orbit with its equations; None if its parts do not join within `_LARGEST_GAP`."""
+    equations = linearise(potential, section, trial)
+    # `not … <` also rejects NaN.
+    if equations is None or not np.abs(equations.residual).max() < _LARGEST_GAP:
+        return None
+    return trial, equations
+
+
+def crosses_section(potential: Potential, section: Section, orbit: Trial) -> bool:
+    """Return whether all returns of an orbit cross the section in its direction, and do not only touch it."""
+    states = orbit.states[orbit.returns]
+    rates = section.rates(states, velocities(potential, states))
+    return bool(np.all(rates > 0.0) or (section.direction is Crossing.BOTH and np.all(rates != 0.0)))
+
+
+def divided(potential: Potential, trial: Trial) -> Trial:
+    """Return a trial orbit with further nodes where errors grow much between two returns. Other nodes stay where they are."""
+    found = trace_parts(potential, trial.states, trial.part_durations)
+    if found is None:
+        return trial
+    growths = np.maximum(np.abs(found.matrices).max(axis=(1, 2)), 1.0)
+    wanted = np.clip(np.ceil(np.log(growths) / math.log(_LARGEST_GROWTH)), 1, _MOST_PARTS).astype(int)
+    # All parts between two returns take the same time.
+    factors = np.maximum.reduceat(wanted, trial.returns)
+    states = []
+    for steps, duration, factor in zip(found.steps, trial.part_durations, factors[trial.owners], strict=True):
+        states += list(sample_path(potential.well.kernels, steps, np.arange(factor) * (duration / factor)).T)
+    parts = tuple(int(factor) * count for factor, count in zip(factors, trial.parts, strict=True))
+    return trial._replace(states=np.array(states), parts=parts)

@@ -1,0 +1,176 @@
+"""Special points of a family of periodic orbits: folds, bifurcations and resonances, located between its members."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from enum import StrEnum
+from typing import NamedTuple
+
+import numpy as np
+
+from engine.foundations.root_finding import find_root
+from engine.periodic.closed_orbits import half_index
+from engine.periodic.following import Member, Segment
+from engine.periodic.shooting import SINGULAR, close_orbit
+from engine.periodic.symmetries import Symmetry
+from engine.slices.sections.section import Section
+from engine.systems.potential import Potential
+
+# Distance within which a point is located, as a share of a segment.
+_LOCATED = 1e-13
+# Share of the largest singular value below which others are 0 at first, see `_member_between`.
+_NEARLY_SINGULAR = 1e-5
+# Turns m and periods n of the resonances m : n.
+_RESONANCES = ((1, 3), (1, 4), (1, 5), (2, 5), (1, 6))
+
+
+class SpecialKind(StrEnum):
+    """What happens at a special point of a family."""
+
+    FOLD = "fold"
+    """The energy turns back."""
+    BRANCHING = "branching"
+    """a = 1: another family of the same period meets this one."""
+    DOUBLING = "period doubling"
+    """a passes −1: a family of twice the period is born."""
+    TOUCHING = "touching"
+    """a touches −1 and returns, because half a period maps the orbit onto its mirror image: families of twice the period meet."""
+    RESONANCE = "resonance"
+    """Nearby orbits turn around the orbit m times in n periods: chains of islands are born."""
+
+
+class Numbers(NamedTuple):
+    """The numbers of a member that change their sign, or pass a value, at special points.
+
+    Attributes
+    ----------
+    slope
+        Change of the energy along the family.
+    stability_index
+        a.
+    half_index
+        b, see `engine.periodic.closed_orbits.half_index`, of an orbit with a `half_symmetry`; None for another orbit.
+    """
+
+    slope: float
+    stability_index: float
+    half_index: float | None
+
+
+class Test(NamedTuple):
+    """A function of the numbers of members, which changes its sign at special points of a kind.
+
+    Attributes
+    ----------
+    kind
+        The kind of the points.
+    value
+        The function; None for members without these points.
+    resonance
+        m and n of a resonance; (0, 0) for another kind.
+    """
+
+    kind: SpecialKind
+    value: Callable[[Numbers], float | None]
+    resonance: tuple[int, int] = (0, 0)
+
+
+def _index_minus(value: float, *, also_with_symmetry: bool = False) -> Callable[[Numbers], float | None]:
+    return lambda numbers: numbers.stability_index - value if also_with_symmetry or numbers.half_index is None else None
+
+
+def _half_index_minus(value: float) -> Callable[[Numbers], float | None]:
+    return lambda numbers: None if numbers.half_index is None else numbers.half_index - value
+
+
+_TESTS = (
+    Test(SpecialKind.FOLD, lambda numbers: numbers.slope),
+    Test(SpecialKind.BRANCHING, _index_minus(1.0)),
+    Test(SpecialKind.DOUBLING, _index_minus(-1.0)),
+    Test(SpecialKind.BRANCHING, _half_index_minus(1.0)),
+    Test(SpecialKind.BRANCHING, _half_index_minus(-1.0)),
+    Test(SpecialKind.TOUCHING, _half_index_minus(0.0)),
+    *(
+        Test(SpecialKind.RESONANCE, _index_minus(math.cos(2.0 * math.pi * m / n), also_with_symmetry=True), (m, n))
+        for m, n in _RESONANCES
+    ),
+)
+
+
+class Located(NamedTuple):
+    """A special point.
+
+    Attributes
+    ----------
+    share
+        Its place in a segment, 0 to 1.
+    kind, resonance
+        See `Test`.
+    member
+        The member at the point.
+    converged
+        Whether it was located; otherwise the member is the first one of the segment.
+    """
+
+    share: float
+    kind: SpecialKind
+    resonance: tuple[int, int]
+    member: Member
+    converged: bool
+
+
+def numbers_of(potential: Potential, symmetry: Symmetry | None, member: Member) -> Numbers:
+    """Return the numbers of a member whose orbit has a `half_symmetry`, or None."""
+    half = None if symmetry is None else half_index(potential, member.orbit, symmetry)
+    return Numbers(float(member.direction[-1]), member.stability_index, half)
+
+
+def find_special_points(
+    potential: Potential, section: Section, segment: Segment, symmetry: Symmetry | None, ends: tuple[Numbers, Numbers]
+) -> list[Located]:
+    """Return the special points of a segment, whose ends have these numbers, in the order of the family."""
+    found = []
+    for test in _TESTS:
+        values = test.value(ends[0]), test.value(ends[1])
+        if values[0] is not None and values[1] is not None and values[0] * values[1] < 0.0:
+            found.append(_locate(potential, section, segment, symmetry, test))
+    # At a fold, a is 1 as well.
+    has_fold = any(each.kind is SpecialKind.FOLD for each in found)
+    return sorted((each for each in found if not (has_fold and each.kind is SpecialKind.BRANCHING)), key=lambda each: each.share)
+
+
+def _locate(potential: Potential, section: Section, segment: Segment, symmetry: Symmetry | None, test: Test) -> Located:
+    """Return the point at which a test changes its sign in a segment."""
+    members = {0.0: segment.before, 1.0: segment.after}
+
+    def value(share: float) -> float:
+        if share not in members:
+            members[share] = _member_between(potential, section, segment, share)
+        found = test.value(numbers_of(potential, symmetry, members[share]))
+        return math.nan if found is None else found
+
+    try:
+        share = find_root(value, 0.0, 1.0, xtol=_LOCATED)
+        value(share)
+    except _NotFoundError:
+        return Located(0.0, test.kind, test.resonance, segment.before, converged=False)
+    return Located(share, test.kind, test.resonance, members[share], converged=True)
+
+
+class _NotFoundError(Exception):
+    """There is no member at a place of a segment."""
+
+
+def _member_between(potential: Potential, section: Section, segment: Segment, share: float) -> Member:
+    """Return the member nearest to a point of the chord of a segment."""
+    begin = segment.before.orbit
+    chord = segment.after.orbit.vector - begin.vector
+    trial, direction = begin.moved(begin.vector + share * chord), chord / np.linalg.norm(chord)
+    # Near a point at which another family meets this one, rounding errors move an orbit along the other family. A symmetry of
+    # this family keeps the orbit on it without corrections along the other one.
+    for singular in (_NEARLY_SINGULAR, SINGULAR):
+        closed = close_orbit(potential, section, trial, direction, singular)
+        if closed is not None:
+            return Member.of(potential, *closed, chord)
+    raise _NotFoundError
