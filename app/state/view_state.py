@@ -202,7 +202,10 @@ class ViewState(param.Parameterized):
     def subject(self) -> Subject:
         """What the studies of the view are about."""
         window = self.window if self.section.is_drawn_on(self.plane) else None
-        return Subject(self.system, self.potential, self.plane, self.energy, self.energies, self.t_max, self.section, window)
+        state = None if self.chosen_start is None else self.start_state(self.chosen_start)
+        return Subject(
+            self.system, self.potential, self.plane, self.energy, self.energies, self.t_max, self.section, window, state
+        )
 
     @property
     def colours(self) -> Palette:

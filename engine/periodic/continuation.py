@@ -90,8 +90,8 @@ def continue_family(
     for number, branch in enumerate(branches):
         for _ in branch.grow(execution.part(number, len(branches))):
             if on_frame is not None:
-                on_frame(_joined(orbit, branches))
-    return _joined(orbit, branches)
+                on_frame(_joined(orbit, branches, complete=False))
+    return _joined(orbit, branches, complete=not execution.is_cancelled)
 
 
 def _checked_bounds(orbit: PeriodicOrbit, until: Any) -> tuple[float, float]:
@@ -211,7 +211,7 @@ def _reason(potential: Potential, member: Member) -> str:
     return "no further member is found: the returns to the section change, or the orbits are too unstable"
 
 
-def _joined(orbit: PeriodicOrbit, branches: list[_Branch]) -> OrbitFamily:
+def _joined(orbit: PeriodicOrbit, branches: list[_Branch], *, complete: bool) -> OrbitFamily:
     """Return the family of branches on one or both sides of an orbit, from its lower to its higher end."""
     entries = [_Entry(orbit, [])]
     ends = ["it was continued from this orbit"] * 2
@@ -224,7 +224,7 @@ def _joined(orbit: PeriodicOrbit, branches: list[_Branch]) -> OrbitFamily:
     energy, period, stability_index, action = map(read_only, columns)
     states, time = (read_only(np.array([getattr(entry.orbit, name) for entry in entries])) for name in ("states", "time"))
     return OrbitFamily(
-        energy, period, stability_index, action, states, time, tuple(special), (ends[0], ends[1]),
+        energy, period, stability_index, action, states, time, tuple(special), (ends[0], ends[1]), complete,
         section=orbit.section, potential=orbit.potential,
     )  # fmt: skip
 

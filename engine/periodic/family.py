@@ -81,6 +81,8 @@ class OrbitFamily(ResultOnSection):
         The special points, in the order of the members.
     ends
         Why the family ends at its first member, and why at its last one.
+    complete
+        Whether the search has ended, and was not cancelled.
     section
         The surface of section.
     potential
@@ -95,6 +97,7 @@ class OrbitFamily(ResultOnSection):
     time: np.ndarray
     special: tuple[SpecialPoint, ...] = ()
     ends: tuple[str, ...] = ("", "")
+    complete: bool = True
     row_dimension: ClassVar = "member"
     held_as: ClassVar = ResultOnSection.held_as | {"states": "x", "time": "time"}
 

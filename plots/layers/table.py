@@ -12,6 +12,7 @@ from plots.layers.escapes import BASINS, COMPARED, CROSSINGS, CURVES, DIFFERENCE
 from plots.layers.layer import Layer
 from plots.layers.manifolds import MANIFOLDS
 from plots.layers.origins import ORIGINS
+from plots.layers.periodic_orbits import PERIODIC_ORBITS
 from plots.layers.picture import Legend, Picture, ShownMap
 from plots.layers.regularity import REGULARITY
 from plots.layers.trust import TRUST
@@ -22,7 +23,7 @@ def _by_name[Named: (Layer[Any], Picture)](*entries: Named) -> Mapping[str, Name
     return MappingProxyType({entry.name: entry for entry in entries})
 
 
-LAYERS: Mapping[str, Layer[Any]] = _by_name(REGULARITY, TRUST, MANIFOLDS, ORIGINS, DESCRIPTORS)
+LAYERS: Mapping[str, Layer[Any]] = _by_name(REGULARITY, TRUST, PERIODIC_ORBITS, MANIFOLDS, ORIGINS, DESCRIPTORS)
 """The layers by name, in the order of their switches."""
 
 LAYERS_BY_PICTURE = MappingProxyType({layer.picture.name: layer for layer in LAYERS.values() if layer.picture is not None})

@@ -21,16 +21,23 @@ Limits = tuple[float, float]
 class Shape(Enum):
     """How a series is drawn. Dashed lines are in front of other lines. Steps keep the y of a point until the next x.
 
-    Dots are small points.
+    Dots are small points, rings and crosses are large ones.
     """
 
     LINE = auto()
+    THICK = auto()
     DASHED = auto()
     STEPS = auto()
     POINTS = auto()
+    RINGS = auto()
+    CROSSES = auto()
     DOTS = auto()
     JOINED_POINTS = auto()
     BARS = auto()
+
+
+ONLY_POINTS = (Shape.POINTS, Shape.RINGS, Shape.CROSSES, Shape.DOTS)
+"""The shapes without lines."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +56,8 @@ class Series:
         How the points are drawn.
     bars
         Lower and upper ends of the error bars; for `Shape.BARS`, left and right edges of the bars; None without bars.
+    notes
+        What is said of each point under the mouse; empty if nothing is said of single points.
     """
 
     label: str
@@ -57,6 +66,7 @@ class Series:
     y: np.ndarray
     shape: Shape = Shape.LINE
     bars: tuple[np.ndarray, np.ndarray] | None = None
+    notes: Sequence[str] = ()
 
     @property
     def curve(self) -> tuple[np.ndarray, np.ndarray]:
@@ -85,7 +95,7 @@ class Frame:
         What the chart shows, and how to read it.
     text
         Text of the line, point or bar under the mouse, see `app.views.components.plots.chart_hover`. The columns are x, y, low,
-        high and label; those of a bar are left, right and top.
+        high, label and note; those of a bar are left, right and top.
     described
         The shape that the text describes: all lines, points, dots, or bars.
     logarithmic

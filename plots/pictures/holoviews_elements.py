@@ -7,7 +7,7 @@ from typing import Any
 import holoviews as hv
 import numpy as np
 
-from plots.pictures.charts import Chart, Series, Shape
+from plots.pictures.charts import ONLY_POINTS, Chart, Series, Shape
 
 
 def chart_elements(chart: Chart) -> list[hv.Element]:
@@ -18,7 +18,7 @@ def chart_elements(chart: Chart) -> list[hv.Element]:
         if series.shape is Shape.BARS:
             elements.append(_histogram(series, x, y))
             continue
-        kind = hv.Scatter if series.shape in (Shape.POINTS, Shape.DOTS) else hv.Curve
+        kind = hv.Scatter if series.shape in ONLY_POINTS else hv.Curve
         elements.append(kind(series.curve, x, y, label=series.label))
         if series.bars is not None:
             low, high = series.bars

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from engine import Result
 from engine.results import EscapeStatistics
-from plots.pictures.charts import Chart, Series, Shape
+from plots.pictures.charts import ONLY_POINTS, Chart, Series, Shape
 from plots.pictures.palette import PAPER, THRESHOLD
 from plots.pictures.setting import Settings
 from plots.printed.figure_axes import Corner, add_panel_legend, new_figure, set_title, style_axes
@@ -26,11 +26,12 @@ _ROW_HEIGHT, _ONE_COLUMN_ROW_HEIGHT = 0.24, 0.5
 # Height of a square chart with its axis and title, in units of the width of its column.
 _SQUARE = 1.02
 # Line styles of shapes without solid lines.
-_LINES = {Shape.DASHED: (0, (4.0, 3.0)), Shape.POINTS: "", Shape.DOTS: ""}
+_LINES = {Shape.DASHED: (0, (4.0, 3.0)), **dict.fromkeys(ONLY_POINTS, "")}
 # Markers of shapes with points.
-_MARKERS = {Shape.POINTS: "o", Shape.JOINED_POINTS: "o", Shape.DOTS: "o"}
-# Diameter of points and of dots, in points of typography.
-_POINT, _DOT = 2.5, 0.9
+_MARKERS = {Shape.JOINED_POINTS: "o", **dict.fromkeys(ONLY_POINTS, "o"), Shape.CROSSES: "x"}
+# Width of lines, and diameter of points, in points of typography.
+_WIDTHS, _WIDTH = {Shape.THICK: 3.0}, 1.5
+_SIZES, _SIZE = {Shape.DOTS: 0.9, Shape.RINGS: 4.5, Shape.CROSSES: 4.0}, 2.5
 
 
 def draw_study_figure(study: Study[Any], found: Result, style: FigureStyle, settings: Settings) -> Figure:
@@ -92,10 +93,11 @@ def _draw_series(axes: Axes, series: Series) -> None:
         return
     # Matplotlib typesets a subscript such as S_b between dollar signs.
     label = re.sub(r"_(\w+)", r"$_{\1}$", series.label)
-    is_dashed, size = series.shape is Shape.DASHED, _DOT if series.shape is Shape.DOTS else _POINT
+    shape = series.shape
     axes.plot(
-        *series.curve, color=series.colour, linewidth=1.5, linestyle=_LINES.get(series.shape, "-"),
-        marker=_MARKERS.get(series.shape, ""), markersize=size, label=label, zorder=3 if is_dashed else 2,
+        *series.curve, color=series.colour, linewidth=_WIDTHS.get(shape, _WIDTH), linestyle=_LINES.get(shape, "-"),
+        marker=_MARKERS.get(shape, ""), markersize=_SIZES.get(shape, _SIZE), label=label,
+        markerfacecolor="none" if shape is Shape.RINGS else series.colour, zorder=3 if shape is Shape.DASHED else 2,
     )  # fmt: skip
     if series.bars is not None:
         axes.vlines(series.x, *series.bars, color=series.colour, alpha=0.6, linewidth=1.0)

@@ -14,13 +14,14 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from engine import EscapeMap, LyapunovOrbit, Orbit, Potential, Result, Window
+from engine import EscapeMap, LyapunovOrbit, Orbit, OrbitFamily, PeriodicOrbit, Potential, Result, Window
 from engine.foundations.extras import require_package
 from engine.maps.pixels import PixelAnalysis
 from engine.results import (
     DecayLaws,
     EscapeStatistics,
     OrbitReturns,
+    PeriodicOrbits,
     PotentialReview,
     Returns,
     SampledOrbits,
@@ -35,7 +36,7 @@ from plots.layers.table import LAYERS, map_legend
 from plots.pictures.charts import Chart, Frame, Series, Shape
 from plots.pictures.orbit_curves import compute_orbit_curves, well_energy
 from plots.pictures.orbit_quantities import ORBIT_QUANTITIES
-from plots.pictures.palette import LIGHT, MEASURED, PALETTES, PAPER, Entry, Palette, rgba
+from plots.pictures.palette import LIGHT, MEASURED, PALETTES, PAPER, STABILITY_COLOURS, Entry, Palette, rgba
 from plots.printed.curve_figures import draw_chart
 from plots.printed.figure_axes import RENDER_LOCK, legend_handles, set_font, set_title, style_axes
 from plots.printed.map_figure import draw_picture
@@ -43,7 +44,9 @@ from plots.printed.orbit_figure import draw_path, draw_quantity
 from plots.printed.potential_figure import draw_equipotentials, enlarge
 from plots.printed.window_axes import draw_limits, draw_pixels, draw_strokes, show_window
 from plots.studies.escape_charts import probabilities_chart, times_chart
+from plots.studies.family import family_charts
 from plots.studies.measure_charts import pairs_chart, survival_chart
+from plots.studies.periodic import periodic_charts
 from plots.studies.section import section_charts
 from plots.studies.sweep_charts import sweep_charts
 
@@ -134,6 +137,10 @@ def _find_charts(result: Result, palette: Palette) -> list[Chart]:
             return [pairs_chart(result)]
         case Returns() | OrbitReturns():
             return section_charts(result, palette)
+        case PeriodicOrbits():
+            return periodic_charts(result, palette)
+        case OrbitFamily():
+            return family_charts(result, palette)
     return []
 
 
@@ -259,6 +266,13 @@ def _draw_sampled_orbits(result: SampledOrbits, axes: Axes, palette: Palette) ->
     axes.set_aspect("equal")
     style_axes(axes, labels=("x", "y"), title="Paths")
     _add_legend_below(axes, entries)
+
+
+@_draw.register
+def _draw_periodic_orbit(result: PeriodicOrbit, axes: Axes, palette: Palette) -> None:
+    axes.plot(*result.find_path()[1:3], color=STABILITY_COLOURS[result.stability], linewidth=1.6)
+    axes.set_aspect("equal", adjustable="datalim")
+    style_axes(axes, labels=("x", "y"), title=f"{result.stability.value.capitalize()}, T = {result.period:.6g}")
 
 
 @_draw.register

@@ -44,6 +44,8 @@ class Subject:
         The surface of section at which crossings are counted.
     window
         The window of a map whose axes are those of the section; None for the default window, and for other maps.
+    state
+        x, y, px and py at the start of the chosen orbit; None without one.
     """
 
     system: System
@@ -54,6 +56,7 @@ class Subject:
     t_max: float
     section: Section = Section.Y_UP
     window: GivenWindow | None = None
+    state: tuple[float, ...] | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

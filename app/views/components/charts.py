@@ -16,15 +16,17 @@ from bokeh.plotting import figure
 from app.views.components.legends import legend
 from app.views.components.plots import FigurePane, chart_hover, set_range, square_figure
 from app.views.components.texts import TextPane
-from plots.pictures.charts import Chart, Frame, Limits, Series, Shape
+from plots.pictures.charts import ONLY_POINTS, Chart, Frame, Limits, Series, Shape
 from plots.pictures.palette import THRESHOLD
 
-_POINT_COLUMNS = ("x", "y", "low", "high", "colour", "label")
-_LINE_COLUMNS = ("xs", "ys", "colour", "dash", "label")
+_POINT_COLUMNS = ("x", "y", "low", "high", "colour", "label", "marker", "size", "filled", "note")
+_LINE_COLUMNS = ("xs", "ys", "colour", "dash", "width", "label")
 _DOT_COLUMNS = ("x", "y", "colour")
 _DASHES = {Shape.DASHED: "8 8"}
-_SHAPES_WITH_POINTS = (Shape.POINTS, Shape.JOINED_POINTS)
-_SHAPES_WITHOUT_LINES = (Shape.POINTS, Shape.DOTS)
+_WIDTHS, _WIDTH = {Shape.THICK: 4}, 2
+_SHAPES_WITH_POINTS = (Shape.POINTS, Shape.JOINED_POINTS, Shape.RINGS, Shape.CROSSES)
+# Marker of a point, its size in pixels, and its opacity inside.
+_MARKERS, _MARKER = {Shape.RINGS: ("circle", 9, 0.0), Shape.CROSSES: ("x", 8, 1.0)}, ("circle", 6, 1.0)
 
 
 class ChartView:
@@ -109,13 +111,25 @@ class ChartView:
         scales = {f"{axis}_axis_type": "log" for axis in frame.logarithmic}
         ranges = {"x_range": self.x_range, "y_range": self.y_range}
         plot = square_figure(frame.name, frame.title, frame.help, x_axis_label=" ", **ranges, **scales, **self._options)
-        lines = plot.add_glyph(self.lines, MultiLine(line_color="colour", line_dash="dash", line_width=2))
+        lines = plot.add_glyph(self.lines, MultiLine(line_color="colour", line_dash="dash", line_width="width"))
         ends = {"x0": "x", "x1": "x", "y0": "low", "y1": "high"}
         plot.add_glyph(self.points, Segment(**ends, line_color="colour", line_alpha=0.6))
-        points = plot.add_glyph(self.points, Scatter(x="x", y="y", size=6, fill_color="colour", line_color="colour"))
+        marks = Scatter(
+            x="x",
+            y="y",
+            marker="marker",
+            size="size",
+            fill_color="colour",
+            line_color="colour",
+            fill_alpha="filled",
+            line_width=1.5,
+        )
+        points = plot.add_glyph(self.points, marks)
         if frame.described is Shape.DOTS:
             dots = plot.add_glyph(self.dots, Scatter(x="x", y="y", size=2, fill_color="colour", line_color=None))
             plot.add_tools(chart_hover(frame.text, [dots]))
+        elif frame.described in (Shape.RINGS, Shape.CROSSES):
+            plot.add_tools(chart_hover(frame.text, [points]))
         elif frame.described is Shape.LINE:
             plot.add_tools(chart_hover(frame.text, [lines], line_policy="nearest"))
         else:
@@ -136,10 +150,12 @@ class ChartView:
 
 def _line_columns(series: Sequence[Series]) -> dict[str, list[Any]]:
     # Dashed lines come last, so they are drawn over the other lines.
-    lines = sorted((one for one in series if one.shape not in _SHAPES_WITHOUT_LINES), key=lambda one: one.shape is Shape.DASHED)
+    lines = sorted((one for one in series if one.shape not in ONLY_POINTS), key=lambda one: one.shape is Shape.DASHED)
     x, y = ([one.curve[axis] for one in lines] for axis in (0, 1))
     dashes = [_DASHES.get(one.shape, "solid") for one in lines]
-    return {"xs": x, "ys": y, "colour": [one.colour for one in lines], "dash": dashes, "label": [one.label for one in lines]}
+    widths = [_WIDTHS.get(one.shape, _WIDTH) for one in lines]
+    labels = [one.label for one in lines]
+    return {"xs": x, "ys": y, "colour": [one.colour for one in lines], "dash": dashes, "width": widths, "label": labels}
 
 
 def _dot_columns(series: Sequence[Series]) -> dict[str, Any]:
@@ -155,6 +171,7 @@ def _point_columns(series: Sequence[Series]) -> dict[str, Any]:
     if not bars:
         return {name: [] for name in _POINT_COLUMNS}
     counts = [one.x.size for one, _ in bars]
+    marks = zip(*(_MARKERS.get(one.shape, _MARKER) for one, _ in bars), strict=True)
     return {
         "x": np.concatenate([one.x for one, _ in bars], dtype=float),
         "y": np.concatenate([one.y for one, _ in bars], dtype=float),
@@ -162,4 +179,6 @@ def _point_columns(series: Sequence[Series]) -> dict[str, Any]:
         "high": np.concatenate([high for _, (_, high) in bars], dtype=float),
         "colour": np.repeat([one.colour for one, _ in bars], counts).tolist(),
         "label": np.repeat([one.label for one, _ in bars], counts).tolist(),
+        **{name: np.repeat(values, counts).tolist() for name, values in zip(("marker", "size", "filled"), marks, strict=True)},
+        "note": [note for one, _ in bars for note in (one.notes or [""] * one.x.size)],
     }

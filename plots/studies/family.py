@@ -1,0 +1,129 @@
+"""The study of the family of the periodic orbit nearest to the chosen orbit, against the energy."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from engine import OrbitFamily, SpecialKind, Stability, continue_family, find_periodic_orbit
+from engine.foundations.wording import format_number
+from engine.jobs.job import Job, Queue
+from engine.results import SpecialPoint
+from plots.pictures.charts import Chart, Frame, Series, Shape
+from plots.pictures.palette import SPECIAL, STABILITY_COLOURS, THRESHOLD, Palette
+from plots.pictures.setting import NO_SETTINGS, Settings
+from plots.studies.axes import ENERGY
+from plots.studies.section import start_through
+from plots.studies.study import Changes, Study, Subject
+
+# The range of the stability index in its chart.
+_INDEX_LIMITS = (-2.5, 2.5)
+# Digits of energies in the sentence, and largest number of special points in it.
+_DIGITS, _MOST_NAMED = 8, 6
+
+_HOW = "Thick lines are stable orbits, points are folds, bifurcations and resonances. "
+_TEXT = "@note<br>Click to open this energy"
+
+
+def _frame(name: str, title: str, label: str, text: str) -> Frame:
+    """Return the frame of a chart against the energy."""
+    return Frame(f"family_{name}", title, (ENERGY, label), _HOW + text, _TEXT, Shape.RINGS)
+
+
+_RETURNS = _frame("returns", "Returns against h", "", "Where the orbits of the family return to the section.")
+_INDEX = _frame(
+    "index",
+    "Stability index a",
+    "a",
+    "The orbits are stable while a is between −1 and 1. At 1 families meet or fold back, at −1 the period doubles, and at the "
+    "resonances between them chains of islands are born.",
+)
+_PERIOD = _frame("period", "Period T", "T", "The time after which an orbit repeats itself.")
+_ACTION = _frame("action", "Action J", "J", "The integral of the momentum along the orbit; its slope is T.")
+
+
+def _job(subject: Subject, axis: str) -> Job[OrbitFamily]:
+    if subject.state is None:
+        raise ValueError("Choose an orbit first: the family of the periodic orbit nearest to it is followed.")
+    near = Job(
+        find_periodic_orbit, (subject.potential, subject.state), (("t_max", subject.t_max), ("section", subject.section)),
+        Queue.LONG_CALL,
+    )  # fmt: skip
+    energy = float(subject.potential.energy(np.array(subject.state)))
+    bounds = min(subject.energies.low, energy), max(subject.energies.high, energy)
+    return Job(continue_family, (near, bounds), queue=Queue.LONG_CALL)
+
+
+def family_charts(family: OrbitFamily, palette: Palette, settings: Settings = NO_SETTINGS) -> list[Chart]:
+    """Return the charts of the returns, the stability index, the period and the action against the energy."""
+    symbol = family.section.axes.symbols[0]
+    returns = replace(_RETURNS, labels=(ENERGY, symbol))
+    curves = [series for k in range(family.returns) for series in _curves(family, family.points[:, k, 0], first=k == 0)]
+    charts = [Chart(returns, [*curves, *_special(family, family.points[:, 0, 0])])]
+    for frame, values in ((_INDEX, family.stability_index), (_PERIOD, family.period), (_ACTION, family.action)):
+        charts.append(Chart(frame, [*_curves(family, values), *_special(family, values)]))
+    bound = np.array([family.energy.min(), family.energy.max()])
+    levels = [Series("", THRESHOLD, bound, np.full(2, level), Shape.DASHED) for level in (-1.0, 1.0)]
+    charts[1] = replace(charts[1], series=[*charts[1].series, *levels], limits=(None, _INDEX_LIMITS))
+    return charts
+
+
+def _curves(family: OrbitFamily, values: np.ndarray, *, first: bool = True) -> list[Series]:
+    """Return the curve of values against the energy: thick where the orbits are stable. Only `first` has entries in a legend."""
+    stability, series, labelled = family.stability, [], set()
+    changes = np.flatnonzero(stability[1:] != stability[:-1]) + 1
+    for part in np.split(np.arange(len(family)), changes):
+        kind = stability[part[0]]
+        # The curve goes on to the first member of the next part.
+        rows = np.append(part, part[-1] + 1)[: len(family) - part[0]]
+        label = kind.value if first and kind not in labelled else ""
+        labelled.add(kind)
+        shape = Shape.THICK if kind is Stability.STABLE else Shape.LINE
+        series.append(Series(label, STABILITY_COLOURS[kind], family.energy[rows], values[rows], shape))
+    return series
+
+
+def _special(family: OrbitFamily, values: np.ndarray) -> list[Series]:
+    """Return the special points of a family on the curve of values."""
+    if not family.special:
+        return []
+    rows = np.array([point.member for point in family.special])
+    notes = [f"{point.name} at h = {format_number(point.energy, _DIGITS)}" for point in family.special]
+    return [Series("special points", SPECIAL, family.energy[rows], values[rows], Shape.RINGS, notes=notes)]
+
+
+def _changes(subject: Subject, axis: str, family: OrbitFamily, x: float, y: float) -> Changes:
+    """Return the energy of the member nearest to the click, and its start."""
+    member = family[int(np.argmin(np.abs(family.energy - x)))]
+    return {"energy": member.energy, **start_through(family.section, subject.potential, member.state, member.energy)}
+
+
+def _sentence(family: OrbitFamily) -> str:
+    named = [_name(point) for point in family.special if point.kind is not SpecialKind.RESONANCE]
+    more = f" and {len(named) - _MOST_NAMED} more" if len(named) > _MOST_NAMED else ""
+    special = f" {', '.join(named[:_MOST_NAMED]).capitalize()}{more}." if named else ""
+    return f"{family.describe()}{special}{' Click a curve to open its energy.' if family.complete else ''}"
+
+
+def _name(point: SpecialPoint) -> str:
+    return f"{point.name} at h = {format_number(point.energy, _DIGITS)}"
+
+
+FAMILY_STUDY = Study(
+    name="family",
+    title="Family",
+    button="Follow the family",
+    hint="The family of the periodic orbit nearest to the chosen orbit, against h, with its special points: a few seconds.",
+    axes=lambda system: (ENERGY,),
+    job=_job,
+    progress=lambda family: 1.0 if family.complete else 0.0,
+    sentence=_sentence,
+    frames=(_RETURNS, _INDEX, _PERIOD, _ACTION),
+    charts=family_charts,
+    changes=_changes,
+    files="family",
+    figure="Family of periodic orbits",
+    caption=lambda family: f"{family.potential.name}: {family.describe()}",
+)
+"""How a periodic orbit changes with the energy: where its island is born, divides and vanishes."""

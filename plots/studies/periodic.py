@@ -1,0 +1,107 @@
+"""The study of periodic orbits: the points at which they return to the surface of section."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from engine import MapSpec, PeriodicOrbit, Stability, find_periodic_orbits
+from engine.jobs.job import Job
+from engine.results import PeriodicOrbits
+from plots.pictures.charts import Chart, Frame, Limits, Series, Shape
+from plots.pictures.palette import STABILITY_COLOURS, Palette
+from plots.pictures.setting import NO_SETTINGS, Setting, Settings
+from plots.studies.section import start_through
+from plots.studies.study import Changes, Study, Subject
+
+RETURNS = 3
+"""Largest number of returns in a period."""
+
+# Columns and rows of the grid of starts.
+_STARTS = (80, 80)
+
+FRAME = Frame(
+    "periodic",
+    "Periodic orbits",
+    ("", ""),
+    "Where periodic orbits return to the surface of section. A ring is a stable orbit: an island of regular orbits stands around "
+    "it. A cross is an unstable one: chaos and the boundaries of the basins hang on it. T is the period, and a the stability "
+    "index: an orbit is stable if a is between −1 and 1.",
+    "@note<br>Click to follow the orbit from (@x{number}, @y{number})",
+    described=Shape.RINGS,
+    is_square=True,
+)
+
+UP_TO = Setting(
+    name="periodic_returns",
+    title="Returns of periodic orbits",
+    word="Returns up to",
+    choices={str(returns): returns for returns in range(1, RETURNS + 1)},
+    default=RETURNS,
+    help="Largest number of returns of the periodic orbits that are drawn.",
+)
+"""Which orbits are drawn."""
+
+
+def _job(subject: Subject, axis: str) -> Job[PeriodicOrbits]:
+    section = subject.section
+    spec = MapSpec(
+        subject.potential, section.slice_of_starts, subject.energy, _STARTS, subject.window, t_max=subject.t_max, section=section
+    )
+    return Job(find_periodic_orbits, (spec,), (("returns", RETURNS),))
+
+
+def periodic_charts(found: PeriodicOrbits, palette: Palette, settings: Settings = NO_SETTINGS) -> list[Chart]:
+    """Return the chart of the returns of periodic orbits; empty without orbits."""
+    is_drawn = found.returns <= UP_TO.value_in(settings)
+    if not is_drawn.any():
+        return []
+    window = found.spec.find_window()
+    limits: tuple[Limits, Limits] = window.ranges
+    notes = np.array([note_of(orbit) for orbit in found], object)
+    series = []
+    for stability, colour in STABILITY_COLOURS.items():
+        shown = is_drawn & (found.stability == stability)
+        if shown.any():
+            x, y = found.points[shown].T
+            shape = Shape.RINGS if stability is Stability.STABLE else Shape.CROSSES
+            series.append(Series(stability.value, colour, x, y, shape, notes=notes[found.orbit[shown] - 1].tolist()))
+    return [Chart(replace(FRAME, labels=found.section.axes.symbols), series, limits)]
+
+
+def note_of(orbit: PeriodicOrbit) -> str:
+    """Return the description of an orbit for its points."""
+    return orbit.describe().removesuffix(".")
+
+
+def _changes(subject: Subject, axis: str, found: PeriodicOrbits, x: float, y: float) -> Changes:
+    """Return the start of the orbit with the return nearest to the click, at this return."""
+    orbit = found.nearest(x, y)
+    if orbit is None:
+        return {}
+    nearest = np.argmin(np.hypot(*(orbit.points - [x, y]).T))
+    return start_through(found.section, subject.potential, orbit.states[nearest], subject.energy)
+
+
+def _sentence(found: PeriodicOrbits) -> str:
+    return f"{found.describe()}{' Click a point to follow its orbit.' if found.complete and len(found) else ''}"
+
+
+PERIODIC_STUDY = Study(
+    name="periodic",
+    title="Periodic",
+    follows_map=True,
+    hint=f"The periodic orbits with up to {RETURNS} returns to the section, and whether they are stable: a few seconds.",
+    job=_job,
+    progress=lambda found: 1.0 if found.complete else 0.0,
+    sentence=_sentence,
+    frames=(FRAME,),
+    charts=periodic_charts,
+    changes=_changes,
+    files="periodic",
+    figure="Periodic orbits",
+    caption=lambda found: f"{found.spec.potential.name}: {found.describe()}",
+    settings=(UP_TO,),
+)
+"""The centres of islands, and the unstable orbits between them."""
