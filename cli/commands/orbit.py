@@ -16,15 +16,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Annotated, Any
 
-import numpy as np
-import typer
-
 from cli.arguments import GivenEnergy
 from cli.execution import Place
 from cli.option_marks import DocumentedBy
 from cli.options import with_options
 from cli.output_files import Content, Stem, name_files, reserve_output, write_files
 from cli.printing import AsJson, print_result
+from cli.starts import GivenState, Start, find_state
 from engine import Fate, Orbit, Potential, Section, Slice, integrate_orbit, judge_orbit
 from engine.results import OrbitVerdict
 from engine.trajectories.birkhoff_digits import compute_birkhoff_digits
@@ -34,10 +32,6 @@ from plots.pictures.palette import Palette
 from plots.printed.figure_files import orbits_figure_bytes
 from plots.printed.figure_style import FigureFormat, FigureStyle
 from plots.texts.exports import orbits_csv, section_csv
-
-State = tuple[float, float, float, float]
-"""x, y, px, py."""
-
 
 CROSSINGS = "crossings.csv"
 """Ending of the name of the file with the crossings of the section."""
@@ -49,8 +43,8 @@ def run(
     potential: Potential,
     plane: Slice,
     energy: GivenEnergy,
-    start: Annotated[tuple[float, float] | None, typer.Option(metavar="X ORDINATE")] = None,
-    state: Annotated[State | None, typer.Option(metavar="X Y PX PY")] = None,
+    start: Start = None,
+    state: GivenState = None,
     t_max: Annotated[float, DocumentedBy(integrate_orbit)],
     section: Section,
     most_rows: Annotated[int, DocumentedBy(orbits_csv)],
@@ -59,16 +53,10 @@ def run(
     output: Stem = None,
     as_json: AsJson = False,
 ) -> None:
-    """Integrate, judge and write an orbit.
-
-    Parameters
-    ----------
-    start
-        Start on the plane, at --energy.
-    state
-        Full initial state, instead of --start and --energy.
-    """
-    initial_state = _find_start(potential, plane, energy, start, state)
+    """Integrate, judge and write an orbit."""
+    if start is None and state is None:
+        raise ValueError("start: give either --start X ORDINATE on a plane, or --state X Y PX PY")
+    initial_state = find_state(potential, plane, energy, start, state)
     paths = name_files(output, ["csv", CROSSINGS, *FigureFormat], ["csv", CROSSINGS, FigureFormat.PNG])
 
     def make_content(ending: str) -> Content:
@@ -89,31 +77,6 @@ def run(
         verdict = judge_orbit(orbit, digits)
         files = write_files({path: make_content(ending) for ending, path in paths.items()})
     _print(orbit, verdict, evaluate_indicators(orbit, digits), files, as_json)
-
-
-def _find_start(
-    potential: Potential, plane: Slice, energy: float | None, start: tuple[float, float] | None, state: State | None
-) -> State:
-    """Return x, y, px, py of a start, given as a state or as a point of a plane; ValueError for a forbidden start."""
-    if (start is None) == (state is None):
-        raise ValueError("start: give either --start X ORDINATE on a plane, or --state X Y PX PY")
-    if state is not None:
-        if energy is not None:
-            raise ValueError("energy: --state already determines it; leave --energy out")
-        return state
-    assert start is not None
-    plane.check_one_potential("start")
-    if plane.energy_axis is not None and energy is not None:
-        raise ValueError(f"energy: on the plane {plane.key} it is a coordinate, so leave --energy out")
-    if plane.energy_axis is None and energy is None:
-        raise ValueError(f"energy: a start on the plane {plane.key} needs --energy H")
-    x, ordinate = np.array(start)[:, None]
-    found_state = plane.states(potential, energy, x, ordinate)[0]
-    if np.isnan(found_state).any():
-        raise ValueError(f"start={start}: forbidden, an orbit there would have negative kinetic energy")
-    # mypy does not know the length of a list.
-    x_start, y_start, px_start, py_start = found_state.tolist()
-    return x_start, y_start, px_start, py_start
 
 
 def _print(

@@ -7,6 +7,10 @@ Examples:
 escape-explorer study energies I --output study-I
 
 escape-explorer study energies III --against epsilon --energy 0.3 --output study-III.pdf
+
+escape-explorer study periodic III --energy 0.3 --output periodic.png
+
+escape-explorer study family III --energy 0.2 --start 0 0 --output family.pdf
 """
 
 from __future__ import annotations
@@ -23,6 +27,7 @@ from cli.option_marks import DocumentedBy
 from cli.options import with_options
 from cli.output_files import Content, Stem, name_files, reserve_output, write_files
 from cli.printing import AsJson, list_rows, print_result
+from cli.starts import GivenState, Start, find_state
 from engine import Potential, Result, Section, Slice, SweepSpec, System
 from engine.jobs.job import run_job
 from engine.systems.review.potential_review import review_system
@@ -48,6 +53,8 @@ def run(
     section: Section,
     energy: GivenEnergy,
     t_max: Annotated[float, DocumentedBy(SweepSpec)],
+    start: Start = None,
+    state: GivenState = None,
     against: Annotated[str | None, typer.Option(help=AGAINST_HELP)] = None,
     settings: Settings,
     style: FigureStyle,
@@ -55,11 +62,16 @@ def run(
     place: Annotated[Place, THREADS_ONLY],
     as_json: AsJson = False,
 ) -> None:
-    """Compute, write and print the study. Without --energy, it is made at the first energy of the page."""
+    """Compute, write and print the study. Without --energy, it is made at the first energy of the page.
+
+    The study of a family needs --start or --state.
+    """
     entry = _find_study(study)
     energies = review_system(system).energies
     chosen_energy = energies.first if energy is None else energy
-    subject = Subject(system, potential, plane, chosen_energy, energies, t_max, section)
+    has_start = start is not None or state is not None
+    chosen_state = find_state(potential, plane, None if state else chosen_energy, start, state) if has_start else None
+    subject = Subject(system, potential, plane, chosen_energy, energies, t_max, section, state=chosen_state)
     job = entry.job(subject, _choose_axis(entry, system, against))
     stem = Path(stem_of(f"{entry.files}-{file_name_part(case)}", section))
     paths = name_files(output, ["nc", "csv", *FigureFormat], ["nc", "csv"], stem)

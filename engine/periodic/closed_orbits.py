@@ -8,11 +8,15 @@ from engine.exits.saddle_orbits.orbit_parts import matrix_product, monodromy_mat
 from engine.integrator.kernels.dense_output import sample_path, trace_steps
 from engine.periodic.shooting import Trial
 from engine.periodic.symmetries import Symmetry, symmetries_of
+from engine.propagation.passages import find_passages_of_orbit
+from engine.slices.sections.section import Section
 from engine.systems.potential import Potential
 
 SAME_POINT = 1e-7
 """Distance within which two returns are the same point, in units of the well."""
 
+# Largest number of passages in a part of an orbit, and time within which two passages are the same.
+_MOST_PASSAGES, _SAME_TIME = 1000, 1e-6
 # Points of Gauss's quadrature in a step of the integrator, whose path is a polynomial.
 _GAUSS_POINTS = 20
 
@@ -85,6 +89,27 @@ def primitive_returns(orbit: Trial) -> int:
     states = orbit.states[orbit.returns]
     n = len(states)
     return next(m for m in range(1, n + 1) if n % m == 0 and np.abs(states - np.roll(states, -m, axis=0)).max() < SAME_POINT)
+
+
+def with_all_returns(potential: Potential, section: Section, orbit: Trial) -> Trial:
+    """Return a closed orbit with all its returns to a section, in units of the well; it is unchanged if none is missing."""
+    durations = orbit.part_durations
+    begins = np.cumsum(durations) - durations
+    known, period = begins[orbit.returns], float(durations.sum())
+    passages = []
+    for state, begin, duration in zip(orbit.states, begins, durations.tolist(), strict=True):
+        found = find_passages_of_orbit(potential, state, _MOST_PASSAGES, duration, section.numbers)
+        passages.append(np.column_stack([found[:, :4], begin + found[:, 4]]))
+    points = np.concatenate(passages)
+    # A return at a node can be found at the end of a part.
+    distances = np.abs((points[:, 4, None] - known + 0.5 * period) % period - 0.5 * period)
+    further = points[distances.min(axis=1) > _SAME_TIME]
+    if not len(further):
+        return orbit
+    everything = np.vstack([np.column_stack([orbit.states[orbit.returns], known]), further])
+    everything = everything[np.argsort(everything[:, 4])]
+    times = everything[:, 4]
+    return Trial(everything[:, :4], np.diff(times, append=times[0] + period), orbit.energy, (1,) * len(times))
 
 
 def sampled_path(potential: Potential, orbit: Trial, points: int) -> np.ndarray:

@@ -9,9 +9,9 @@ import numpy as np
 from engine.foundations.validation import checked_count, checked_state, checks_types
 from engine.foundations.wording import format_count
 from engine.integrator.kernels.dense_output import advance_states
-from engine.periodic.closed_orbits import primitive_returns
+from engine.periodic.closed_orbits import primitive_returns, with_all_returns
 from engine.periodic.periodic_orbit import PeriodicOrbit
-from engine.periodic.shooting import Trial, close_orbit, divided
+from engine.periodic.shooting import Trial, close_orbit, crosses_section, divided
 from engine.propagation.passages import find_passages_of_orbit
 from engine.slices.sections.section import Section
 from engine.slices.sections.section_text import checked_section
@@ -48,8 +48,8 @@ def find_periodic_orbit(
     state
         (4,) x, y, px, py, finite: for instance a point of an island on the section, or any point of an orbit.
     returns
-        Number of returns to the section after which the orbit repeats itself, 1 to 100; None for the nearest of the orbits with
-        1 to 6 returns. An orbit that repeats itself earlier has fewer returns.
+        Number of returns to the section after which the orbit of the start comes near to it, 1 to 100; None for the nearest of
+        the orbits that are found for 1 to 6. The periodic orbit can have another number of returns, for instance a divisor.
     t_max
         Longest time of the returns, 0 < t_max ≤ 1e8, dimensionless; by default as in `MapSpec`.
     section
@@ -87,7 +87,7 @@ def find_periodic_orbit(
 def close_near(potential: Potential, section: Section, start: np.ndarray, returns: int, t_max: float) -> Trial | None:
     """Return the closed orbit near a start, (4,), in units of the well; None if it is not found.
 
-    Start, section and t_max are in the units of the potential. The orbit has this number of returns or a divisor of it.
+    Start, section and t_max are in the units of the potential. The orbit found can have another number of returns.
     """
     units, well, well_section = potential.units, potential.in_well_units, section.in_well_units(potential.units)
     passages = _returns_of(potential, section, start, returns + 1, t_max)
@@ -97,11 +97,13 @@ def close_near(potential: Potential, section: Section, start: np.ndarray, return
     states, durations = passages[:-1, :4], np.diff(passages[:, 4])
     trial = divided(well, Trial(states, durations, float(potential.energy(start)) / units.energy, (1,) * returns))
     closed = close_orbit(well, well_section, trial)
-    if closed is None:
+    if closed is None or not crosses_section(well, well_section, closed[0]):
         return None
-    count = primitive_returns(closed[0])
-    if count < returns:
-        closed = close_orbit(well, well_section, closed[0].shortened(count))
+    # Newton's method can lead to an orbit with further returns, or with fewer.
+    orbit = with_all_returns(well, well_section, closed[0])
+    orbit = orbit.shortened(primitive_returns(orbit))
+    if orbit.durations.size != returns:
+        closed = close_orbit(well, well_section, divided(well, orbit))
     return None if closed is None else closed[0]
 
 

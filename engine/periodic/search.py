@@ -185,25 +185,25 @@ def find_periodic_orbits(
     """
     energy_of(spec)
     returns = checked_count("returns", returns, 1, MOST_RETURNS)
-    search = _Search(spec)
+    search = _Search(spec, returns)
     found = compute_returns(spec, returns, execution=execution.part(0, 2))
     displacements = spec.section.axes.points(found.states) - search.starts
     for n in range(1, returns + 1):
         for row, column in cells_with_index(displacements[n - 1]):
             if execution.is_cancelled:
-                return search.result(returns, complete=False)
+                return search.result(complete=False)
             search.try_cell(n, row, column, displacements[n - 1])
         execution.part(1, 2).report(partial(truediv, n, returns))
         if on_frame is not None and n < returns:
-            on_frame(search.result(returns, complete=False))
-    return search.result(returns, complete=True)
+            on_frame(search.result(complete=False))
+    return search.result(complete=True)
 
 
 class _Search:
     """The orbits found so far, and where their points are."""
 
-    def __init__(self, spec: MapSpec) -> None:
-        self._spec = spec
+    def __init__(self, spec: MapSpec, most_returns: int) -> None:
+        self._spec, self._most_returns = spec, most_returns
         x, ordinate = spec.pixel_centres()
         self.starts = np.stack(np.meshgrid(x, ordinate), axis=-1)
         self._cell = np.array([x[-1] - x[0], ordinate[-1] - ordinate[0]]) / np.maximum(np.array(spec.resolution) - 1, 1)
@@ -219,7 +219,9 @@ class _Search:
             return
         (start,) = self._spec.start_states(place[:1], place[1:])
         orbit = self._close(start, n) if np.isfinite(start).all() else None
-        if orbit is not None and np.abs((orbit.points[0] - place) / self._cell).max() <= _FARTHEST:
+        if orbit is None or orbit.returns > self._most_returns:
+            return
+        if np.abs((orbit.points - place) / self._cell).max(axis=1).min() <= _FARTHEST:
             self._add_with_images(orbit)
 
     def _close(self, start: np.ndarray, returns: int) -> PeriodicOrbit | None:
@@ -250,7 +252,7 @@ class _Search:
         """Return the distances of all known points from a place, in cells."""
         return np.abs((self._points - place) / self._cell).max(axis=1, initial=0.0)
 
-    def result(self, most_returns: int, *, complete: bool) -> PeriodicOrbits:
+    def result(self, *, complete: bool) -> PeriodicOrbits:
         """Return the orbits found so far, by the number of returns, the period and the order in which they were found."""
         orbits = [orbit for orbit, _ in self._orbits]
         order = sorted(range(len(orbits)), key=lambda k: (orbits[k].returns, round(orbits[k].period, DIGITS)))
@@ -270,4 +272,4 @@ class _Search:
             name: read_only(column.astype(int) if name in _NUMBERS else column)
             for name, column in zip(_COLUMNS, columns, strict=True)
         }
-        return PeriodicOrbits(self._spec, most_returns, **values, complete=complete)
+        return PeriodicOrbits(self._spec, self._most_returns, **values, complete=complete)

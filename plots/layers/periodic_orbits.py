@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from engine import MapSpec, Stability, find_periodic_orbits
+from engine import MapSpec, Stability
 from engine.jobs.job import Job
 from engine.results import PeriodicOrbits
 from plots.layers.layer import Count, Layer, Over, Stroke
-from plots.pictures.palette import STABILITY_COLOURS, Entry, Mark, Palette
+from plots.pictures.palette import Entry, Mark, Palette
+from plots.pictures.periodic_marks import RETURNS, STABILITY_COLOURS, periodic_job
 from plots.pictures.setting import Settings
 
-# Number of returns that the page computes, and largest number.
-_RETURNS, _MOST_RETURNS = 3, 12
-# Columns and rows of the grid of starts.
-_STARTS = (100, 100)
+# Largest number of returns.
+_MOST_RETURNS = 12
 # Radius of a mark as a share of the window, for 1, 2, 3 and more returns: the more returns, the smaller the island.
 _RADII = (0.016, 0.013, 0.010, 0.008)
 # Corners of a ring.
@@ -58,8 +57,7 @@ def _entries(found: PeriodicOrbits, palette: Palette) -> list[Entry]:
 
 
 def _job(spec: MapSpec, settings: Settings) -> Job[PeriodicOrbits]:
-    starts = MapSpec(spec.potential, spec.plane, spec.energy, _STARTS, spec.given_window, spec.t_max, section=spec.section)
-    return Job(find_periodic_orbits, (starts,), (("returns", settings.get(PERIODIC_ORBITS.name, _RETURNS)),))
+    return periodic_job(spec, settings.get(PERIODIC_ORBITS.name, RETURNS))
 
 
 def _refusal(spec: MapSpec) -> str:

@@ -15,7 +15,7 @@ from itertools import accumulate
 
 import numpy as np
 
-from engine import Fate, Outcome, Stability
+from engine import Fate, Outcome
 from engine.propagation.fates import UNRESOLVED, outcome_of
 from engine.systems.outcomes import KINDS, Exit
 
@@ -269,12 +269,6 @@ SET_ASIDE = "#b9c3cf"
 
 LAW_COLOURS = {"exponential": "#d1495b", "power law": "#b58900"}
 """Colours of fitted decay laws."""
-
-STABILITY_COLOURS = {Stability.STABLE: "#0f8a72", Stability.UNSTABLE: "#d4551f", Stability.REFLECTING: "#8a56c9"}
-"""Colours of periodic orbits by their stability."""
-
-SPECIAL = "#b07d00"
-"""Colour of special points of families of periodic orbits."""
 
 PATCH_EDGE = "#999999"
 """Colour of the edges of patches in legends."""

@@ -36,7 +36,8 @@ from plots.layers.table import LAYERS, map_legend
 from plots.pictures.charts import Chart, Frame, Series, Shape
 from plots.pictures.orbit_curves import compute_orbit_curves, well_energy
 from plots.pictures.orbit_quantities import ORBIT_QUANTITIES
-from plots.pictures.palette import LIGHT, MEASURED, PALETTES, PAPER, STABILITY_COLOURS, Entry, Palette, rgba
+from plots.pictures.palette import LIGHT, MEASURED, PALETTES, PAPER, Entry, Palette, rgba
+from plots.pictures.periodic_marks import STABILITY_COLOURS
 from plots.printed.curve_figures import draw_chart
 from plots.printed.figure_axes import RENDER_LOCK, legend_handles, set_font, set_title, style_axes
 from plots.printed.map_figure import draw_picture

@@ -11,7 +11,8 @@ from engine.foundations.wording import format_number
 from engine.jobs.job import Job, Queue
 from engine.results import SpecialPoint
 from plots.pictures.charts import Chart, Frame, Series, Shape
-from plots.pictures.palette import SPECIAL, STABILITY_COLOURS, THRESHOLD, Palette
+from plots.pictures.palette import THRESHOLD, Palette
+from plots.pictures.periodic_marks import SPECIAL, STABILITY_COLOURS
 from plots.pictures.setting import NO_SETTINGS, Settings
 from plots.studies.axes import ENERGY
 from plots.studies.section import start_through

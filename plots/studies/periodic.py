@@ -6,20 +6,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from engine import MapSpec, PeriodicOrbit, Stability, find_periodic_orbits
+from engine import MapSpec, PeriodicOrbit, Stability
 from engine.jobs.job import Job
 from engine.results import PeriodicOrbits
 from plots.pictures.charts import Chart, Frame, Limits, Series, Shape
-from plots.pictures.palette import STABILITY_COLOURS, Palette
+from plots.pictures.palette import Palette
+from plots.pictures.periodic_marks import RETURNS, STABILITY_COLOURS, periodic_job
 from plots.pictures.setting import NO_SETTINGS, Setting, Settings
 from plots.studies.section import start_through
 from plots.studies.study import Changes, Study, Subject
-
-RETURNS = 3
-"""Largest number of returns in a period."""
-
-# Columns and rows of the grid of starts.
-_STARTS = (80, 80)
 
 FRAME = Frame(
     "periodic",
@@ -46,10 +41,8 @@ UP_TO = Setting(
 
 def _job(subject: Subject, axis: str) -> Job[PeriodicOrbits]:
     section = subject.section
-    spec = MapSpec(
-        subject.potential, section.slice_of_starts, subject.energy, _STARTS, subject.window, t_max=subject.t_max, section=section
-    )
-    return Job(find_periodic_orbits, (spec,), (("returns", RETURNS),))
+    plane, energy = section.slice_of_starts, subject.energy
+    return periodic_job(MapSpec(subject.potential, plane, energy, window=subject.window, t_max=subject.t_max, section=section))
 
 
 def periodic_charts(found: PeriodicOrbits, palette: Palette, settings: Settings = NO_SETTINGS) -> list[Chart]:
