@@ -27,8 +27,11 @@ MOST_MEMBERS = 10_000
 _LONGEST_STEP = 0.05
 # Sizes of the path of an orbit near an equilibrium, and speed and force near a saddle, in units of the well.
 _SMALL_ORBIT, _SLOW = 0.02, 0.02
+# Change of the energy between members that no longer counts, and speed and force of orbits so near an equilibrium.
+_SMALLEST_CHANGE, _SLOWEST = 1e-9, 1e-3
 # Points of the path on which the end of a family is judged.
 _PATH_POINTS = 2000
+_HOMOCLINIC = "the period grows without limit, because the orbits tend to an equilibrium"
 # Members after which a family can close.
 _FEWEST_MEMBERS = 10
 
@@ -53,7 +56,7 @@ def continue_family(
         An energy above or below that of the orbit, dimensionless: the family is followed in this direction, while its energy is
         between both. Or a pair (low, high): it is followed in both directions, while its energy is between these.
     most_members
-        Largest number of members, 2 to 10 000, without special points.
+        Largest number of members in each direction, 2 to 10 000, without special points.
     execution
         How the computation runs. When it is cancelled, the family ends at the last member found.
     on_frame
@@ -184,11 +187,18 @@ class _Branch:
             self.end = "the search was cancelled"
         elif count == self._most:
             self.end = "the largest number of members is reached"
+        elif self._has_stopped(segment):
+            self.end = _reason(self._potential, segment.after)
         elif count > _FEWEST_MEMBERS and _is_closed(first.orbit, segment):
             self.end = "it is closed and returns to its first member"
         else:
             return False
         return True
+
+    def _has_stopped(self, segment: Segment) -> bool:
+        """Return whether the energy hardly changes any more, because the orbits tend to an equilibrium."""
+        change = abs(segment.after.orbit.energy - segment.before.orbit.energy)
+        return change < _SMALLEST_CHANGE and _slowness(self._potential, segment.after.orbit) < _SLOWEST
 
 
 def _is_closed(first: Trial, segment: Segment) -> bool:
@@ -201,14 +211,20 @@ def _is_closed(first: Trial, segment: Segment) -> bool:
 
 def _reason(potential: Potential, member: Member) -> str:
     """Return why no further member is found after a member."""
-    x, y, vx, vy = sampled_path(potential, member.orbit, _PATH_POINTS)[1:]
+    x, y = sampled_path(potential, member.orbit, _PATH_POINTS)[1:3]
     if max(np.ptp(x), np.ptp(y)) < _SMALL_ORBIT:
         return "the orbits shrink to an equilibrium"
     if any(np.hypot(x - centre.x, y - centre.y).min() < 2.0 * centre.radius for centre in potential.centres):
         return "the orbits collide with a body"
-    if np.hypot(np.hypot(vx, vy), np.hypot(*potential.gradient(x, y))).min() < _SLOW:
-        return "the period grows without limit, because the orbits tend to an equilibrium"
+    if _slowness(potential, member.orbit) < _SLOW:
+        return _HOMOCLINIC
     return "no further member is found: the returns to the section change, or the orbits are too unstable"
+
+
+def _slowness(potential: Potential, orbit: Trial) -> float:
+    """Return the smallest sum of speed and force along an orbit, which is 0 at an equilibrium."""
+    x, y, vx, vy = sampled_path(potential, orbit, _PATH_POINTS)[1:]
+    return float(np.hypot(np.hypot(vx, vy), np.hypot(*potential.gradient(x, y))).min())
 
 
 def _joined(orbit: PeriodicOrbit, branches: list[_Branch], *, complete: bool) -> OrbitFamily:

@@ -182,7 +182,8 @@ class OrbitFamily(ResultOnSection):
         if point.kind not in _PERIODS_OF_BRANCHES:
             raise ValueError(f"number={number}: no other family is followed from a {point.name}")
         step = math.copysign(checked_between("step", abs(step), *_STEPS), step)
-        orbit = first_orbit_of_branch(self[point.member], _PERIODS_OF_BRANCHES[point.kind], step)
+        neighbours = self[max(point.member - 1, 0)], self[min(point.member + 1, len(self) - 1)]
+        orbit = first_orbit_of_branch(self[point.member], neighbours, _PERIODS_OF_BRANCHES[point.kind], step)
         if orbit is None:
             raise ValueError(f"step={step:g}: no orbit of a branch was found at this distance; choose another one")
         return orbit

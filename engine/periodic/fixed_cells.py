@@ -4,8 +4,25 @@ from __future__ import annotations
 
 import numpy as np
 
+# Widening of the range of displacements in a cell, as a share of it, beyond those at its corners.
+_WIDENING = 0.5
 # Corrections of the zero of the bilinear interpolation in a cell.
 _CORRECTIONS = 4
+
+
+def cells_near_zero(displacements: np.ndarray, *, also_incomplete: bool = False) -> np.ndarray:
+    """Return the cells in which the displacement can vanish, of shape (n, 2): row and column of the first corner.
+
+    A cell is among them if 0 is within the range of the displacements at its corners, widened on both sides, for each coordinate.
+    With `also_incomplete`, cells without the displacements of some of their corners are among them.
+    """
+    corners = np.stack([displacements[:-1, :-1], displacements[:-1, 1:], displacements[1:, 1:], displacements[1:, :-1]])
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    margin = _WIDENING * (high - low)
+    # NaN is no range.
+    is_near = np.all((low - margin <= 0.0) & (high + margin >= 0.0), axis=-1)
+    counts = np.isfinite(corners[..., 0]).sum(axis=0)
+    return np.argwhere(is_near | (also_incomplete & (counts > 0) & (counts < 4)))
 
 
 def cells_with_index(displacements: np.ndarray) -> np.ndarray:

@@ -79,7 +79,8 @@ def find_periodic_orbit(
     orbits = [orbit for n in numbers if (orbit := close_near(potential, section, start, n, t_max)) is not None]
     if not orbits:
         raise NoPeriodicOrbitError(_reason(potential, section, start, numbers[0], t_max))
-    first = _first_point(potential, section, start, t_max)
+    first = first_point(potential, section, start, t_max)
+    assert first is not None
     orbit = min(orbits, key=lambda each: _distance(potential, section, each, first))
     return PeriodicOrbit.from_trial(potential, section, orbit)
 
@@ -115,10 +116,10 @@ def _returns_of(potential: Potential, section: Section, start: np.ndarray, count
     return find_passages_of_orbit(well, before, count, t_max / units.time + _BEFORE, section.in_well_units(units).numbers)
 
 
-def _first_point(potential: Potential, section: Section, start: np.ndarray, t_max: float) -> np.ndarray:
-    """Return the first point of an orbit on a section, (4,), in units of the well."""
-    point: np.ndarray = _returns_of(potential, section, start, 1, t_max)[0, :4]
-    return point
+def first_point(potential: Potential, section: Section, start: np.ndarray, t_max: float) -> np.ndarray | None:
+    """Return the first point of an orbit on a section, (4,), in units of the well; None if it does not reach the section."""
+    points = _returns_of(potential, section, start, 1, t_max)
+    return points[0, :4] if len(points) else None
 
 
 def _distance(potential: Potential, section: Section, orbit: Trial, point: np.ndarray) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from operator import truediv
 from typing import Any, ClassVar
@@ -17,19 +17,25 @@ from engine.foundations.validation import checked_count, checks_types
 from engine.foundations.wording import format_count, format_number
 from engine.maps.returns import compute_returns
 from engine.maps.spec import MapSpec
-from engine.periodic.fixed_cells import cells_with_index, zero_in_cell
-from engine.periodic.nearest_orbit import MOST_RETURNS, close_near
+from engine.periodic.fixed_cells import cells_near_zero, cells_with_index, zero_in_cell
+from engine.periodic.nearest_orbit import MOST_RETURNS, close_near, first_point
 from engine.periodic.periodic_orbit import DIGITS, STATE_COLUMNS, PeriodicOrbit, Stability
+from engine.periodic.shooting import Trial
 from engine.periodic.symmetries import symmetries_of
 from engine.slices.sections.section import Section
+from engine.trajectories.orbit_returns import find_returns
 
 # Columns of the table of points, and those that contain numbers of orbits.
 _COLUMNS = ("orbit", "time", *STATE_COLUMNS, "period", "stability_index", "action", "image_of")
 _NUMBERS = ("orbit", "image_of")
+# Numbers of parts along each side of a cell, and of each such part.
+_FIRST_PARTS, _SECOND_PARTS = 6, 4
+# Largest displacement at an interpolated zero, as a share of the largest one at the corners.
+_SMALLER = 0.5
 # Distance within which two points of orbits are the same, in cells; Newton's method leads farther only to another orbit.
 _SAME, _FARTHEST = 1e-5, 3.0
-# Distance from a known point within which a cell is not searched, in cells.
-_SEARCHED = 0.75
+# Distance from a known point within which no other one is searched, in parts of cells.
+_SEARCHED = 1.5
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -137,6 +143,8 @@ class PeriodicOrbits(Result):
 def energy_of(spec: MapSpec) -> float:
     """Return the energy of all starts of a request whose plane is the slice of its section; ValueError for another one."""
     if not spec.section.is_drawn_on(spec.plane) or spec.common_energy is None:
+        if spec.section.plane is None or not spec.section.is_drawn_on(spec.section.plane):
+            raise ValueError(f"spec: the points of its section {spec.section.place} are on no slice; choose another section")
         raise ValueError(f"spec: its plane is {spec.plane.title}; must be the slice of its section {spec.section.place}")
     return spec.common_energy
 
@@ -152,8 +160,8 @@ def find_periodic_orbits(
 ) -> PeriodicOrbits:
     """Find the periodic orbits with points in the window of a slice on the section, up to a number of returns.
 
-    The displacement of the n-th return turns around a fixed point. Cells of the grid around which it has an index that is not 0
-    are the starts of Newton's method. Images under the symmetries of the motion are found as well.
+    The displacement of the n-th return turns around a fixed point. Cells in which it can vanish are divided, and the parts around
+    which it has an index that is not 0 are the starts of Newton's method. Images under the symmetries of the motion are added.
 
     Parameters
     ----------
@@ -185,14 +193,16 @@ def find_periodic_orbits(
     """
     energy_of(spec)
     returns = checked_count("returns", returns, 1, MOST_RETURNS)
-    search = _Search(spec, returns)
+    search = _Search(spec, returns, execution.part(1, 2))
     found = compute_returns(spec, returns, execution=execution.part(0, 2))
     displacements = spec.section.axes.points(found.states) - search.starts
     for n in range(1, returns + 1):
-        for row, column in cells_with_index(displacements[n - 1]):
+        for place in search.places(n, displacements[n - 1]):
             if execution.is_cancelled:
-                return search.result(complete=False)
-            search.try_cell(n, row, column, displacements[n - 1])
+                break
+            search.try_place(n, place)
+        if execution.is_cancelled:
+            return search.result(complete=False)
         execution.part(1, 2).report(partial(truediv, n, returns))
         if on_frame is not None and n < returns:
             on_frame(search.result(complete=False))
@@ -202,55 +212,109 @@ def find_periodic_orbits(
 class _Search:
     """The orbits found so far, and where their points are."""
 
-    def __init__(self, spec: MapSpec, most_returns: int) -> None:
-        self._spec, self._most_returns = spec, most_returns
+    def __init__(self, spec: MapSpec, most_returns: int, execution: Execution) -> None:
+        self._spec, self._most_returns, self._execution = spec, most_returns, execution
         x, ordinate = spec.pixel_centres()
         self.starts = np.stack(np.meshgrid(x, ordinate), axis=-1)
         self._cell = np.array([x[-1] - x[0], ordinate[-1] - ordinate[0]]) / np.maximum(np.array(spec.resolution) - 1, 1)
+        self._part = self._cell / (_FIRST_PARTS * _SECOND_PARTS)
         self._symmetries = symmetries_of(spec.potential)
         self._orbits: list[tuple[PeriodicOrbit, int]] = []
         self._points, self._counts = np.empty((0, 2)), np.empty(0, int)
 
-    def try_cell(self, n: int, row: int, column: int, displacements: np.ndarray) -> None:
-        """Search for an orbit with a point in a cell after n returns, unless one is known."""
-        place = self.starts[row, column] + self._cell * zero_in_cell(displacements, row, column)
-        is_near = self._distances(place) < _SEARCHED
+    def places(self, n: int, displacements: np.ndarray) -> np.ndarray:
+        """Return the places, (k, 2), near which the n-th return has fixed points, given its displacements on the grid.
+
+        In a cell, the return map can be far from linear. Cells in which the displacement can vanish are therefore divided, and
+        such parts again. Where the map jumps, the displacement at the interpolated zero is not smaller than at the corners.
+        """
+        cells = cells_near_zero(displacements, also_incomplete=True)
+        corners, size = self.starts[cells[:, 0], cells[:, 1]], self._cell
+        corners, size, _ = self._divided(n, corners, size, _FIRST_PARTS, cells_near_zero)
+        corners, size, around = self._divided(n, corners, size, _SECOND_PARTS, cells_with_index)
+        shares = np.array([zero_in_cell(part, 0, 0) for part in around]).reshape(-1, 2)
+        found = corners + size * shares
+        distances = np.hypot(*np.moveaxis(self._displacements(n, found), -1, 0))
+        return found[distances < _SMALLER * np.hypot(*np.moveaxis(around, -1, 0)).max(axis=(1, 2), initial=0.0)]
+
+    def _divided(
+        self, n: int, corners: np.ndarray, size: np.ndarray, parts: int, choose: Callable[[np.ndarray], np.ndarray]
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return the chosen parts of cells: their first corners (k, 2), size (2,) and displacements at corners (k, 2, 2, 2)."""
+        shares = np.linspace(0.0, 1.0, parts + 1)
+        grids = corners[:, None, None] + np.stack(np.meshgrid(shares, shares), axis=-1) * size
+        first, around = [np.empty((0, 2))], [np.empty((0, 2, 2, 2))]
+        for grid, displacements in zip(grids, self._displacements(n, grids), strict=True):
+            for row, column in choose(displacements):
+                first.append(grid[row, column][None])
+                around.append(displacements[row : row + 2, column : column + 2][None])
+        return np.concatenate(first), size / parts, np.concatenate(around)
+
+    def _displacements(self, n: int, places: np.ndarray) -> np.ndarray:
+        """Return the displacements of the n-th return of starts at places (…, 2); NaN without this return."""
+        spec, displacements = self._spec, np.full(places.shape, np.nan)
+        states = spec.start_states(*places.reshape(-1, 2).T).reshape(*places.shape[:-1], 4)
+        is_start = np.isfinite(states).all(axis=-1)
+        if is_start.any():
+            found = find_returns(
+                spec.potential, energy_of(spec), states[is_start], n, spec.t_max, section=spec.section,
+                execution=replace(self._execution, on_progress=None),
+            )  # fmt: skip
+            displacements[is_start] = spec.section.axes.points(found.states[n - 1]) - places[is_start]
+        return displacements
+
+    def try_place(self, n: int, place: np.ndarray) -> None:
+        """Search for an orbit with n returns near a place, unless one is known within a part of a cell."""
+        is_near = self._distances(place, self._part) < _SEARCHED
         if np.any(is_near & (n % self._counts == 0)):
             return
         (start,) = self._spec.start_states(place[:1], place[1:])
-        orbit = self._close(start, n) if np.isfinite(start).all() else None
-        if orbit is None or orbit.returns > self._most_returns:
+        trial = self._close(start, n) if np.isfinite(start).all() else None
+        if trial is None or self._is_known(trial.states[0], trial.durations.size):
             return
-        if np.abs((orbit.points - place) / self._cell).max(axis=1).min() <= _FARTHEST:
-            self._add_with_images(orbit)
+        if np.abs((self._points_of(trial) - place) / self._cell).max(axis=1).min() <= _FARTHEST:
+            orbit = PeriodicOrbit.from_trial(self._spec.potential, self._spec.section, trial)
+            self._add(orbit, 0)
+            self._add_images(orbit)
 
-    def _close(self, start: np.ndarray, returns: int) -> PeriodicOrbit | None:
+    def _close(self, start: np.ndarray, returns: int) -> Trial | None:
+        """Return the closed orbit near a start; None if there is none with a number of returns that is searched for."""
         spec = self._spec
         trial = close_near(spec.potential, spec.section, start, returns, spec.t_max)
-        return None if trial is None else PeriodicOrbit.from_trial(spec.potential, spec.section, trial)
+        return trial if trial is not None and trial.durations.size <= self._most_returns else None
 
-    def _add_with_images(self, orbit: PeriodicOrbit) -> None:
-        """Add an orbit and its images, unless they are known."""
-        if not self._add(orbit, 0):
-            return
-        first = len(self._orbits)
+    def _points_of(self, trial: Trial) -> np.ndarray:
+        """Return the returns of a closed orbit in the coordinates of the section, (n, 2)."""
+        return self._spec.section.axes.points(trial.states[trial.returns] * self._spec.potential.units.state)
+
+    def _is_known(self, state: np.ndarray, returns: int) -> bool:
+        """Return whether a state on the section, in units of the well, is on a known orbit with this number of returns."""
+        place = self._spec.section.axes.points(state * self._spec.potential.units.state)
+        return bool(np.any((self._distances(place, self._cell) < _SAME) & (self._counts == returns)))
+
+    def _add_images(self, orbit: PeriodicOrbit) -> None:
+        """Add the images of the orbit that was added last, unless they are known."""
+        first, spec = len(self._orbits), self._spec
         for symmetry in self._symmetries:
-            image = self._close(orbit.state * symmetry.factors, orbit.returns)
-            if image is not None and abs(image.period - orbit.period) <= _SAME * orbit.period:
+            state = orbit.state * symmetry.factors
+            point = first_point(spec.potential, spec.section, state, spec.t_max)
+            if point is None or self._is_known(point, orbit.returns):
+                continue
+            trial = self._close(state, orbit.returns)
+            if trial is None or self._is_known(trial.states[0], trial.durations.size):
+                continue
+            image = PeriodicOrbit.from_trial(spec.potential, spec.section, trial, orbit.stability_index, orbit.action)
+            if abs(image.period - orbit.period) <= _SAME * orbit.period:
                 self._add(image, first)
 
-    def _add(self, orbit: PeriodicOrbit, image_of: int) -> bool:
-        """Add an orbit, unless it is known, and return whether it was added."""
-        if np.any((self._distances(orbit.points[0]) < _SAME) & (self._counts == orbit.returns)):
-            return False
+    def _add(self, orbit: PeriodicOrbit, image_of: int) -> None:
         self._orbits.append((orbit, image_of))
         self._points = np.vstack([self._points, orbit.points])
         self._counts = np.append(self._counts, np.full(orbit.returns, orbit.returns))
-        return True
 
-    def _distances(self, place: np.ndarray) -> np.ndarray:
-        """Return the distances of all known points from a place, in cells."""
-        return np.abs((self._points - place) / self._cell).max(axis=1, initial=0.0)
+    def _distances(self, place: np.ndarray, size: np.ndarray) -> np.ndarray:
+        """Return the distances of all known points from a place, in units of a size (2,)."""
+        return np.abs((self._points - place) / size).max(axis=1, initial=0.0)
 
     def result(self, *, complete: bool) -> PeriodicOrbits:
         """Return the orbits found so far, by the number of returns, the period and the order in which they were found."""

@@ -19,8 +19,9 @@ from engine.integrator.kernels.dense_output import sample_path
 from engine.slices.sections.section import Crossing, Section
 from engine.systems.potential import Potential
 
-_MOST_CORRECTIONS = 15
-# Largest correction of an unknown at once. A larger correction is shortened.
+# Largest number of corrections, and of those that are larger than the correction before.
+_MOST_CORRECTIONS, _MOST_GROWTHS = 15, 2
+# Largest correction of an unknown at once, relative to the size of the orbit. A larger correction is shortened.
 _LARGEST_CORRECTION = 0.3
 # Size below which corrections that no longer decrease are rounding errors.
 _TOLERANCE = 1e-9
@@ -28,6 +29,8 @@ _TOLERANCE = 1e-9
 _SMALL_RESIDUAL = 1e-12
 # Largest distance between the ends of neighbouring parts of a closed orbit.
 _LARGEST_GAP = 1e-10
+# Smallest period of an orbit.
+_SHORTEST_PERIOD = 1e-6
 # Growth of an error along a part above which the part is divided, and largest number of parts between two returns.
 _LARGEST_GROWTH, _MOST_PARTS = 100.0, 64
 
@@ -153,7 +156,7 @@ def close_orbit(
     singular
         Share of the largest singular value below which a singular value counts as 0: the orbit is not corrected in its direction.
     """
-    vector, previous_size = trial.vector, np.inf
+    vector, previous_size, scale, growths = trial.vector, np.inf, _scale_of(trial), 0
     if direction is None:
         direction = np.zeros(vector.size)
         direction[-1] = 1.0
@@ -167,21 +170,34 @@ def close_orbit(
             across = equations.jacobian - np.outer(equations.jacobian @ direction, direction)
             correction = -np.linalg.lstsq(across, equations.residual, rcond=singular)[0]
             size = float(np.abs(correction).max())
-            vector = vector + correction * min(1.0, _LARGEST_CORRECTION / max(size, _LARGEST_CORRECTION))
-            is_accurate = float(np.abs(equations.residual).max()) < _SMALL_RESIDUAL
-            if is_accurate or (size < _TOLERANCE and size >= 0.1 * previous_size):
+            vector = vector + correction * min(1.0, _LARGEST_CORRECTION * scale / max(size, np.finfo(float).tiny))
+            is_accurate = float(np.abs(equations.residual).max()) < _SMALL_RESIDUAL * scale
+            if is_accurate or (size < _TOLERANCE * scale and size >= 0.1 * previous_size):
                 return _checked(potential, section, trial.moved(vector))
+            growths += size > previous_size
+            if growths > _MOST_GROWTHS:
+                return None
             previous_size = size
     return None
 
 
 def _checked(potential: Potential, section: Section, trial: Trial) -> tuple[Trial, Equations] | None:
-    """Return a corrected orbit with its equations; None if its parts do not join within `_LARGEST_GAP`."""
+    """Return a corrected orbit with its equations; None if its parts do not join within `_LARGEST_GAP`.
+
+    Every state joins with itself after no time, which is no orbit.
+    """
     equations = linearise(potential, section, trial)
+    if equations is None or trial.durations.sum() < _SHORTEST_PERIOD:
+        return None
     # `not … <` also rejects NaN.
-    if equations is None or not np.abs(equations.residual).max() < _LARGEST_GAP:
+    if not np.abs(equations.residual).max() < _LARGEST_GAP * _scale_of(trial):
         return None
     return trial, equations
+
+
+def _scale_of(trial: Trial) -> float:
+    """Return the size of an orbit, by which tolerances are multiplied if it is larger than the unit of the well."""
+    return max(1.0, float(np.abs(trial.states).max()))
 
 
 def crosses_section(potential: Potential, section: Section, orbit: Trial) -> bool:

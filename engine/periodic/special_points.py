@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from enum import StrEnum
 from typing import NamedTuple
 
@@ -12,15 +12,17 @@ import numpy as np
 from engine.foundations.root_finding import find_root
 from engine.periodic.closed_orbits import half_index
 from engine.periodic.following import Member, Segment
-from engine.periodic.shooting import SINGULAR, close_orbit
+from engine.periodic.shooting import SINGULAR, close_orbit, linearise
 from engine.periodic.symmetries import Symmetry
 from engine.slices.sections.section import Section
 from engine.systems.potential import Potential
 
 # Distance within which a point is located, as a share of a segment.
 _LOCATED = 1e-13
-# Share of the largest singular value below which others are 0 at first, see `_member_between`.
-_NEARLY_SINGULAR = 1e-5
+# Shares of the largest singular value below which others are 0, in the order of attempts, see `_member_between`.
+_SINGULAR_VALUES = 1e-5, SINGULAR
+# Places of the members from which one at a branching point is interpolated, in this share of a segment.
+_STEPS, _STENCIL = (-3.0, -2.0, -1.0, 1.0, 2.0, 3.0), 0.1
 # Turns m and periods n of the resonances m : n.
 _RESONANCES = ((1, 3), (1, 4), (1, 5), (2, 5), (1, 6))
 
@@ -134,42 +136,71 @@ def find_special_points(
     for test in _TESTS:
         values = test.value(ends[0]), test.value(ends[1])
         if values[0] is not None and values[1] is not None and values[0] * values[1] < 0.0:
-            found.append(_locate(potential, section, segment, symmetry, test))
+            found.append(_locate(potential, section, segment, symmetry, test, {0.0: values[0], 1.0: values[1]}))
     # At a fold, a is 1 as well.
     has_fold = any(each.kind is SpecialKind.FOLD for each in found)
     return sorted((each for each in found if not (has_fold and each.kind is SpecialKind.BRANCHING)), key=lambda each: each.share)
 
 
-def _locate(potential: Potential, section: Section, segment: Segment, symmetry: Symmetry | None, test: Test) -> Located:
-    """Return the point at which a test changes its sign in a segment."""
+def _locate(
+    potential: Potential, section: Section, segment: Segment, symmetry: Symmetry | None, test: Test, values: dict[float, float]
+) -> Located:
+    """Return the point at which a test changes its sign in a segment, given its values at the ends, by their shares."""
     members = {0.0: segment.before, 1.0: segment.after}
 
     def value(share: float) -> float:
         if share not in members:
             members[share] = _member_between(potential, section, segment, share)
-        found = test.value(numbers_of(potential, symmetry, members[share]))
-        return math.nan if found is None else found
+            found = test.value(numbers_of(potential, symmetry, members[share]))
+            values[share] = math.nan if found is None else found
+        return values[share]
 
     try:
         share = find_root(value, 0.0, 1.0, xtol=_LOCATED)
         value(share)
     except _NotFoundError:
         return Located(0.0, test.kind, test.resonance, segment.before, converged=False)
-    return Located(share, test.kind, test.resonance, members[share], converged=True)
+    member = members[share]
+    if test.kind is SpecialKind.BRANCHING:
+        member = _interpolated(potential, section, segment, symmetry, test, share) or member
+    return Located(share, test.kind, test.resonance, member, converged=True)
+
+
+def _interpolated(
+    potential: Potential, section: Section, segment: Segment, symmetry: Symmetry | None, test: Test, share: float
+) -> Member | None:
+    """Return the member at which a test vanishes near a share, from members around it; None if they are not found.
+
+    At a branching point, the equations do not fix the orbit along the other family.
+    """
+    try:
+        members = [_member_between(potential, section, segment, share + step * _STENCIL, (SINGULAR,)) for step in _STEPS]
+    except _NotFoundError:
+        return None
+    values = [test.value(numbers_of(potential, symmetry, member)) for member in members]
+    roots = np.polynomial.Polynomial.fit(_STEPS, np.array(values, float), len(_STEPS) - 1).roots()
+    place = float(roots[np.argmin(np.abs(roots))].real)
+    vectors = np.array([member.orbit.vector for member in members])
+    weights = [np.prod([(place - other) / (step - other) for other in _STEPS if other != step]) for step in _STEPS]
+    orbit = members[0].orbit.moved(np.array(weights) @ vectors)
+    equations = linearise(potential, section, orbit)
+    return None if equations is None else Member.of(potential, orbit, equations, members[0].direction)
 
 
 class _NotFoundError(Exception):
     """There is no member at a place of a segment."""
 
 
-def _member_between(potential: Potential, section: Section, segment: Segment, share: float) -> Member:
+def _member_between(
+    potential: Potential, section: Section, segment: Segment, share: float, singular_values: Sequence[float] = _SINGULAR_VALUES
+) -> Member:
     """Return the member nearest to a point of the chord of a segment."""
     begin = segment.before.orbit
     chord = segment.after.orbit.vector - begin.vector
     trial, direction = begin.moved(begin.vector + share * chord), chord / np.linalg.norm(chord)
     # Near a point at which another family meets this one, rounding errors move an orbit along the other family. A symmetry of
     # this family keeps the orbit on it without corrections along the other one.
-    for singular in (_NEARLY_SINGULAR, SINGULAR):
+    for singular in singular_values:
         closed = close_orbit(potential, section, trial, direction, singular)
         if closed is not None:
             return Member.of(potential, *closed, chord)

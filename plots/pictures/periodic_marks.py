@@ -10,7 +10,7 @@ RETURNS = 3
 """Largest number of returns in a period that the page searches for."""
 
 # Columns and rows of the grid of starts.
-_STARTS = (100, 100)
+_STARTS = (30, 30)
 
 STABILITY_COLOURS = {Stability.STABLE: "#0f8a72", Stability.UNSTABLE: "#d4551f", Stability.REFLECTING: "#8a56c9"}
 """Colours of periodic orbits by their stability."""

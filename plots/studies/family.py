@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import groupby
 
 import numpy as np
 
@@ -20,6 +21,8 @@ from plots.studies.study import Changes, Study, Subject
 
 # The range of the stability index in its chart.
 _INDEX_LIMITS = (-2.5, 2.5)
+# Decimals of returns in their chart.
+_RETURN_DECIMALS = 12
 # Digits of energies in the sentence, and largest number of special points in it.
 _DIGITS, _MOST_NAMED = 8, 6
 
@@ -58,40 +61,48 @@ def _job(subject: Subject, axis: str) -> Job[OrbitFamily]:
 
 def family_charts(family: OrbitFamily, palette: Palette, settings: Settings = NO_SETTINGS) -> list[Chart]:
     """Return the charts of the returns, the stability index, the period and the action against the energy."""
-    symbol = family.section.axes.symbols[0]
-    returns = replace(_RETURNS, labels=(ENERGY, symbol))
-    curves = [series for k in range(family.returns) for series in _curves(family, family.points[:, k, 0], first=k == 0)]
-    charts = [Chart(returns, [*curves, *_special(family, family.points[:, 0, 0])])]
-    for frame, values in ((_INDEX, family.stability_index), (_PERIOD, family.period), (_ACTION, family.action)):
-        charts.append(Chart(frame, [*_curves(family, values), *_special(family, values)]))
-    bound = np.array([family.energy.min(), family.energy.max()])
-    levels = [Series("", THRESHOLD, bound, np.full(2, level), Shape.DASHED) for level in (-1.0, 1.0)]
-    charts[1] = replace(charts[1], series=[*charts[1].series, *levels], limits=(None, _INDEX_LIMITS))
-    return charts
+    # Rounding errors of 0 are no returns.
+    returns = np.round(family.points, _RETURN_DECIMALS)
+    axis = int(np.argmax(np.ptp(returns, axis=(0, 1))))
+    curves = [one for k in range(family.returns) for one in _curves(family, returns[:, k, axis], labelled=k == 0)]
+    frame = replace(_RETURNS, labels=(ENERGY, family.section.axes.symbols[axis]))
+    bounds = np.array([family.energy.min(), family.energy.max()])
+    levels = [Series("", THRESHOLD, bounds, np.full(2, level), Shape.DASHED) for level in (-1.0, 1.0)]
+    index = [*_curves(family, family.stability_index), *_special(family, family.stability_index), *levels]
+    return [
+        Chart(frame, [*curves, *_special(family, returns[:, 0, axis], "special points")]),
+        Chart(_INDEX, index, (None, _INDEX_LIMITS)),
+        *(
+            Chart(frame, [*_curves(family, values), *_special(family, values)])
+            for frame, values in ((_PERIOD, family.period), (_ACTION, family.action))
+        ),
+    ]
 
 
-def _curves(family: OrbitFamily, values: np.ndarray, *, first: bool = True) -> list[Series]:
-    """Return the curve of values against the energy: thick where the orbits are stable. Only `first` has entries in a legend."""
-    stability, series, labelled = family.stability, [], set()
-    changes = np.flatnonzero(stability[1:] != stability[:-1]) + 1
-    for part in np.split(np.arange(len(family)), changes):
-        kind = stability[part[0]]
-        # The curve goes on to the first member of the next part.
-        rows = np.append(part, part[-1] + 1)[: len(family) - part[0]]
-        label = kind.value if first and kind not in labelled else ""
-        labelled.add(kind)
+def _curves(family: OrbitFamily, values: np.ndarray, *, labelled: bool = False) -> list[Series]:
+    """Return the curve of values against the energy: thick where the orbits are stable."""
+    middles = 0.5 * (family.stability_index[1:] + family.stability_index[:-1])
+    kinds = [Stability.of(index) for index in middles.tolist()]
+    series: list[Series] = []
+    begin = 0
+    for kind, group in groupby(kinds):
+        end = begin + len(list(group))
+        known = {one.label for one in series}
+        label = kind.value if labelled and kind.value not in known else ""
         shape = Shape.THICK if kind is Stability.STABLE else Shape.LINE
+        rows = slice(begin, end + 1)
         series.append(Series(label, STABILITY_COLOURS[kind], family.energy[rows], values[rows], shape))
+        begin = end
     return series
 
 
-def _special(family: OrbitFamily, values: np.ndarray) -> list[Series]:
+def _special(family: OrbitFamily, values: np.ndarray, label: str = "") -> list[Series]:
     """Return the special points of a family on the curve of values."""
     if not family.special:
         return []
     rows = np.array([point.member for point in family.special])
-    notes = [f"{point.name} at h = {format_number(point.energy, _DIGITS)}" for point in family.special]
-    return [Series("special points", SPECIAL, family.energy[rows], values[rows], Shape.RINGS, notes=notes)]
+    notes = [_name(point) for point in family.special]
+    return [Series(label, SPECIAL, family.energy[rows], values[rows], Shape.RINGS, notes=notes)]
 
 
 def _changes(subject: Subject, axis: str, family: OrbitFamily, x: float, y: float) -> Changes:

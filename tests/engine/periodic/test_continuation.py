@@ -1,0 +1,159 @@
+"""Families have the bifurcations that closed forms and publications give, and end where they are said to end."""
+
+from __future__ import annotations
+
+import threading
+
+import numpy as np
+import pytest
+from scipy.special import mathieu_a
+
+from engine import CASES, POTENTIALS, Execution, OrbitFamily, SpecialKind, continue_family, find_periodic_orbit
+from engine.foundations.root_finding import find_root
+
+III, HH, HILL = CASES["III"], POTENTIALS["HH"], POTENTIALS["Hill"]
+
+
+@pytest.fixture(scope="module")
+def straight_in_iii() -> OrbitFamily:
+    return continue_family(find_periodic_orbit(III, [0.0, 0.0, 0.0, np.sqrt(0.4)], 1), (0.1, 0.7))
+
+
+@pytest.fixture(scope="module")
+def straight_in_hh() -> OrbitFamily:
+    return continue_family(find_periodic_orbit(HH, [0.0, 0.0, 0.0, np.sqrt(0.2)], 1), (0.08, 0.1664))
+
+
+def energies(family: OrbitFamily, name: str) -> list[float]:
+    return [point.energy for point in family.special if point.name == name]
+
+
+# Case III: the motion across the orbit x = 0 is Mathieu's equation with a = 1 − 2h, q = h.
+def test_special_points_of_the_straight_orbit_of_case_iii_are_those_of_mathieus_equation(straight_in_iii: OrbitFamily) -> None:
+    end = find_root(lambda h: mathieu_a(0, h) - (1.0 - 2.0 * h), 0.5, 0.7, xtol=1e-14)
+    assert energies(straight_in_iii, "branching") == pytest.approx([end], abs=1e-10)
+    assert energies(straight_in_iii, "touching") == pytest.approx([0.4355768771451], abs=1e-10)
+    assert energies(straight_in_iii, "resonance 1:3") == pytest.approx([0.3222182591, 0.5166989029], abs=1e-10)
+    assert energies(straight_in_iii, "resonance 1:4") == pytest.approx([0.2535261072, 0.5451192444], abs=1e-10)
+    assert energies(straight_in_iii, "resonance 2:5") == pytest.approx([0.3714162994, 0.4881303559], abs=1e-10)
+    assert all(point.converged for point in straight_in_iii.special)
+
+
+# Brack 2001, nlin/0006034, has the first six digits.
+def test_bifurcations_of_the_straight_orbit_of_henon_and_heiles(straight_in_hh: OrbitFamily) -> None:
+    branchings, doublings = energies(straight_in_hh, "branching"), energies(straight_in_hh, "period doubling")
+    assert 6.0 * np.array(branchings) == pytest.approx([0.9693090907, 0.9867092353], abs=1e-9)
+    assert 6.0 * np.array(doublings) == pytest.approx([0.8117155158, 0.9152144129, 0.9950130051, 0.9978490551], abs=1e-9)
+    periods = [point.period for point in straight_in_hh.special if point.kind is SpecialKind.BRANCHING]
+    assert periods == pytest.approx([9.57104822, 10.39875359], abs=1e-7)
+
+
+def test_family_g_of_hills_problem_loses_its_stability_where_henon_found_it() -> None:
+    # Hénon 1969, Astron. Astrophys. 1, 223: Γ = 4.49999, ξ = 0.28350. Γ = −2h.
+    orbit = find_periodic_orbit(HILL, [0.28, 0.0, 0.0, 1.5], 1)
+    family = continue_family(orbit, -2.1)
+    point = next(point for point in family.special if point.kind is SpecialKind.BRANCHING)
+    assert -2.0 * point.energy == pytest.approx(4.4999858448, abs=1e-8)
+    assert family.states[point.member, 0, 0] == pytest.approx(0.2834967478, abs=1e-8)
+    assert point.period == pytest.approx(1.2258745653, abs=1e-8)
+    # The other family, g', is not symmetric about the y axis.
+    branch = family.switch(family.special.index(point))
+    (of_family,) = family.at(branch.energy)
+    assert abs(branch.x[0] - of_family.x[0]) > 1e-4
+
+
+def test_members_are_closed_orbits_of_their_energy(straight_in_hh: OrbitFamily) -> None:
+    for member in list(straight_in_hh)[::7]:
+        assert HH.energy(member.state) == pytest.approx(member.energy, abs=1e-11)
+        again = find_periodic_orbit(HH, member.state, 1)
+        assert again.period == pytest.approx(member.period, abs=1e-9)
+
+
+def test_the_slope_of_the_action_is_the_period(straight_in_hh: OrbitFamily) -> None:
+    smooth = slice(0, 30)
+    energy, action = straight_in_hh.energy[smooth], straight_in_hh.action[smooth]
+    differences = np.diff(action) / np.diff(energy)
+    middles = [straight_in_hh.at(float(h))[0].period for h in 0.5 * (energy[1:] + energy[:-1])]
+    assert differences == pytest.approx(middles, rel=1e-3)
+
+
+def test_a_family_is_followed_through_its_fold() -> None:
+    straight = continue_family(find_periodic_orbit(III, [0.0, 0.0, 0.0, np.sqrt(0.4)], 1), 0.65)
+    number = [point.kind for point in straight.special].index(SpecialKind.BRANCHING)
+    family = continue_family(straight.switch(number, 1e-2), (0.5, 0.7))
+    folds = [point for point in family.special if point.kind is SpecialKind.FOLD]
+    # The branch begins below the point at which it is born, turns, and crosses the energy of this point again.
+    assert min(point.energy for point in folds) < straight.special[number].energy < family.energy.max()
+    assert len(family.at(0.58)) >= 2
+    for member in family.at(0.58):
+        assert member.energy == pytest.approx(0.58, abs=1e-12)
+        assert III.energy(member.state) == pytest.approx(0.58, abs=1e-11)
+
+
+def test_a_doubled_orbit_has_twice_the_returns_and_period(straight_in_hh: OrbitFamily) -> None:
+    number = [point.kind for point in straight_in_hh.special].index(SpecialKind.DOUBLING)
+    branch = straight_in_hh.switch(number)
+    assert branch.returns == 2
+    assert branch.period == pytest.approx(2.0 * straight_in_hh.special[number].period, rel=1e-4)
+    assert abs(branch.x[0]) > 1e-5
+
+
+def test_both_sides_of_a_branch_are_mirror_images(straight_in_iii: OrbitFamily) -> None:
+    number = [point.kind for point in straight_in_iii.special].index(SpecialKind.BRANCHING)
+    one, other = straight_in_iii.switch(number), straight_in_iii.switch(number, -1e-3)
+    np.testing.assert_allclose(other.states * [-1.0, 1.0, -1.0, 1.0], one.states, atol=1e-9)
+
+
+def test_at_finds_the_orbit_of_an_energy_and_nothing_beyond_the_ends(straight_in_iii: OrbitFamily) -> None:
+    (orbit,) = straight_in_iii.at(0.3)
+    assert orbit.stability_index == pytest.approx(-0.340506, abs=1e-6)
+    assert straight_in_iii.at(0.05) == ()
+    assert len(straight_in_iii.at(0.1)) == len(straight_in_iii.at(0.7)) == 1
+
+
+def test_the_family_says_why_it_ends() -> None:
+    orbit = find_periodic_orbit(III, [0.0, 0.0, 0.0, np.sqrt(0.1)], 1)
+    assert continue_family(orbit, 0.1).ends == ("it was continued from this orbit", "the energy asked for is reached")
+    assert continue_family(orbit, -1.0).ends[0] == "the orbits shrink to an equilibrium"
+    assert continue_family(orbit, 0.4, most_members=3).ends[1] == "the largest number of members is reached"
+
+
+def test_a_family_that_tends_to_a_saddle_says_so() -> None:
+    # The straight orbit of Hénon and Heiles tends to the orbit that is homoclinic to the saddle at h = 1/6.
+    family = continue_family(find_periodic_orbit(HH, [0.0, 0.0, 0.0, np.sqrt(2.0 * 0.1666)], 1), 0.2)
+    assert family.ends[1] == "the period grows without limit, because the orbits tend to an equilibrium"
+    assert family.energy.max() == pytest.approx(1.0 / 6.0, abs=1e-7)
+    assert family.period.max() > 16.0
+
+
+def test_frames_grow_and_a_cancelled_family_ends_early() -> None:
+    orbit = find_periodic_orbit(III, [0.0, 0.0, 0.0, np.sqrt(0.4)], 1)
+    sizes: list[int] = []
+    cancel = threading.Event()
+
+    def keep(frame: OrbitFamily) -> None:
+        sizes.append(len(frame))
+        if len(sizes) == 4:
+            cancel.set()
+
+    family = continue_family(orbit, 0.6, execution=Execution(cancel=cancel), on_frame=keep)
+    assert len(sizes) == 4
+    assert sizes == sorted(sizes)
+    assert not family.complete
+    assert family.ends[1] == "the search was cancelled"
+
+
+@pytest.mark.parametrize("until", [0.2, (0.3, 0.4), (0.3, 0.1), np.nan, (0.1, 0.2, 0.3)])
+def test_illegal_ranges_are_refused(until: object) -> None:
+    orbit = find_periodic_orbit(III, [0.0, 0.0, 0.0, np.sqrt(0.4)], 1)
+    with pytest.raises(ValueError, match="until"):
+        continue_family(orbit, orbit.energy if until == 0.2 else until)
+
+
+def test_what_is_no_branch_is_refused(straight_in_iii: OrbitFamily) -> None:
+    with pytest.raises(ValueError, match="number=99"):
+        straight_in_iii.switch(99)
+    with pytest.raises(ValueError, match="no other family is followed from a resonance 1:"):
+        straight_in_iii.switch(0)
+    with pytest.raises(ValueError, match=r"step=0\.5"):
+        straight_in_iii.switch([point.kind for point in straight_in_iii.special].index(SpecialKind.BRANCHING), 0.5)
