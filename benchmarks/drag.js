@@ -57,13 +57,14 @@ const bench = {
 
   /** Wait until the engine shows pixels. */
   async ready() {
-    let energy = 0.26
+    const {energy} = Bokeh.documents[0].get_model_by_name("BrowserEngine").store
+    let value = 0.26
     while (observed.size === 0) {
-      document.dispatchEvent(new CustomEvent("energydragged", {detail: (energy += 1e-4)}))
+      energy.hold((value += 1e-4))
       for (let k = 0; k < 5; k++) await frame()
       observe()
     }
-    document.dispatchEvent(new CustomEvent("energyreleased"))
+    energy.cancel()
   },
 
   /**

@@ -170,10 +170,10 @@ class SimulatedSession:
         self._give("FormulaBox", text, done=done)
         await self._wait_for_review(time.perf_counter())
 
-    def _give(self, component: str, value: Any, *, done: bool = True) -> None:
-        """Give an input a value; `done` is False while the visitor is still typing or dragging."""
+    def _give(self, component: str, value: Any, *, name: str = "", done: bool = True) -> None:
+        """Give an input, or a named value of a component, a value; `done` is False while the visitor still types or drags."""
         self._steps += 1
-        entries = [["value", value], ["count", self._steps], ["done", done]]
+        entries = [["name", name], ["value", value], ["count", self._steps], ["done", done]]
         self._open_channel.emit("data_event", model={"id": self._models[component]}, data={"type": "map", "entries": entries})
 
     async def _wait_for_review(self, begin: float) -> None:
@@ -290,7 +290,7 @@ class SimulatedSession:
         # During a drag, the browser computes the pictures.
         await asyncio.sleep(DRAG_SECONDS)
         self._await_map("slider", h=repr(stop))
-        self._give("EnergySlider", stop)
+        self._give("BrowserEngine", stop, name="energy")
 
     async def _act_case(self) -> None:
         cases = list(CHEAP_ENERGIES)

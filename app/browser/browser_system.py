@@ -8,13 +8,16 @@ from typing import Any
 
 import numpy as np
 
-from engine import Execution, Plane, Potential, Section, Slice
+from engine import Execution, Plane, Potential, Section, Slice, Window
 from engine.slices.default_window import default_window
 from engine.slices.portable_system import PortableSystem, make_portable_system
 from engine.slices.slice_text import write_slice
 
 EXIT_NUMBER_DISTANCE = 0.86
 """Distance of the number of an exit from the origin, as a share of the distance of the middle of the exit."""
+
+WINDOW_EDGES = ("xLow", "xHigh", "ordinateLow", "ordinateHigh")
+"""Names of the edges of a window in the browser, in the order of `Window.edges`."""
 
 # Number of energies with a tabulated window below the escape energy, where windows change slowly.
 _ENERGIES_BELOW = 5
@@ -57,6 +60,11 @@ class BrowserSystem:
 def slice_name(plane: Slice) -> str:
     """Return the name of a slice in the tables of windows."""
     return ";".join(filter(None, write_slice(plane)))
+
+
+def window_in_browser(window: Window) -> dict[str, float]:
+    """Return a window in the form of `Window` in modules/engine/starts.js."""
+    return dict(zip(WINDOW_EDGES, window.edges, strict=True))
 
 
 def system_key(potential: Potential, section: Section = Section.Y_UP) -> str:

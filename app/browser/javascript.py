@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-# An import of another module of the app, on a line. Such a module imports nothing itself.
+# An import of another module of the app, on a line.
 _IMPORT = re.compile(r'^import .* from "(\.\.?/.+)"\n', re.MULTILINE)
 
 
@@ -22,7 +22,13 @@ def callback_code(module: Path, call: str) -> str:
 
 
 def _read_imports(module: Path, source: str) -> list[str]:
-    return [(module.parent / name).read_text(encoding="utf-8") for name in _IMPORT.findall(source)]
+    """Return the texts of the modules that a module imports, directly or not, each once and before those that import it."""
+    texts: dict[str, None] = {}
+    for name in _IMPORT.findall(source):
+        path = module.parent / name
+        text = path.read_text(encoding="utf-8")
+        texts |= dict.fromkeys([*_read_imports(path, text), text])
+    return list(texts)
 
 
 def _strip_module_syntax(source: str) -> str:

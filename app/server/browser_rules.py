@@ -300,8 +300,7 @@ _EDITABLE: dict[type[Model], Mapping[str, Check]] = {
     Player: {"value": _is_on_slider, "value_throttled": _is_on_slider, "direction": _is_direction},
     Card: {"collapsed": _is_boolean},
     Column: {"scroll_position": _is_size},
-    # The tags are answers to moves, see `app.views.maps.map_ranges`.
-    Range1d: {"start": _is_number, "end": _is_number, "tags": _is_nonnegative_list},
+    Range1d: {"start": _is_number, "end": _is_number},
     Span: {"location": _is_position},
     Plot: dict.fromkeys(("inner_width", "inner_height", "outer_width", "outer_height"), _is_size),
     Selection: {"indices": _is_nonnegative_list, "line_indices": _is_nonnegative_list},

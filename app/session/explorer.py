@@ -37,7 +37,6 @@ from app.views.panels.browser_events import KEYS, PICTURE_KEYS, BrowserEvents
 from app.views.panels.controls import Controls
 from app.views.panels.downloads import Downloads
 from app.views.panels.embedding import embed_code, page_address
-from app.views.panels.engine_component import BrowserEngine
 from app.views.panels.gallery import Gallery
 from app.views.panels.help import help_panes
 from app.views.panels.slice_panel import SlicePanel
@@ -83,14 +82,14 @@ class Explorer:
 
     def _make_presenters(self, context: SessionContext) -> None:
         self.potential = PotentialPresenter(context, self.links.history)
-        self.maps = MapPresenter(context, self._document, self.links.history, alone=self.links.embedded)
+        self.maps = MapPresenter(context, self.links.history, alone=self.links.embedded)
         self.analyses = AnalysisPresenter(context, self.maps.view)
         self.studies = {name: StudyPresenter(study, context) for name, study in STUDIES.items()}
         self.comparison = ComparisonPresenter(
             context, self.maps.view, lambda sentence: self.analyses.show_notes(compared=sentence), self.links.refuse_comparison
         )
         self.orbits = OrbitPresenter(context, self.maps.view.marks, self.maps.view.well, self.maps.add_start)
-        self.engine = BrowserEngine(context.state, context.results, context.jobs, context.locked)
+        self.engine = self.maps.engine
 
     def _make_views(self) -> None:
         state, results, locked = self.state, self.results, self._locked

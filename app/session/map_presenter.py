@@ -8,7 +8,6 @@ from dataclasses import replace
 from typing import Any
 
 import panel as pn
-from bokeh.document import Document
 
 from app.job_clients.error_messages import ZOOM_ENDS
 from app.job_clients.map_requests import MapRequests
@@ -20,6 +19,7 @@ from app.state.view_state import STARTS_FULL
 from app.views.maps.map_plots import MapActions, MapsView, prepare_curves
 from app.views.maps.map_toolbar import MapToolbar
 from app.views.maps.progress import ProgressView
+from app.views.panels.engine_component import BrowserEngine
 from engine import EscapeMap, Fate, Window
 from engine.propagation.fates import describe_fate
 
@@ -31,15 +31,13 @@ class MapPresenter:
     ----------
     context
         The session.
-    document
-        The document of the page.
     history
         Numbers the entries of the browser's history; the moves of one gesture make one entry.
     alone
         Whether the page shows only one picture, in an iframe of another page.
     """
 
-    def __init__(self, context: SessionContext, document: Document, history: History, *, alone: bool) -> None:
+    def __init__(self, context: SessionContext, history: History, *, alone: bool) -> None:
         state, locked = context.state, context.locked
         self._state, self._results, self._notice = state, context.results, context.notice
         self._history = history
@@ -47,18 +45,13 @@ class MapPresenter:
         self._requested_at: float | None = None
         # The start that the last click added; None if the start was in the list already.
         self._added_start: Start | None = None
+        self.engine = BrowserEngine(state, context.results, context.jobs, locked, self._zoom_to, history.end_gesture)
         self.view = MapsView(
             state,
-            MapActions(
-                tap=locked(self.add_start),
-                zoom_to_point=locked(self._zoom_to_point),
-                zoom=locked(self._zoom_to),
-                end_gesture=locked(history.end_gesture),
-                count_in=locked(self._count_in),
-            ),
+            MapActions(locked(self.add_start), locked(self._zoom_to_point), locked(self._count_in)),
+            self.engine,
             alone=alone,
         )
-        document.js_on_event("document_ready", self.view.ranges.answer)
         self.toolbar = MapToolbar(state, locked(self.view.tools.set_drag))
         self.requests = MapRequests(state, context.jobs, self, context.latest, process_state().is_crowded, prepare_curves)
         self.progress = ProgressView(state, locked(self.requests.stop_map), locked(self.requests.request_map))
@@ -75,7 +68,7 @@ class MapPresenter:
         except ValueError:
             self._notice.show(ZOOM_ENDS)
             if self._state.is_window_known:
-                self.view.ranges.follow(self._state.find_window())
+                self.engine.go_to(self._state.find_window())
         else:
             self._state.window = window
 
@@ -89,18 +82,15 @@ class MapPresenter:
     def _zoom_to(self, window: Window | None) -> None:
         """Show the window to which a gesture has moved the pictures; None is the whole interior."""
         self._history.begin_gesture()
-        try:
-            self.show_window(window)
-        finally:
-            self.view.ranges.finish_report()
+        self.show_window(window)
 
     def _go_to_window(self, *events: Any) -> None:
-        """Move the pictures to the window of the state at once: a late report of an earlier move would count as a new move."""
+        """Show the window of the state at once."""
         if any(event.name != "window" for event in events):
             # The map of another system or plane arrives with its own window.
             return
         try:
-            self.view.ranges.go_to(self._state.find_window())
+            self.engine.go_to(self._state.find_window())
         except ValueError:
             # A default window that is not known yet arrives with the map.
             return

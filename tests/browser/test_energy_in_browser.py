@@ -68,6 +68,17 @@ def test_the_preview_at_rest_is_that_of_the_map_which_follows_the_release(explor
     assert_same_fates(explorer, expected)
 
 
+def test_a_drag_back_to_the_energy_of_the_server_restores_its_map_and_window(explorer: ExplorerPage) -> None:
+    home = explorer.ranges("basins")
+    explorer.drag_energy_to(0.3, let_go=False)
+    explorer.wait_for_preview(0.22)
+    assert explorer.ranges("basins") != home
+    explorer.drag_energy_to(0.225)
+    explorer.wait_for_data("maps", "data.complete[0]")
+    assert explorer.ranges("basins") == home
+    expect(exact_energy(explorer)).to_have_value("0.19")
+
+
 def test_the_energy_can_be_played_and_stopped_without_the_server_between(explorer: ExplorerPage) -> None:
     explorer.start_engine()
     explorer.press("▶ Play")

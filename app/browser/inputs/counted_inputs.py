@@ -12,9 +12,6 @@ from panel.custom import JSComponent
 
 from app.browser.javascript import component_code
 
-ENERGY_SHOWN_EVENT = "energyshown"
-"""Browser event with an energy that the pictures show before the server has received it."""
-
 LONGEST_TYPED = 4000
 """Largest length of a typed text, in characters. The box cuts longer texts silently, so this is larger than the limit for
 formulas, whose message is then shown."""
@@ -90,7 +87,6 @@ class NumberBox(CountedInput):
     """
 
     step = param.Number(default=0.1, doc="step of the arrow keys and buttons")
-    shown_event = param.String(doc="browser event with a number to show before the server has received it; empty for none")
 
     _esm = _code("number_box")
 
@@ -101,32 +97,27 @@ class NumberBox(CountedInput):
         return _finite_number(value)
 
 
-class EnergySlider(CountedInput):
-    """A slider for the energy. For an energy beyond an end of the slider, the thumb is at that end.
+class EnergyBox(JSComponent):
+    """A box for the energy of the page's store."""
 
-    Parameters
-    ----------
-    on_release
-        Called with each energy at which the visitor releases the slider, without the session's lock.
-    energy
-        The initial energy.
-    **options
-        Parameters of the component.
-    """
+    label = param.String(default="Exact h", doc="text beside the box")
+    disabled = param.Boolean(doc="whether the box accepts no values")
+    step = param.Number(default=0.1, doc="step of the arrow keys and buttons")
 
+    _esm = _code("number_box")
+
+
+class EnergySlider(JSComponent):
+    """A slider for the energy of the page's store. For an energy beyond an end of the slider, the thumb is at that end."""
+
+    label = param.String(default="Energy h", doc="text beside the slider")
+    disabled = param.Boolean(doc="whether the slider cannot be moved")
     note = param.String(doc="text in place of the label and the number; empty for none")
     low = param.Number(default=0.0, doc="energy at the left end")
     high = param.Number(default=1.0, doc="energy at the right end")
     decimals = param.Integer(default=3, doc="number of decimals of the energies that can be chosen")
 
     _esm = _code("energy_slider")
-
-    def __init__(self, on_release: Callable[[float], None], energy: float, **options: Any) -> None:
-        super().__init__(lambda value, is_final: on_release(value), energy, label="Energy h", **options)
-
-    def _legal_value(self, value: Any) -> float | None:
-        number = _finite_number(value)
-        return None if number is None or self.disabled else min(max(number, self.low), self.high)
 
 
 class SliderParameter(NamedTuple):

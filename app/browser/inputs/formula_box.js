@@ -1,5 +1,5 @@
 // @ts-check
-import {CountedValue} from "./counted_value.js"
+import {CountedValue} from "../modules/counted_value.js"
 
 /**
  * A box for a formula, as high as its text. Each change is sent. The text is final when Enter is pressed or the box

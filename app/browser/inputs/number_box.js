@@ -1,9 +1,9 @@
 // @ts-check
-import {listen} from "../modules/energy_events.js"
-import {CountedValue} from "./counted_value.js"
+import {SharedValue} from "../modules/counted_value.js"
+import {storeOf} from "../modules/view_store.js"
 
 /**
- * A box for a number, which is sent when the box loses focus or Enter is pressed.
+ * A box for a number, which is sent when the box loses focus or Enter is pressed. A box without a number of its own has the energy.
  *
  * @param {{model: any, el: HTMLElement}} component
  */
@@ -15,25 +15,28 @@ export function render({model, el}) {
   input.className = "bk-input"
   input.type = "number"
   el.append(label, input)
-  const write = (/** @type {number} */ number) => (input.value = String(number))
-  const value = new CountedValue(model, () => input.valueAsNumber, write)
+  const value = model.shown ? new SharedValue(model) : storeOf(model.document).energy
+  let isTyped = false
   const follow = () => {
     input.step = model.step
     input.disabled = model.disabled
-    value.follow()
+    // A number that the server has not received yet is shown without the rounding errors in its last digits.
+    if (!isTyped) input.value = String(value.isUnsent ? Number(value.value.toPrecision(10)) : value.value)
   }
   const finish = () => {
-    if (input.value === "") value.cancel()
-    else value.finish()
+    if (!isTyped) return
+    isTyped = false
+    if (input.value === "") return follow()
+    value.hold(input.valueAsNumber)
+    value.finish()
   }
-  input.addEventListener("input", () => value.begin())
+  input.addEventListener("input", () => (isTyped = true))
   input.addEventListener("change", finish)
   input.addEventListener("blur", finish)
   // Enter without a change of the number fires no change event.
   input.addEventListener("keydown", event => event.key === "Enter" && finish())
-  // Show a number that the server has not received yet, without the rounding errors in its last digits.
-  const show = (/** @type {number} */ number) => !value.isUnsent && write(Number(number.toPrecision(10)))
-  if (model.shown_event) model.on("lifecycle:remove", listen(model.shown_event, show))
-  model.on(["step", "disabled", "shown"], follow)
+  if (model.shown) model.on("shown", () => value.follow())
+  model.on("lifecycle:remove", value.listen(follow))
+  model.on(["step", "disabled"], follow)
   follow()
 }

@@ -1,5 +1,5 @@
 // @ts-check
-import {CountedValue} from "./counted_value.js"
+import {CountedValue} from "../modules/counted_value.js"
 
 /**
  * A slider: the name and label of its parameter, its ends, the legal numbers of its box, and the shown number, with the count of

@@ -1,7 +1,6 @@
 // @ts-check
 /** Connects the component on the page (`app/views/panels/engine_component.py`) with the modules. */
 
-import {dispatch, listen} from "./energy_events.js"
 import {Card} from "./gestures/card.js"
 import {Frames} from "./workers/frames.js"
 import {highlightPixels} from "./painting/legend.js"
@@ -10,6 +9,7 @@ import {EnergyPlayer} from "./gestures/player.js"
 import {Pool, workerCount} from "./workers/pool.js"
 import {setPresent} from "./gestures/present.js"
 import {Preview} from "./gestures/preview.js"
+import {storeOf} from "./view_store.js"
 
 /** A minimal WebAssembly module with a vector instruction, to test whether the browser supports these. */
 // prettier-ignore
@@ -29,14 +29,13 @@ export function start(model, el) {
   if (!WebAssembly.validate(SIMD)) {
     // Without vector instructions, the last map stays until the next map arrives, and the energy cannot be played.
     const endAnimation = () => {
-      if (model.command.name === "play") model.send_msg({energy: model.command.energy})
+      if (model.command.name === "play") model.send_msg({playing: false})
     }
     model.on("command", endAnimation)
     endAnimation()
     return
   }
-  const bokehDocument = Bokeh.documents.find((/** @type {any} */ each) => each.get_model_by_name("maps"))
-  const find = (/** @type {string} */ name) => bokehDocument.get_model_by_name(name)
+  const find = (/** @type {string} */ name) => model.document.get_model_by_name(name)
   // Sources of different pictures have the same names.
   const findSource = (/** @type {string} */ picture, /** @type {string} */ name) =>
     find(picture)
@@ -45,16 +44,15 @@ export function start(model, el) {
   const kernels = WebAssembly.compileStreaming(fetch(new URL("./kernels.wasm", import.meta.url)))
   const pool = new Pool(() => new Worker(new URL("./workers/worker.js", import.meta.url), {type: "module"}))
   const frames = new Frames(pool, workerCount(), (view, pixels, isMoving) => preview.show(view, pixels, isMoving))
+  const store = storeOf(model.document)
   /** @type {Preview} */
-  const preview = new Preview(find, findSource, frames, new Overlay(el))
+  const preview = new Preview(find, findSource, frames, new Overlay(el), store)
   const player = new EnergyPlayer(
+    energy => store.energy.hold(energy),
     energy => {
-      preview.showEnergy(energy)
-      dispatch("energyshown", energy)
-    },
-    energy => {
-      preview.release()
-      model.send_msg({energy})
+      store.energy.hold(Number(energy.toFixed(Math.max(model.command.decimals, 0))))
+      store.energy.finish()
+      model.send_msg({playing: false})
     },
   )
   const card = new Card(
@@ -63,8 +61,6 @@ export function start(model, el) {
     () => find("maps").data,
     () => model.view,
   )
-  listen("energydragged", energy => preview.showEnergy(energy))
-  listen("energyreleased", () => preview.release())
   // The last system from the server, and its compiled modules.
   /** @type {{system: import("./engine/system.js").System, modules: import("./engine/integrator.js").Modules} | null} */
   let compiled = null
@@ -94,16 +90,16 @@ export function start(model, el) {
     updatePresent()
   }
   const runCommand = () => {
-    const {name, energy, low, high} = model.command
-    if (name === "play") player.start(energy, low, high)
+    const {name, low, high} = model.command
+    if (name === "play") player.start(store.energy.value, low, high)
     else player.stop()
   }
+  // An energy of the server may arrive after the view.
+  store.energy.listen(() => store.energy.isNewer || updatePresent())
   model.on("view", receiveView)
   model.on("system", receiveSystem)
   model.on("command", runCommand)
   receiveView()
   void receiveSystem()
   if (model.command.name === "play") runCommand()
-  // If the slider is held already, it answers with its energy.
-  dispatch("energyasked")
 }

@@ -9,7 +9,7 @@ import numpy as np
 import param
 from panel.custom import JSComponent
 
-from app.browser.browser_system import slice_name
+from app.browser.browser_system import slice_name, window_in_browser
 from app.browser.module_files import LIVE_SECTION_ADDRESS
 from app.job_clients.latest_request import Locked
 from app.job_clients.shown_results import ShownResults
@@ -87,8 +87,7 @@ class LiveSection(JSComponent):
         if found is None or not found.complete:
             self.served = None
             return
-        (x_low, x_high), (ordinate_low, ordinate_high) = found.spec.find_window().ranges
-        window = {"xLow": x_low, "xHigh": x_high, "ordinateLow": ordinate_low, "ordinateHigh": ordinate_high}
+        window = window_in_browser(found.spec.find_window())
         self.served = {"energy": found.spec.common_energy, "window": window, "section": found.section.text}
 
     def _handle_msg(self, message: Any) -> None:

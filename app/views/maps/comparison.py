@@ -8,9 +8,9 @@ from bokeh.models import ColumnDataSource, Image, LinearColorMapper
 from bokeh.plotting import figure
 
 from app.state.view_state import ViewState
+from app.views.components.view_store import ViewStore
 from app.views.maps.hover import fate_hover
 from app.views.maps.map_curves import MapCurves
-from app.views.maps.map_ranges import MapRanges
 from engine import EscapeMap, Slice
 from plots.layers.picture import OtherView
 from plots.pictures.image_columns import NO_LAYER, difference_column, map_columns
@@ -27,16 +27,16 @@ class ComparedMap:
 
     Parameters
     ----------
-    ranges
-        Ranges of the pictures.
+    store
+        Has the ranges of the pictures.
     state
         View state with the colours.
     """
 
-    def __init__(self, ranges: MapRanges, state: ViewState) -> None:
+    def __init__(self, store: ViewStore, state: ViewState) -> None:
         # Make the hover tool before the picture, because Bokeh warns if tools and pictures change together.
         self.source = ColumnDataSource(_blank_columns(), name="compared_map")
-        self.hover = fate_hover(self.source, ranges.x, ranges.ordinate)
+        self.hover = fate_hover(self.source, store.x, store.ordinate)
         self.other: OtherView | None = None
         """The view of the other map; None without a map."""
         self._outlines = MapCurves(state)

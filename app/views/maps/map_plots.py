@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from bokeh.events import DoubleTap, Event, PinchEnd, PointEvent, RangesUpdate, SelectionGeometry, Tap
+from bokeh.events import DoubleTap, Event, PointEvent, SelectionGeometry, Tap
 from bokeh.models import ColumnDataSource, Image, LinearColorMapper, LogColorMapper
 from bokeh.plotting import figure
 
@@ -15,14 +15,15 @@ from app.state.view import PICTURES, Start
 from app.state.view_state import ViewState
 from app.views.components.legends import picture_legend
 from app.views.components.plots import FigurePane, annotate_picture, changing_models, label_axes, map_figure
+from app.views.components.view_store import ViewStore
 from app.views.maps.comparison import ComparedMap
 from app.views.maps.hover import pixel_hover
 from app.views.maps.map_curves import MapCurves, trace_curves
-from app.views.maps.map_ranges import MapRanges, TwoFingers
 from app.views.maps.map_toolbar import MapTools
 from app.views.maps.markers import Markers
 from app.views.maps.overlays import Overlays
 from app.views.maps.picture_grid import PictureGrid
+from app.views.maps.two_fingers import TwoFingers
 from app.views.maps.well import WellView, well_spec
 from engine import EscapeMap, MapSpec, Window
 from engine.foundations.wording import format_number
@@ -58,18 +59,12 @@ class MapActions:
         Handles a click on the pixel at x and ordinate.
     zoom_to_point
         Handles a double click at x and ordinate; `tap` has handled the first click.
-    zoom
-        Shows the window to which the user has moved the pictures; None is the whole interior.
-    end_gesture
-        Handles the end of a gesture, `GESTURE_PAUSE_MS` after the last drag or step of the wheel.
     count_in
         Counts the starts in a box.
     """
 
     tap: Callable[[float, float], None]
     zoom_to_point: Callable[[float, float], None]
-    zoom: Callable[[Window | None], None]
-    end_gesture: Callable[[], None]
     count_in: Callable[[Window], None]
 
 
@@ -88,12 +83,14 @@ class MapsView:
         View state, which the view follows.
     actions
         Callbacks for the user's actions.
+    store
+        Gets the window of each map, and has the ranges of the pictures.
     alone
         Whether only the picture shown large is visible.
     """
 
-    def __init__(self, state: ViewState, actions: MapActions, *, alone: bool = False) -> None:
-        self._state, self._actions = state, actions
+    def __init__(self, state: ViewState, actions: MapActions, store: ViewStore, *, alone: bool = False) -> None:
+        self._state, self._actions, self._store = state, actions, store
         self.source = ColumnDataSource(_blank_columns(), name="maps")
         self.well, self._outlines = WellView(state), MapCurves(state)
         self.overlays, self.marks = Overlays(self.source, state), Markers(state)
@@ -108,9 +105,8 @@ class MapsView:
         self._computing: frozenset[str] = frozenset()
         # Codes of the fates in the frame.
         self._fates: frozenset[int] = frozenset()
-        self.ranges = MapRanges(actions.zoom, actions.end_gesture)
-        ranges = self.ranges.x, self.ranges.ordinate
-        self.compared = ComparedMap(self.ranges, state)
+        ranges = store.x, store.ordinate
+        self.compared = ComparedMap(store, state)
         self._hover = pixel_hover(self.source, self.compared.source, *ranges)
         self._fingers = TwoFingers(*ranges)
         self.tools = MapTools(state, self._hover, self.compared.hover)
@@ -139,11 +135,11 @@ class MapsView:
     def show(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
         """Paint a frame, and go to the window of a new map."""
         if frame.spec != self._spec:
-            self.ranges.set_home(replace(frame.spec, window=None))
+            self._store.set_home(replace(frame.spec, window=None))
             self._spec, self._results = frame.spec, {}
             self._show_curves(frame.spec)
         # The window may have changed and changed back before a map of the other window was shown.
-        self.ranges.follow(frame.spec.find_window())
+        self._store.follow(frame.spec.find_window())
         if frame.stride == 1:
             self._fitted_times = fitted_scale(frame)
         self._fates = frozenset(np.unique(frame.fate).tolist())
@@ -244,8 +240,8 @@ class MapsView:
         if spec is None:
             return
         notes = label_axes(self.figures.values(), spec.plane.axis_symbols, spec.find_window())
-        if self.ranges.magnification > _LEAST_MAGNIFICATION:
-            notes.append(f"{format_number(float(f'{self.ranges.magnification:.2g}'))} times enlarged")
+        if self._store.magnification > _LEAST_MAGNIFICATION:
+            notes.append(f"{format_number(float(f'{self._store.magnification:.2g}'))} times enlarged")
         other = self.compared.other
         is_locked = self._state.lock_times is not None
         shown_map = ShownMap(spec, self._state.colours, self.times, self._fates, is_locked, self._results, other)
@@ -268,7 +264,7 @@ class MapsView:
 
     def _build(self, name: str) -> None:
         """Make a picture with its title and help text."""
-        plot = self.figures[name] = map_figure(name, PICTURE_ENTRIES[name].title, self.ranges.x, self.ranges.ordinate)
+        plot = self.figures[name] = map_figure(name, PICTURE_ENTRIES[name].title, self._store.x, self._store.ordinate)
         plot.toolbar = self.tools.toolbar
         self._paint(name)
         self._fingers.follow_on(plot)
@@ -276,11 +272,7 @@ class MapsView:
             Tap: self._tap,
             DoubleTap: self._tap_again,
             SelectionGeometry: self._count_in_box,
-            PinchEnd: lambda event: self.ranges.end_gesture(),
         }
-        if name == "basins":
-            # Bokeh reports the end of a drag at once, and a step of the wheel after half a second. One linked picture is enough.
-            events[RangesUpdate] = lambda event: self.ranges.end_gesture()
         self._panes[name] = FigurePane(plot, events)
 
     def _paint(self, name: str) -> None:

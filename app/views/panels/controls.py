@@ -9,7 +9,7 @@ from typing import Any
 
 import panel as pn
 
-from app.browser.inputs.counted_inputs import ENERGY_SHOWN_EVENT, EnergySlider, NumberBox
+from app.browser.inputs.counted_inputs import EnergyBox, EnergySlider
 from app.state.system_review import review_catalogue_entry
 from app.state.view import allowed_resolutions, allowed_t_max
 from app.state.view_state import ViewState
@@ -98,19 +98,9 @@ class Controls:
             AXES, lambda: toggle_drawer("slice"), kind="light", css_classes=["half", "choice"], margin=(8, 10, 8, 4)
         )
         self.ticks = TextPane(sizing_mode="stretch_width", height=24, margin=(0, 10), css_classes=["ticks"])
-        self.energy = EnergySlider(
-            self._take_energy, state.energy, name="energy", sizing_mode="stretch_width", margin=(0, 10), css_classes=["energy"]
-        )
+        self.energy = EnergySlider(name="energy", sizing_mode="stretch_width", margin=(0, 10), css_classes=["energy"])
         self.play = button(PLAY, engine.play, min_width=84, css_classes=["half", "play-energy"], margin=(0, 10), align="end")
-        self.exact_energy = NumberBox(
-            self._take_energy,
-            state.energy,
-            label="Exact h",
-            shown_event=ENERGY_SHOWN_EVENT,
-            sizing_mode="stretch_width",
-            css_classes=["half", "exact-energy"],
-            margin=(0, 0, 0, 10),
-        )
+        self.exact_energy = EnergyBox(sizing_mode="stretch_width", css_classes=["half", "exact-energy"], margin=(0, 0, 0, 10))
         self.facts = TextPane(margin=(6, 10), sizing_mode="stretch_width", css_classes=["facts"])
         self.layers = LayerSwitches(state)
         self.comparison = ComparisonSwitch(state, swap_views)
@@ -184,11 +174,6 @@ class Controls:
             with pn.io.hold():
                 self.state.show_slice(plane)
 
-    def _take_energy(self, energy: float) -> None:
-        # Send this change and all its consequences in one message.
-        with pn.io.hold():
-            self.state.energy = energy
-
     def _follow_system(self) -> None:
         """Show the case, the energies and the facts of the system."""
         state, energies = self.state, self.state.energies
@@ -224,10 +209,7 @@ class Controls:
             notes.append(f"C = {format_number(state.potential.jacobi_constant(state.energy), 9)}, the Jacobi constant")
         note = "; ".join(notes)
         self.energy.param.update(disabled=is_energy_axis, note=_ON_AXIS[state.plane.energy_axis] if is_energy_axis else note)
-        self.exact_energy.disabled = is_energy_axis
-        for control in (self.energy, self.exact_energy):
-            control.show(state.energy)
-        self.play.disabled = is_energy_axis
+        self.exact_energy.disabled = self.play.disabled = is_energy_axis
 
 
 def _ticks(escape_energy: float, energies: EnergyRange) -> str:

@@ -1,12 +1,15 @@
 // @ts-check
 /** Loads the modules of the engine, which the server serves as files, when the page is idle after the first pixels. */
 
+import {connectStore} from "../components/view_store.js"
+
 /** Longest wait for an idle page, in ms. */
 const LONGEST_WAIT_MS = 2000
 
 /** @param {{model: any, el: HTMLElement}} component */
 export function render({model, el}) {
   el.setAttribute("aria-hidden", "true")
+  connectStore(model)
   const load = () => void import(new URL(model.address, document.baseURI).href).then(({start}) => start(model, el))
   // Safari has no requestIdleCallback.
   const rest = globalThis.requestIdleCallback ?? setTimeout

@@ -2,52 +2,64 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from itertools import count
-from math import isfinite
 from pathlib import Path
 from typing import Any
 
 import param
-from panel.custom import JSComponent
 
 from app.browser.browser_system import BrowserSystem, make_browser_system, slice_name, system_key
+from app.browser.javascript import component_code
 from app.browser.module_files import ADDRESS
 from app.job_clients.latest_request import LatestRequest, Locked
 from app.job_clients.shown_results import ShownResults
 from app.state.view_state import ViewState
-from engine import EscapeMap
+from app.views.components.view_store import ViewStore
+from engine import EscapeMap, Window
 from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job, Queue
 from plots.layers.map_images import LAYER_COLUMNS
 from plots.pictures.image_columns import pixel_coding
 
 
-class BrowserEngine(JSComponent):
-    """An invisible component that runs the engine in the browser, and sends {energy} when an animation of the energy has ended.
+class BrowserEngine(ViewStore):
+    """An invisible component that runs the engine in the browser, and sends {playing} when an animation of the energy has ended.
+
+    It is also the store of energy and window, because each component adds a dozen elements to the page.
 
     Parameters
     ----------
     state
-        View state, which the engine follows, and which receives the energy at which an animation ends.
+        View state, which the engine follows.
     results
         The results of the session, whose first frame follows the compilation of the kernels.
     jobs, locked
         See `LatestRequest`.
+    on_zoom, on_rest
+        See `ViewStore`.
     """
 
     address = param.String(default=ADDRESS, doc="address of the first module")
     system = param.Dict(default={}, doc="see `BrowserSystem.to_dict`")
     view = param.Dict(default={}, doc="see `describe_view`")
-    command = param.Dict(default={}, doc="name: play or stop; energy, low, high; number that makes repeats differ")
+    command = param.Dict(default={}, doc="name: play or stop; low, high, decimals; number that makes repeats differ")
     playing = param.Boolean(default=False, doc="whether an animation of the energy is running")
 
-    _esm = Path(__file__).with_suffix(".js")
+    _esm = component_code(Path(__file__).with_suffix(".js"))
 
-    def __init__(self, state: ViewState, results: ShownResults, jobs: JobSubmitter, locked: Locked) -> None:
-        super().__init__(width=0, height=0, margin=0, styles={"position": "absolute"}, css_classes=["engine"])
-        self._state = state
+    def __init__(
+        self,
+        state: ViewState,
+        results: ShownResults,
+        jobs: JobSubmitter,
+        locked: Locked,
+        on_zoom: Callable[[Window | None], None],
+        on_rest: Callable[[], None],
+    ) -> None:
+        super().__init__(state, locked, on_zoom, on_rest)
         self._command_numbers = count()
-        self._take_energy = locked(self._end_animation)
+        self._end_animation = locked(lambda: self.param.update(playing=False))
         self._system_request = LatestRequest(jobs, self._show_system, lambda sentence: None, locked)
         results.param.watch(lambda event: self._request_system(event.new), "frame")
         shown_fields = ["system", "plane", "section", "energy", "resolution", "window", "palette"]
@@ -59,30 +71,29 @@ class BrowserEngine(JSComponent):
 
     def play(self) -> None:
         """Animate the energy up to its highest value; from there, begin at the lowest. Stop a running animation."""
-        state, energies = self._state, self._state.energies
         if self.playing:
             self.stop()
-        elif state.plane.energy_axis is None:
+        elif self._state.plane.energy_axis is None:
             self.playing = True
-            self._send_command("play", energy=state.energy, low=energies.low, high=energies.high)
+            self._send_command("play")
 
     def stop(self) -> None:
         """Stop the animation at the current energy."""
         if self.playing:
             self._send_command("stop")
 
-    def _send_command(self, name: str, **details: float) -> None:
-        self.command = {"name": name, **details, "number": next(self._command_numbers)}
+    def _send_command(self, name: str) -> None:
+        energies, number = self._state.energies, next(self._command_numbers)
+        limits = {"low": energies.low, "high": energies.high, "decimals": energies.decimals}
+        self.command = {"name": name, **limits, "number": number}
 
     def _handle_msg(self, message: Any) -> None:
         # A browser can send anything: unexpected messages are ignored.
         match message:
-            case {"energy": float() | int() as energy} if self.playing and isfinite(energy):
-                self._take_energy(float(energy))
-
-    def _end_animation(self, energy: float) -> None:
-        self.playing = False
-        self._state.energy = round(energy, self._state.energies.decimals)
+            case {"playing": False}:
+                self._end_animation()
+            case _:
+                super()._handle_msg(message)
 
     def _request_system(self, frame: EscapeMap | None) -> None:
         """Request the system for the browser once a frame has arrived, because the system needs the compiled kernels."""
@@ -103,7 +114,6 @@ def describe_view(state: ViewState) -> dict[str, Any]:
         "plane": slice_name(state.plane),
         # Only the server knows the potentials along a parameter.
         "slice": _describe_slice(state) if state.plane.parameter is None else None,
-        "energy": state.energy,
         "home": state.window is None,
         "resolution": state.resolution,
         "colours": [entry.colour for entry in state.colours.end_entries(outcomes)],

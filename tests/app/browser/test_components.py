@@ -13,23 +13,23 @@ from app.browser.components.file_components import ImageCopier
 from app.browser.components.orbit_components import OrbitList, OrbitPlayer
 from app.browser.inputs.counted_inputs import (
     LONGEST_TYPED,
-    EnergySlider,
     FormulaBox,
     NumberBox,
     ParameterSliders,
     SliderParameter,
 )
-from app.job_clients.shown_results import ShownResults
 from app.state.presets import PRESETS
 from app.state.view_state import ViewState
 from app.views.panels.browser_events import KEYS, BrowserEvents
 from app.views.panels.engine_component import BrowserEngine
 from app.views.panels.gallery import Gallery
-from engine.jobs.manager import Jobs
+from engine import Window
 from tests.app.browser_messages import send
+from tests.app.map_actions import make_browser_engine
 
 Report = Callable[..., None]
 NAN = float("nan")
+EDGES = {"xLow": -0.1, "xHigh": 0.1, "ordinateLow": 0.2, "ordinateHigh": 0.4}
 # Messages that are wrong for every component.
 NEVER = [None, 7, "x", [], {}, {"other": 1}]
 
@@ -44,11 +44,20 @@ class Example:
 
 
 def make_engine(report: Report) -> BrowserEngine:
+    engine = make_browser_engine(ViewState(energy=0.2))
+    engine.play()
+    engine.param.watch(lambda event: report(event.new), "playing")
+    return engine
+
+
+def make_energy(report: Report) -> JSComponent:
     state = ViewState(energy=0.2)
     state.param.watch(lambda event: report(event.new), "energy")
-    engine = BrowserEngine(state, ShownResults(), Jobs(), lambda function: function)
-    engine.play()
-    return engine
+    return make_browser_engine(state)
+
+
+def make_windows(report: Report) -> JSComponent:
+    return make_browser_engine(on_zoom=report, on_rest=lambda: report("rest"))
 
 
 def make_events(report: Report) -> JSComponent:
@@ -106,14 +115,25 @@ EXAMPLES = {
             given(1.0),
         ],
     ),
-    "slider of the energy": Example(
-        lambda report: EnergySlider(report, 0.2, low=0.0, high=0.5),
-        [(given(0.25), (0.25,)), (given(17), (0.5,)), (given(-1.0), (0.0,))],
-        [given("0.3"), given(NAN)],
+    "energy of the store": Example(
+        make_energy,
+        [({"name": "energy", **given(0.25)}, (0.25,)), ({"name": "energy", **given(17, 2)}, (17.0,))],
+        [given(0.3, 3), *({"name": "energy", **given(energy, 3)} for energy in ("0.3", NAN, float("inf"), None, [0.3]))],
     ),
-    "end of playing, once": Example(
-        make_engine, [({"energy": 0.3}, (0.3,))], [{"energy": 0.4}, {"energy": "0.3"}, {"energy": float("inf")}]
+    "windows of the store": Example(
+        make_windows,
+        [
+            ({"name": "window", **given(EDGES, done=False)}, (Window(-0.1, 0.1, 0.2, 0.4),)),
+            ({"gesture": "end"}, ("rest",)),
+        ],
+        [
+            {"gesture": 1},
+            {"name": "window", **given(EDGES, "3")},
+            *({"name": "window", **given(value, 3)} for value in (None, 0.3, [-0.1, 0.1, 0.2, 0.4])),
+            *({"name": "window", **given(EDGES | {"xLow": value}, 3)} for value in (NAN, 0.2, "x", [])),
+        ],
     ),
+    "end of playing, once": Example(make_engine, [({"playing": False}, (False,))], [{"playing": False}, {"playing": True}]),
     "button that copies an image": Example(
         lambda report: ImageCopier(lambda: report("wanted"), report),
         [({"wanted": True}, ("wanted",)), ({"copied": True}, (True,)), ({"copied": False}, (False,))],

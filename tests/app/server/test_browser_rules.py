@@ -54,7 +54,7 @@ NAN = {"type": "number", "value": "nan"}
         (lambda: TextInput(), "value_input", ["x" * LONGEST_TEXT], ["x" * (LONGEST_TEXT + 1)]),
         (lambda: RadioGroup(labels=["a", "b"]), "active", [0, 1, None], [2, -1, 0.5, "a", [0], True]),
         (lambda: CheckboxButtonGroup(labels=["a", "b"]), "active", [[], [1, 0]], [[2], [0, 0], 0, None]),
-        (lambda: Range1d(0, 1), "tags", [[], [3]], [["x"], [-1], 3]),
+        (lambda: Range1d(0, 1), "tags", [], [[], [3]]),
         (lambda: Range1d(0, 1), "start", [0.25, -3], [NAN, "x", 1e30, [1], None, 1, 2]),
         (lambda: Span(location=0.0, dimension="width"), "location", [0.25, None, NAN], ["x"]),
         (lambda: figure(), "inner_width", [300], [-1, "300", 0.5]),

@@ -35,10 +35,13 @@ def update(**values: Any) -> Callable[[Explorer], None]:
     return change
 
 
+CLOSER = {"xLow": -0.1, "xHigh": 0.1, "ordinateLow": -0.1, "ordinateHigh": 0.1}
+
 CHANGES: list[Callable[[Explorer], Any]] = [
     # This moves the markers of the orbit plots.
     lambda explorer: send(explorer.orbits.player, {"step": 10, "begin": 0, "end": 10}),
-    lambda explorer: send(explorer.controls.exact_energy, {"value": 0.3, "count": 1, "done": True}),
+    lambda explorer: send(explorer.engine, {"name": "energy", "value": 0.3, "count": 1, "done": True}),
+    lambda explorer: send(explorer.engine, {"name": "window", "value": CLOSER, "count": 1, "done": False}),
     lambda explorer: explorer.controls.case.param.update(value="II"),
     lambda explorer: explorer.controls.plane.param.update(value=Plane.X_Y),
     update(t_max=1e3),

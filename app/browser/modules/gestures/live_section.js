@@ -4,7 +4,6 @@
  * the server's chart of this energy is complete.
  */
 
-import {listen} from "../energy_events.js"
 import {Integrator} from "../engine/integrator.js"
 import {Returns} from "../engine/returns.js"
 import {isNearWindow, windowAt} from "../engine/starts.js"
@@ -13,6 +12,7 @@ import {sameEnergy} from "../painting/columns.js"
 import {Dots} from "../painting/dots.js"
 import {LocalWhenPresent} from "../painting/local.js"
 import {pictureNamed} from "../painting/pictures.js"
+import {storeOf} from "../view_store.js"
 import {onPresent, present} from "./present.js"
 
 /** Name of the figure of the chart. */
@@ -44,7 +44,9 @@ class LiveSection {
     for (const event of ["pointerdown", "pointermove", "pointerup", "click"])
       this.#canvas.addEventListener(event, each => each.stopPropagation())
     this.#canvas.addEventListener("click", each => this.#pick(each.offsetX, each.offsetY))
-    const ignored = [onPresent(() => this.#follow()), listen("sceneshown", () => this.#follow())]
+    const {energy, window} = storeOf(model.document)
+    const follow = () => this.#follow()
+    const ignored = [onPresent(follow), energy.listen(follow), window.listen(follow)]
     model.on(["slice", "section", "served", "colouring", "duration", "follows_window"], () => this.#follow())
     model.on("lifecycle:remove", () => {
       this.#hide()

@@ -4,7 +4,6 @@
  * view is complete or has at least as many pixels.
  */
 
-import {dispatch} from "../energy_events.js"
 import {exitLines, LimitingCurves} from "../engine/curves.js"
 import {Integrator} from "../engine/integrator.js"
 import {energyAxis, isNearWindow, showsPositions, windowAt} from "../engine/starts.js"
@@ -21,7 +20,6 @@ import {LEAST_SIDE} from "../workers/frames.js"
  * @property {string} system  key of the system
  * @property {string} plane  name of the slice
  * @property {import("../engine/system.js").Slice | null} slice  null for a slice that only the server can compute
- * @property {number} energy
  * @property {boolean} home  whether the window is the default window of its energy
  * @property {string[]} colours  of the outcomes, exits first
  * @property {string[]} labels  of the outcomes
@@ -41,17 +39,16 @@ export class Preview {
    * @param {(picture: string, name: string) => any} findSource  finds a data source of a picture
    * @param {import("../workers/frames.js").Frames} frames
    * @param {import("../painting/overlay.js").Overlay} overlay
+   * @param {import("../view_store.js").ViewStore} store
    */
-  constructor(find, findSource, frames, overlay) {
+  constructor(find, findSource, frames, overlay, {energy, window}) {
     this.#overlay = overlay
     this.#find = find
-    const ranges = find("basins")
     this.#frames = frames
+    this.#energy = energy
+    this.#window = window
+    for (const value of [energy, window]) value.listen(() => this.#follow())
     this.#maps = new Local(find("maps"), ["data"], () => this.#follow())
-    const onMove = () => this.#followRange()
-    this.#xRange = new Local(ranges.x_range, ["start", "end"], onMove)
-    this.#yRange = new Local(ranges.y_range, ["start", "end"], onMove)
-    this.#ranges = () => [ranges.x_range, ranges.y_range]
     this.#outlines = new Outlines(name => findSource("basins", name))
     this.#well = new Outlines(name => findSource("well", name))
     this.#status = new LocalWhenPresent(findStatus, ["text", "css_classes"])
@@ -60,10 +57,9 @@ export class Preview {
   #find
   #frames
   #overlay
+  #energy
+  #window
   #maps
-  #xRange
-  #yRange
-  #ranges
   #outlines
   #well
   #status
@@ -75,18 +71,6 @@ export class Preview {
   #integrator = null
   /** @type {ServerView | null} */
   #view = null
-  /** Energy of the slider or of the player, until the server has received it. @type {number | null} */
-  #energy = null
-  /**
-   * Default window at the energy, which is shown together with its pixels; null if the ranges keep their window.
-   *
-   * @type {import("../engine/starts.js").Window | null}
-   */
-  #defaultWindow = null
-  /** Whether the energy is being dragged or played. */
-  #isHeld = false
-  /** Whether a call of `#follow` waits for the end of the task. */
-  #followsSoon = false
   /** The preview on the page. @type {import("../engine/pixels.js").View | null} */
   #shownView = null
 
@@ -100,73 +84,46 @@ export class Preview {
     this.#system = system
     this.#integrator = new Integrator(system, modules)
     this.#frames.setSystem(system, modules)
-    if (this.#isHeld && this.#energy !== null) this.showEnergy(this.#energy)
-    else this.#follow()
+    this.#follow()
   }
 
   /** @param {ServerView} view */
   setView(view) {
     const viewChanged = this.#view && (view.system !== this.#view.system || view.plane !== this.#view.plane)
     this.#view = view
-    if (!this.#isHeld) this.#energy = this.#defaultWindow = null
     if (viewChanged) this.#restore()
-  }
-
-  /**
-   * Show another energy until `release`.
-   *
-   * @param {number} energy
-   */
-  showEnergy(energy) {
-    this.#isHeld = true
-    this.#energy = energy
-    const [view, integrator] = [this.#view, this.#integrator]
-    const followsDefault = view?.home && view.system === integrator?.system.key
-    const isServerEnergy = view && sameEnergy(energy, view.energy)
-    const defaultWindow = followsDefault && integrator && !isServerEnergy ? windowAt(integrator, view.plane, energy) : null
-    // Painting axes takes longer than painting pixels, so the window follows only larger changes.
-    if (!defaultWindow || !isNearWindow(defaultWindow, this.#currentWindow)) this.#defaultWindow = defaultWindow
-    if (isServerEnergy) for (const range of [this.#xRange, this.#yRange]) range.restore()
-    this.#follow()
-  }
-
-  /** End the preview of an energy, which the server receives now. */
-  release() {
-    this.#isHeld = false
   }
 
   /** The scene to show; null if the browser cannot compute it. @returns {import("../workers/frames.js").Scene | null} */
   get scene() {
-    const [view, system, window] = [this.#view, this.#system, this.#currentWindow]
-    if (!view?.slice || !system || view.system !== system.key) return null
-    if (!(window.xLow < window.xHigh && window.ordinateLow < window.ordinateHigh)) return null
-    const energy = this.#energy ?? view.energy
+    const [view, system, window] = [this.#view, this.#system, this.#sceneWindow]
+    if (!view?.slice || !system || view.system !== system.key || !window) return null
+    const energy = this.#energy.value
     // Without an axis of energy, the index is −1.
     const highest = [window.xHigh, window.ordinateHigh][energyAxis(view.slice)] ?? energy
     if (!coversEnergy(system, highest / system.units.energy)) return null
     return {slice: view.slice, energy, window, mostPixels: view.resolution}
   }
 
-  /** The window on the page, or about to be shown. @returns {import("../engine/starts.js").Window} */
-  get #currentWindow() {
-    const [x, y] = this.#ranges()
-    return this.#defaultWindow ?? {xLow: x.start, xHigh: x.end, ordinateLow: y.start, ordinateHigh: y.end}
+  /** Whether the window is the default window of an energy that the server has not received yet. */
+  get #followsDefault() {
+    return this.#view?.home && this.#view.system === this.#system?.key && this.#energy.isNewer && !this.#window.isNewer
+  }
+
+  /** The window on the page, or to be shown with the pixels. @returns {import("../engine/starts.js").Window | null} */
+  get #sceneWindow() {
+    const [view, integrator, shown] = [this.#view, this.#integrator, this.#window.value]
+    if (!this.#followsDefault || !view || !integrator || !shown) return shown
+    if (sameEnergy(this.#energy.value, this.#energy.model.shown.value)) return this.#window.model.shown.value
+    const window = windowAt(integrator, view.plane, this.#energy.value)
+    // Painting axes takes longer than painting pixels, so the window follows only larger changes.
+    return window && !isNearWindow(window, shown) ? window : shown
   }
 
   /** Columns of the other view, if the server compares two views pixel by pixel; otherwise null. */
   get #compared() {
     const isCompared = this.#maps.server.data.difference?.[0].length > 1
     return isCompared ? (this.#find("compared_map")?.data ?? null) : null
-  }
-
-  /** Follow a change of a range after the other changes of the same task: of its other end, and of the server's pixels. */
-  #followRange() {
-    if (this.#followsSoon) return
-    this.#followsSoon = true
-    queueMicrotask(() => {
-      this.#followsSoon = false
-      this.#follow()
-    })
   }
 
   /** Show the scene: the map of the server if it shows the scene, otherwise a preview. */
@@ -176,7 +133,6 @@ export class Preview {
       this.#maps.acceptServer()
       return
     }
-    dispatch("sceneshown", scene.energy)
     const isSameScene = this.#shownView && JSON.stringify(scene) === JSON.stringify(sceneOf(this.#shownView))
     const rows = isSameScene && this.#shownView ? this.#shownView.rows : LEAST_SIDE
     if (showsScene(this.#maps.server.data, scene, rows)) {
@@ -204,16 +160,13 @@ export class Preview {
     const coloured = exitLines(integrator, view.energy).map(exit => ({...exit, colour: server.colours[exit.channel - 1]}))
     const exits = showsPositions(view.slice) ? coloured : []
     const well = this.#traceWell(integrator, view)
-    // Each change of a range repaints all pictures, so ranges change only together with the pixels.
-    if (this.#defaultWindow) {
-      this.#xRange.show({start: view.window.xLow, end: view.window.xHigh})
-      this.#yRange.show({start: view.window.ordinateLow, end: view.window.ordinateHigh})
-    }
+    // Each change of a range repaints all pictures, so the window changes only together with the pixels.
+    if (this.#followsDefault) this.#window.show(view.window)
     // The text of a stopped map stays.
     if (!this.#status.server.css_classes?.includes("stopped")) {
       this.#status.show({text: `Preview up to t = ${view.horizon * system.units.time}`})
     }
-    if (isMoving && this.#isHeld) {
+    if (isMoving && this.#energy.isUnsent) {
       this.#overlay.show({
         energy: view.energy,
         window: view.window,
@@ -246,7 +199,8 @@ export class Preview {
     this.#frames.stop()
     this.#shownView = null
     this.#overlay.hide()
-    for (const local of [this.#maps, this.#outlines, this.#well, this.#status, this.#xRange, this.#yRange]) local.restore()
+    for (const local of [this.#maps, this.#outlines, this.#well, this.#status]) local.restore()
+    if (this.#window.value !== this.#window.model.shown.value) this.#window.follow()
   }
 }
 

@@ -9,6 +9,7 @@ from bokeh.document import Document
 from bokeh.events import DoubleTap, Tap
 from bokeh.models import BasicTickFormatter, BoxSelectTool, BoxZoomTool, CustomJSTickFormatter, PanTool, WheelZoomTool
 
+from app.browser.browser_system import window_in_browser
 from app.state.view import View
 from app.state.view_state import ViewState
 from app.views.maps.map_plots import MAPS, MapsView
@@ -17,7 +18,7 @@ from engine import CASES, MapSpec, Plane, Window, compute_map
 from plots.layers.table import LAYERS
 from plots.pictures.image_columns import map_columns
 from plots.pictures.time_scale import TimeScale, fitted_scale
-from tests.app.map_actions import make_maps
+from tests.app.map_actions import make_browser_engine, make_maps
 
 
 @pytest.fixture
@@ -82,10 +83,11 @@ def test_two_quick_clicks_on_two_pixels_are_two_taps() -> None:
 
 
 def deep(width: float) -> MapsView:
-    view = make_maps()
+    store = make_browser_engine()
+    view = make_maps(store=store)
     spec = MapSpec(CASES["I"], Plane.X_PX, 0.19, (4, 4), (0.1, 0.1 + width, 0.2, 0.2 + width), t_max=10.0)
     frame = compute_map(spec)
-    view.ranges.set_home(replace(spec, window=None))
+    store.set_home(replace(spec, window=None))
     view.show(frame, map_columns(frame))
     return view
 
@@ -115,11 +117,13 @@ def test_a_locked_scale_of_times_keeps_its_ends_until_it_is_unlocked(state: View
     assert "locked" not in maps.figures["times"].elements[0].html
 
 
-def test_the_pictures_return_to_a_window_whose_map_was_the_last_one_shown(maps: MapsView) -> None:
+def test_the_pictures_return_to_a_window_whose_map_was_the_last_one_shown() -> None:
+    store = make_browser_engine()
+    maps = make_maps(store=store)
     frame = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19, (8, 8), t_max=10.0))
     home = frame.spec.find_window()
     for _ in range(2):
         maps.show(frame, map_columns(frame))
-        assert (maps.ranges.x.start, maps.ranges.x.end) == (home.x_low, home.x_high)
+        assert store.window["value"] == window_in_browser(home)
         # The map of this window never arrives.
-        maps.ranges.go_to(Window(-0.1, 0.1, -0.2, 0.2))
+        store.go_to(Window(-0.1, 0.1, -0.2, 0.2))

@@ -8,12 +8,12 @@ from bokeh.models import ColumnDataSource, Image
 
 from app.state.view_state import ViewState
 from app.views.components.plots import map_figure
-from app.views.maps.map_ranges import MapRanges
 from app.views.maps.overlays import Overlays
 from engine import CASES, find_stable_manifolds
 from engine.results import StableManifolds
 from plots.layers.table import LAYERS, PICTURES
 from plots.pictures.palette import PALETTES
+from tests.app.map_actions import make_browser_engine
 
 
 @pytest.fixture(scope="module")
@@ -43,8 +43,8 @@ def test_the_lines_of_an_exit_are_one_line_with_gaps(manifolds: StableManifolds)
 
 
 def test_marks_are_added_once_to_the_pictures_over_which_they_lie() -> None:
-    ranges = MapRanges(lambda window: None, lambda: None)
-    plots = {name: map_figure(name, name, ranges.x, ranges.ordinate) for name in PICTURES if name != "curves"}
+    store = make_browser_engine()
+    plots = {name: map_figure(name, name, store.x, store.ordinate) for name in PICTURES if name != "curves"}
     overlays = Overlays(ColumnDataSource(), ViewState())
     for name, plot in plots.items():
         overlays.draw(plot, name)

@@ -6,16 +6,14 @@ import panel as pn
 import pytest
 from panel.widgets import Widget
 
-from app.job_clients.shown_results import ShownResults
 from app.state.system_review import review_for_page
 from app.state.view_state import ViewState
 from app.views.components.widgets import Switches
 from app.views.panels.controls import LOCK_SCALE, Controls
-from app.views.panels.engine_component import BrowserEngine
 from engine import System
-from engine.jobs.manager import Jobs
 from engine.systems.system import TYPED
 from plots.pictures.time_scale import TimeScale
+from tests.app.map_actions import make_browser_engine
 
 
 class Page:
@@ -24,7 +22,7 @@ class Page:
     def __init__(self) -> None:
         self.locks: list[bool] = []
         self.state = ViewState(system=System("I"), energy=0.19)
-        engine = BrowserEngine(self.state, ShownResults(), Jobs(), lambda call: call)
+        engine = make_browser_engine(self.state)
         self.controls = Controls(self.state, engine, lambda name: None, lambda: None, self.locks.append)
 
 

@@ -9,7 +9,7 @@ from engine import Coordinate, ParameterAxis, Plane, Slice, System, read_section
 
 def test_a_view_follows_the_state() -> None:
     view = describe_view(ViewState(system=System("III"), energy=0.45, plane=Plane.X_Y, palette="safe"))
-    assert (view["energy"], view["plane"], view["home"]) == (0.45, "x_y", True)
+    assert (view["plane"], view["home"]) == ("x_y", True)
     assert view["colours"][0] == "#009e73"
     assert view["labels"] == ["exit 1", "exit 2", "exit 3", "exit 4"]
     assert view["coding"]["ends"] == [0, 1, 2, 3]

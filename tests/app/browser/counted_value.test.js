@@ -1,7 +1,7 @@
 // @ts-check
 import assert from "node:assert/strict"
 import {test} from "node:test"
-import {CountedValue} from "../../../../app/browser/inputs/counted_value.js"
+import {CountedValue} from "../../../app/browser/modules/counted_value.js"
 
 /** An input whose server has set a value before any of the visitor. */
 function makeInput() {
@@ -70,4 +70,14 @@ test("a change is done once", () => {
       [2, true],
     ],
   )
+})
+
+test("a value that the server has chosen since replaces one that is not sent yet, and is counted", () => {
+  const {input, sent, value, show} = makeInput()
+  input.text = "mine"
+  value.begin()
+  show("chosen", 1)
+  assert.deepEqual([input.text, value.isNewer], ["chosen", false])
+  value.change()
+  assert.equal(sent[0].count, 2)
 })
