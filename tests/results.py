@@ -27,8 +27,11 @@ from engine import (
     compute_trust,
     compute_uncertainty_exponent,
     compute_wada_test,
+    continue_family,
     find_divergent_start,
     find_lyapunov_orbits,
+    find_periodic_orbit,
+    find_periodic_orbits,
     find_returns,
     find_stable_manifolds,
     fit_decay_laws,
@@ -70,6 +73,9 @@ _MAKERS: dict[str, Callable[[], Result | None]] = {
     "exponent": lambda: compute_uncertainty_exponent(SPEC, pairs=20, separations=8, work=1e6),
     "returns": lambda: compute_returns(replace(SPEC, resolution=(6, 5)), returns=4),
     "returns of orbits": lambda: find_returns(POTENTIAL, ENERGY, sample_starts(POTENTIAL, ENERGY, 9), returns=4, section="x = 0"),
+    "periodic orbit": lambda: find_periodic_orbit(POTENTIAL, (0.0, 0.0, 0.1, 0.8), returns=2),
+    "periodic orbits": lambda: find_periodic_orbits(replace(SPEC, resolution=(8, 8)), returns=1),
+    "family": lambda: continue_family(find_periodic_orbit(POTENTIAL, (0.0, 0.0, 0.0, 0.8), returns=1), 0.4),
     "sweep": lambda: compute_sweep(SweepSpec(POTENTIAL, Plane.X_PX, (0.3, 0.36), (20, 20), t_max=100.0, measures="shares")),
 }
 

@@ -37,16 +37,20 @@ from engine import (
     compute_trust,
     compute_uncertainty_exponent,
     compute_wada_test,
+    continue_family,
+    find_periodic_orbit,
+    find_periodic_orbits,
     fit_decay_laws,
     integrate_orbit,
     sample_starts,
     start_states,
 )
 from engine.slices.planes import SECTION
+from plots.layers.periodic_orbits import periodic_strokes
 from plots.pictures.orbit_curves import compute_orbit_curves
 from plots.pictures.orbit_quantities import ORBIT_QUANTITIES
 from plots.pictures.palette import LIGHT, MEASURED, PAPER, Entry, rgba
-from plots.printed.curve_figures import draw_statistics_figure
+from plots.printed.curve_figures import draw_chart, draw_statistics_figure
 from plots.printed.figure_axes import (
     add_figure_legend,
     add_panel_legend,
@@ -59,7 +63,8 @@ from plots.printed.figure_axes import (
 from plots.printed.figure_style import FigureFormat
 from plots.printed.map_figure import draw_picture
 from plots.printed.orbit_figure import draw_quantity
-from plots.printed.window_axes import draw_limits, draw_pixels, show_window
+from plots.printed.window_axes import draw_limits, draw_pixels, draw_strokes, show_window
+from plots.studies.family import family_charts
 
 DOCS = Path(__file__).parents[1]
 # Number of colours of a file.
@@ -164,6 +169,21 @@ def escape_laws() -> Figure:
     return figure
 
 
+def periodic() -> Figure:
+    """Draw periodic orbits over the basins of case III, and the stability index of a family."""
+    figure, (basins, index) = new_panels(2, 8.5)
+    escape_map = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.3, (SIDE, SIDE), t_max=1e3))
+    window = escape_map.spec.find_window()
+    draw_picture(basins, escape_map, "basins", PAPER)
+    found = find_periodic_orbits(MapSpec(CASES["III"], Plane.X_PX, 0.3, (60, 60), t_max=1e3), 2)
+    draw_strokes(basins, periodic_strokes(found), window, PAPER)
+    straight = find_periodic_orbit(CASES["III"], [0.0, 0.0, 0.0, np.sqrt(0.4)], 1)
+    chart = family_charts(continue_family(straight, (0.05, 0.7)), PAPER)[1]
+    draw_chart(index, chart, STYLE, None)
+    set_title(index, chart.frame.title, STYLE)
+    return figure
+
+
 def slices() -> Figure:
     """Draw basins on a slice of launch angle and energy, and on a slice with a parameter as an axis."""
     figure, panels = new_panels(2, 11.5)
@@ -240,7 +260,7 @@ def origins() -> Figure:
 
 DRAWINGS: tuple[Callable[[], Figure], ...] = (
     well, maps, blob, tubes, energies, cases, potentials, exits, sali, trust, basin_entropy, wada, uncertainty_exponent,
-    escape_laws, slices, statistics, curves, flux, evidence, origins, earth_moon, copenhagen, star_cluster, four_hills,
+    escape_laws, slices, statistics, curves, flux, evidence, periodic, origins, earth_moon, copenhagen, star_cluster, four_hills,
 )  # fmt: skip
 
 PICTURES = {f"drawings/{draw.__name__.replace('_', '-')}": draw for draw in DRAWINGS}

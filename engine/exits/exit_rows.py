@@ -30,6 +30,14 @@ def closed_exits(potential: Potential) -> np.ndarray:
     return np.array(rows).reshape(len(rows), CURVE_COLUMNS)
 
 
+def absent_exits(potential: Potential) -> np.ndarray:
+    """Return the exits, (outcomes, columns), without those over saddles, which no orbit crosses. Other ends remain."""
+    curves = closed_exits(potential)
+    for channel, saddle in enumerate(potential.saddles, start=1):
+        curves[channel - 1] = absent_channel(saddle_axes(potential, channel), saddle)
+    return curves
+
+
 def exit_curves(potential: Potential, energy: float) -> np.ndarray:
     """Return the exits of a potential in units of its well at one energy, of shape (outcomes, columns).
 
@@ -55,12 +63,9 @@ def exit_curves_at(potential: Potential, energies: np.ndarray, execution: Execut
 def exit_curves_if_known(potential: Potential, energy: float) -> tuple[np.ndarray, str]:
     """Return the `exit_curves`, and the reason why the exits over saddles are unknown; empty if they are known.
 
-    Unknown exits over saddles are returned as absent, so that no orbit crosses them. Other ends remain.
+    Unknown exits over saddles are returned as absent.
     """
     try:
         return exit_curves(potential, energy), ""
     except UndefinedExitsError as error:
-        curves = closed_exits(potential)
-        for channel, saddle in enumerate(potential.saddles, start=1):
-            curves[channel - 1] = absent_channel(saddle_axes(potential, channel), saddle)
-        return curves, error.reason
+        return absent_exits(potential), error.reason

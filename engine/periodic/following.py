@@ -6,6 +6,7 @@ Keller 1977, in Applications of Bifurcation Theory). All quantities are in units
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -71,7 +72,8 @@ def follow_family(potential: Potential, section: Section, first: Member, longest
     first
         The first member.
     longest_step
-        Largest distance of neighbouring members in the space of unknowns.
+        Largest distance of neighbouring members in the space of unknowns of an orbit without nodes between its returns. Such
+        nodes add to the distance of orbits.
     """
     member, step = first, min(_FIRST_STEP, longest_step)
     while step >= _SMALLEST_STEP:
@@ -80,7 +82,8 @@ def follow_family(potential: Potential, section: Section, first: Member, longest
             step *= _SHORTER
             continue
         yield Segment(member, following)
-        member, step = _divided(potential, section, following), min(step * _LONGER, longest_step)
+        member = _divided(potential, section, following)
+        step = min(step * _LONGER, longest_step * math.sqrt(len(member.orbit.states) / len(member.orbit.durations)))
 
 
 def _divided(potential: Potential, section: Section, member: Member) -> Member:

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from engine.exits.exit_rows import absent_exits
 from engine.foundations.validation import checked_count, checked_state, checks_types
 from engine.foundations.wording import format_count
 from engine.integrator.kernels.dense_output import advance_states
@@ -71,7 +72,7 @@ def find_periodic_orbit(
     >>> from escape_explorer import CASES, find_periodic_orbit
     >>> orbit = find_periodic_orbit(CASES["III"], [0.0, 0.0, 0.05, 0.77], returns=1)
     >>> orbit.describe()
-    'Periodic orbit, stable, T = 6.28319, a = −0.337506, 1 return to y = 0.'
+    'Periodic orbit, stable, T = 6.28319, a = −0.323683, 1 return to y = 0.'
     """
     start, section = checked_state("state", state), checked_section(section)
     t_max = potential.checked_t_max(t_max)
@@ -113,7 +114,9 @@ def _returns_of(potential: Potential, section: Section, start: np.ndarray, count
     units, well = potential.units, potential.in_well_units
     # The kernel does not count a start on the section, so the orbit begins shortly before.
     before = advance_states(well.well.kernels, start[None] / units.state, np.array([-_BEFORE]))[0]
-    return find_passages_of_orbit(well, before, count, t_max / units.time + _BEFORE, section.in_well_units(units).numbers)
+    numbers = section.in_well_units(units).numbers
+    # An orbit may leave through an exit over a saddle and return, but it ends at a body or an escape radius.
+    return find_passages_of_orbit(well, before, count, t_max / units.time + _BEFORE, numbers, absent_exits(well))
 
 
 def first_point(potential: Potential, section: Section, start: np.ndarray, t_max: float) -> np.ndarray | None:

@@ -187,7 +187,7 @@ def find_periodic_orbits(
     Examples
     --------
     >>> from escape_explorer import CASES, MapSpec, Plane, find_periodic_orbits
-    >>> found = find_periodic_orbits(MapSpec(CASES["III"], Plane.X_PX, 0.3, (40, 40), t_max=100.0), returns=1)
+    >>> found = find_periodic_orbits(MapSpec(CASES["III"], Plane.X_PX, 0.3, (20, 20), t_max=100.0), returns=1)
     >>> len(found), [(round(orbit.period, 4), orbit.stability.value) for orbit in found][:2]
     (7, [(6.2832, 'stable'), (6.8438, 'unstable')])
     """

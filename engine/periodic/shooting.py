@@ -32,7 +32,7 @@ _LARGEST_GAP = 1e-10
 # Smallest period of an orbit.
 _SHORTEST_PERIOD = 1e-6
 # Growth of an error along a part above which the part is divided, and largest number of parts between two returns.
-_LARGEST_GROWTH, _MOST_PARTS = 100.0, 64
+_LARGEST_GROWTH, _MOST_PARTS = 100.0, 32
 
 
 SINGULAR = 1e-10
@@ -213,9 +213,9 @@ def divided(potential: Potential, trial: Trial) -> Trial:
     if found is None:
         return trial
     growths = np.maximum(np.abs(found.matrices).max(axis=(1, 2)), 1.0)
-    wanted = np.clip(np.ceil(np.log(growths) / math.log(_LARGEST_GROWTH)), 1, _MOST_PARTS).astype(int)
+    wanted = np.maximum(np.ceil(np.log(growths) / math.log(_LARGEST_GROWTH)), 1).astype(int)
     # All parts between two returns take the same time.
-    factors = np.maximum.reduceat(wanted, trial.returns)
+    factors = np.minimum(np.maximum.reduceat(wanted, trial.returns), np.maximum(_MOST_PARTS // np.array(trial.parts), 1))
     states = []
     for steps, duration, factor in zip(found.steps, trial.part_durations, factors[trial.owners], strict=True):
         states += list(sample_path(potential.well.kernels, steps, np.arange(factor) * (duration / factor)).T)

@@ -90,9 +90,14 @@ def find_passages(
 
 
 def find_passages_of_orbit(
-    potential: Potential, start: np.ndarray, count: int, duration: float, section: SectionNumbers
+    potential: Potential,
+    start: np.ndarray,
+    count: int,
+    duration: float,
+    section: SectionNumbers,
+    curves: np.ndarray | None = None,
 ) -> np.ndarray:
-    """Find the first crossings of a section by one orbit, whether or not it leaves through an exit; in units of the well.
+    """Find the first crossings of a section by one orbit; in units of the well.
 
     Parameters
     ----------
@@ -106,6 +111,8 @@ def find_passages_of_orbit(
         Time at which to stop, above 0.
     section
         The section, see `Section.numbers`.
+    curves
+        The exits at which the orbit ends, (outcomes, columns); None if it goes on beyond all of them.
 
     Returns
     -------
@@ -117,6 +124,8 @@ def find_passages_of_orbit(
     passages, counts = np.full((1, count, len(_ORDER)), np.nan), np.zeros(VECTOR, np.int64)
     fates = np.zeros(VECTOR, np.int8)
     exits = without_exits(len(potential.outcomes), VECTOR, section)
+    if curves is not None:
+        exits = Exits(exit_gates(curves[None], section), curves[None], np.zeros(VECTOR, np.int64))
     with np.errstate(invalid="ignore"):
         kernels = potential.well.kernels_of(section.form)
         kernels.find_section_passages(TOLERANCE, duration, exits, lanes, passages, counts, fates)

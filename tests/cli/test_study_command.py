@@ -57,3 +57,20 @@ def test_a_study_is_about_a_section(run: Run, tmp_path: Path) -> None:
     code, _, err = run("study", "section", "HH", "--section", "somewhere")
     assert code == 2
     assert "must be a section such as" in err
+
+
+def test_a_family_begins_at_a_start_on_the_plane_or_at_a_state(run: Run, tmp_path: Path) -> None:
+    code, out, _ = run("study", "family", "III", "--energy", "0.3", "--start", "0", "0", "--output", tmp_path / "family.csv")
+    assert code == 0
+    assert "branching at h = 0.58167974" in out
+    with (tmp_path / "family.csv").open() as file:
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    assert {row["period"][:8] for row in rows} == {"6.283185"}
+    state = ("--state", "0", "0", "0", "0.7")
+    assert run("study", "family", "III", *state, "--output", tmp_path / "family.csv")[0] == 0
+
+
+def test_a_family_without_a_start_is_refused(run: Run) -> None:
+    code, _, err = run("study", "family", "III", "--energy", "0.3")
+    assert code == 2
+    assert "Choose an orbit first" in err

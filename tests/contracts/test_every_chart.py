@@ -30,6 +30,9 @@ CHARTS = {
     "fitted on logarithmic axes": Chart(replace(FRAME, logarithmic="xy"), [POINTS]),
     "of one point": Chart(FRAME, [replace(POINTS, x=np.array([0.2]), y=np.array([0.0]))]),
     "of bars": Chart(FRAME, [Series("", "#123456", np.array([1.0, 2.0]), np.array([3.0, 4.0]), Shape.BARS, EDGES)]),
+    "of rings": Chart(FRAME, [replace(POINTS, shape=Shape.RINGS, notes=("one", "two", "three"))]),
+    "of crosses": Chart(FRAME, [replace(POINTS, shape=Shape.CROSSES)]),
+    "of a thick line": Chart(FRAME, [replace(POINTS, shape=Shape.THICK)]),
     "without points": Chart(FRAME, [replace(POINTS, x=np.zeros(0), y=np.zeros(0))]),
     "without points, logarithmic": Chart(replace(FRAME, logarithmic="xy"), []),
 }

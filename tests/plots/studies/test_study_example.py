@@ -23,7 +23,7 @@ from plots.texts.exports import table_csv
 from tests.plots.studies.study_example import study_of_periods
 
 SYSTEM = System("II")
-SUBJECT = Subject(SYSTEM, SYSTEM.potential, Plane.X_PX, 0.2, review_system(SYSTEM).energies, 1e3)
+SUBJECT = Subject(SYSTEM, SYSTEM.potential, Plane.X_PX, 0.2, review_system(SYSTEM).energies, 1e3, state=(0.1, 0.0, 0.0, 0.4))
 
 
 @pytest.mark.parametrize("study", [*STUDIES.values(), study_of_periods()], ids=lambda study: study.name)
