@@ -44,7 +44,7 @@ from engine import System
 from engine.jobs.client import JobClient
 from engine.systems.system import TYPED
 from plots.studies.section import SECTION_STUDY
-from plots.studies.table import STUDIES
+from plots.studies.table import STUDIES, studies_by_tab
 
 
 class Explorer:
@@ -117,7 +117,7 @@ class Explorer:
                 Analysis.ORBIT: [lambda: [self.orbits.inspector.layout(), self.gallery.invitation()]],
                 Analysis.STATISTICS: self.statistics.parts(),
                 Analysis.MEASURES: self.analyses.measures.parts(),
-                **{name: [study.view.build] for name, study in self.studies.items()},
+                **{name: [self.studies[each].view.build for each in names] for name, names in studies_by_tab().items()},
                 SECTION_STUDY.name: [section.view.build, lambda: [LiveSection(state, results, locked, section.change)]],
                 Analysis.WATCH: [self._build_watch],
             },

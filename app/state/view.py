@@ -16,7 +16,7 @@ from engine.systems.review.potential_review import SystemReview
 from plots.layers.table import LAYERS
 from plots.layers.table import PICTURES as PICTURE_ENTRIES
 from plots.pictures.setting import Setting, Settings
-from plots.studies.table import STUDIES
+from plots.studies.table import STUDIES, studies_by_tab
 
 Start = tuple[float, float]
 """x and ordinate of a start in the plane."""
@@ -31,8 +31,8 @@ class Analysis(StrEnum):
     WATCH = "watch"
 
 
-ANALYSES = (Analysis.ORBIT, Analysis.STATISTICS, Analysis.MEASURES, *STUDIES, Analysis.WATCH)
-"""Names of all analyses beside the maps, studies included, in the order of their tabs."""
+ANALYSES = (Analysis.ORBIT, Analysis.STATISTICS, Analysis.MEASURES, *studies_by_tab(), Analysis.WATCH)
+"""Names of all analyses beside the maps that have a tab, studies included, in the order of their tabs."""
 
 _FIRST_SYSTEM = System("I")
 

@@ -125,6 +125,7 @@ def _name(point: SpecialPoint) -> str:
 FAMILY_STUDY = Study(
     name="family",
     title="Family",
+    tab="periodic",
     button="Follow the family",
     hint="The family of the periodic orbit nearest to the chosen orbit, against h, with its special points: a few seconds.",
     axes=lambda system: (ENERGY,),

@@ -69,6 +69,8 @@ class Study[Found: Result]:
         Name in links and for the command ``study``. It must not change.
     title
         Label of the tab.
+    tab
+        Name of another study in whose tab this one is shown as well; empty for a tab of its own.
     button
         Label of the button that starts the job; empty for a study that follows the map.
     hint
@@ -118,6 +120,7 @@ class Study[Found: Result]:
     progress: Callable[[Found], float] = lambda found: 1.0
     follows_map: bool = False
     button: str = ""
+    tab: str = ""
     settings: tuple[Setting, ...] = ()
 
     def call(self, job: Job[Found]) -> Job[Found]:

@@ -16,3 +16,10 @@ _ENTRIES: tuple[Study[Any], ...] = (SECTION_STUDY, PERIODIC_STUDY, AGAINST, FAMI
 
 STUDIES: Mapping[str, Study[Any]] = MappingProxyType({study.name: study for study in _ENTRIES})
 """The studies by name, in the order of their tabs."""
+
+
+def studies_by_tab() -> dict[str, list[str]]:
+    """Return the names of the studies in the tab of each study that has one."""
+    return {
+        name: [name, *(each for each, other in STUDIES.items() if other.tab == name)] for name in STUDIES if not STUDIES[name].tab
+    }

@@ -73,9 +73,11 @@ class StudyView:
         }
         self._charts_in_turns = InTurns([partial(self._build_chart, chart) for chart in self._charts.values()], self._add, later)
         self._plots = pn.Column(sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=["charts"], visible=False)
+        self._choices = [setting_choice(state, setting) for setting in study.settings]
+        self._row = flex_row(gap="8px", align="end")
+        self._row.css_classes = ["whole-row"]
         state.follow(self._follow_system, "system")
         state.follow(lambda energy: self._mark(), "energy")
-        self._choices = [setting_choice(state, setting) for setting in study.settings]
         state.param.watch(lambda *events: self._redraw(), ["palette", *(["settings"] if study.settings else [])])
 
     @property
@@ -98,6 +100,7 @@ class StudyView:
         # A choice that the new system lacks is replaced by the first one.
         value = self.against.value if self.against.value in labels else next(iter(labels), None)
         self.against.param.update(options=options, value=value, visible=len(options) > 1)
+        self._row.objects = self._inputs()
 
     def _mark(self) -> None:
         """Mark the energy of the view, or the value of the parameter in the system of the view."""
@@ -147,9 +150,11 @@ class StudyView:
 
     def build(self) -> list[pn.viewable.Viewable]:
         """Return the button, the text, and the container of the figures. The first result adds the figures."""
-        row = flex_row(*self._choices, self.against, self.button, gap="8px", align="end")
-        row.css_classes = ["whole-row"]
-        return [row, self.text, self._plots]
+        return [self._row, self.text, self._plots]
+
+    def _inputs(self) -> list[pn.viewable.Viewable]:
+        """Return the inputs that are shown. Hidden ones would add elements to the page."""
+        return [*self._choices, *(each for each in (self.against, self.button) if each.visible)]
 
     def _build_chart(self, chart: ChartView) -> list[pn.viewable.Viewable]:
         view = chart.build({Tap: lambda event: self._on_click(event.x, event.y)})

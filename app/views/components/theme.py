@@ -54,6 +54,11 @@ class ExplorerDesign(Design):
     _themes = {"default": PlainTheme, "dark": PlainTheme}  # noqa: RUF012
 
     @classmethod
+    def loading_css(cls) -> str:
+        """Return no rules: no component shows Panel's loading indicator, and each would have a stylesheet for it."""
+        return ""
+
+    @classmethod
     def _patch_modifiers(cls, doc: Document | None, modifiers: dict[str, Any], cache: dict[str, Any] | None) -> None:
         if "stylesheets" in modifiers:
             sheets = cache if cache is not None else {}
