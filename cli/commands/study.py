@@ -70,7 +70,11 @@ def run(
     energies = review_system(system).energies
     chosen_energy = energies.first if energy is None else energy
     has_start = start is not None or state is not None
-    chosen_state = find_state(potential, plane, None if state else chosen_energy, start, state) if has_start else None
+    if has_start != entry.needs_orbit:
+        must = "needs" if entry.needs_orbit else "does not depend on"
+        raise ValueError(f"start: the study {entry.name} {must} --start X ORDINATE or --state X Y PX PY")
+    energy_of_start = energy if state is not None or plane.energy_axis is not None else chosen_energy
+    chosen_state = find_state(potential, plane, energy_of_start, start, state) if has_start else None
     subject = Subject(system, potential, plane, chosen_energy, energies, t_max, section, state=chosen_state)
     job = entry.job(subject, _choose_axis(entry, system, against))
     stem = Path(stem_of(f"{entry.files}-{file_name_part(case)}", section))

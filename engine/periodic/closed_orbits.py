@@ -68,7 +68,7 @@ def _first_half(potential: Potential, orbit: Trial) -> tuple[np.ndarray, np.ndar
 def action(potential: Potential, orbit: Trial) -> float:
     """Return the integral of the canonical momentum along a closed orbit, whose derivative by the energy is the period.
 
-    In a frame that rotates at the rate Ω, the canonical momentum is (px − Ω y, py + Ω x).
+    In a frame that rotates at the rate Ω, the canonical momentum is (px − Ω y, py + Ω x). NaN if the orbit cannot be integrated.
     """
     parts = trace_parts(potential, orbit.states, orbit.part_durations)
     if parts is None:

@@ -173,11 +173,13 @@ class _Branch:
         bound = float(np.clip(end.orbit.energy, *self._bounds))
         if bound == end.orbit.energy:
             return segment, False
-        self.end = "the energy asked for is reached"
+        is_asked_for = bound != self._bounds[not self.rising]
+        self.end = "the energy asked for is reached" if is_asked_for else "it turns back to the lowest or highest energy"
         share = (bound - begin.orbit.energy) / (end.orbit.energy - begin.orbit.energy)
         guess = begin.orbit.moved(begin.orbit.vector + share * (end.orbit.vector - begin.orbit.vector))
         closed = close_orbit(self._potential, self._section, guess._replace(energy=bound))
         if closed is None:
+            self.end = "its member at the last energy is not found"
             return segment, True
         return Segment(begin, Member.of(self._potential, *closed, end.direction)), True
 
@@ -229,7 +231,7 @@ def _slowness(potential: Potential, orbit: Trial) -> float:
 
 def _joined(orbit: PeriodicOrbit, branches: list[_Branch], *, complete: bool) -> OrbitFamily:
     """Return the family of branches on one or both sides of an orbit, from its lower to its higher end."""
-    entries = [_Entry(orbit, [])]
+    entries = [_Entry(orbit, [located for branch in branches for located in branch.entries[0].special])]
     ends = ["it was continued from this orbit"] * 2
     for branch in branches:
         ends[branch.rising] = branch.end

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -10,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from engine.foundations.arrays import read_only
-from engine.foundations.validation import checked_between, checked_count, checked_number
+from engine.foundations.validation import checked_count, checked_number
 from engine.foundations.wording import format_count, format_number
 from engine.periodic.periodic_orbit import DIGITS, STATE_COLUMNS, PeriodicOrbit, ResultOnSection, Stability
 from engine.periodic.shooting import close_orbit
@@ -45,7 +44,7 @@ class SpecialPoint:
     turns, periods
         m and n of a resonance m : n; 0 for another kind.
     converged
-        Whether the point was located, to about 1e-12; otherwise it lies between this member and the next one.
+        Whether the point was located, to about 1e-12; otherwise it lies between this member and a neighbour.
     """
 
     kind: SpecialKind
@@ -179,9 +178,12 @@ class OrbitFamily(ResultOnSection):
         if not self.special:
             raise ValueError(f"number={number}: the family has no special points")
         point = self.special[checked_count("number", number, 0, len(self.special) - 1)]
-        if point.kind not in _PERIODS_OF_BRANCHES:
-            raise ValueError(f"number={number}: no other family is followed from a {point.name}")
-        step = math.copysign(checked_between("step", abs(step), *_STEPS), step)
+        legal = [k for k, each in enumerate(self.special) if each.kind in _PERIODS_OF_BRANCHES and each.converged]
+        if number not in legal:
+            raise ValueError(f"number={number}: no other family is followed from this {point.name}; must be one of {legal}")
+        step = checked_number("step", step)
+        if not _STEPS[0] <= abs(step) <= _STEPS[1]:
+            raise ValueError(f"step={step:g}: must be from {_STEPS[0]:g} to {_STEPS[1]:g} in magnitude")
         neighbours = self[max(point.member - 1, 0)], self[min(point.member + 1, len(self) - 1)]
         orbit = first_orbit_of_branch(self[point.member], neighbours, _PERIODS_OF_BRANCHES[point.kind], step)
         if orbit is None:

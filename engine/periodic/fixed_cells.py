@@ -19,7 +19,7 @@ def cells_near_zero(displacements: np.ndarray, *, also_incomplete: bool = False)
     corners = np.stack([displacements[:-1, :-1], displacements[:-1, 1:], displacements[1:, 1:], displacements[1:, :-1]])
     low, high = corners.min(axis=0), corners.max(axis=0)
     margin = _WIDENING * (high - low)
-    # NaN is no range.
+    # Comparisons with NaN are false.
     is_near = np.all((low - margin <= 0.0) & (high + margin >= 0.0), axis=-1)
     counts = np.isfinite(corners[..., 0]).sum(axis=0)
     return np.argwhere(is_near | (also_incomplete & (counts > 0) & (counts < 4)))
@@ -41,7 +41,7 @@ def cells_with_index(displacements: np.ndarray) -> np.ndarray:
     corners = [angle[:-1, :-1], angle[:-1, 1:], angle[1:, 1:], angle[1:, :-1]]
     steps = (later - earlier for earlier, later in zip(corners, np.roll(corners, -1, axis=0), strict=True))
     turns = sum((step + np.pi) % (2.0 * np.pi) - np.pi for step in steps)
-    # NaN is no index.
+    # Comparisons with NaN are false.
     return np.argwhere(np.abs(turns) > np.pi)
 
 

@@ -45,7 +45,7 @@ class Member(NamedTuple):
 def first_member(potential: Potential, section: Section, orbit: Trial, *, rising: bool) -> Member | None:
     """Return the first member of a family, from a closed orbit, in the direction of higher or lower energy.
 
-    None if the orbit cannot be integrated, or its energy does not change along the family.
+    None if the orbit cannot be integrated.
     """
     equations = linearise(potential, section, orbit)
     if equations is None:

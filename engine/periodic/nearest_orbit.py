@@ -135,6 +135,6 @@ def _reason(potential: Potential, section: Section, start: np.ndarray, returns: 
     """Return why no periodic orbit was found."""
     found = len(_returns_of(potential, section, start, returns + 1, t_max))
     if found <= returns:
-        word = format_count(returns, "return")
-        return f"no periodic orbit: the orbit of the start has no {word} to {section.place} until t_max={t_max:g}, as it leaves"
+        times = format_count(returns, "time")
+        return f"no periodic orbit: the orbit of the start does not return {times} to {section.place} before it ends or t_max={t_max:g}"
     return "no periodic orbit: Newton's method does not converge from this start; choose a start nearer to the orbit"

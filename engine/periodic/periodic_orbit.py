@@ -42,7 +42,7 @@ class Stability(StrEnum):
 
     @classmethod
     def of(cls, index: float) -> Stability:
-        """Return the stability that belongs to a stability index."""
+        """Return the stability that belongs to a stability index, a finite number."""
         return cls.STABLE if abs(index) <= 1.0 else cls.UNSTABLE if index > 1.0 else cls.REFLECTING
 
 

@@ -108,7 +108,7 @@ class PeriodicOrbits(Result):
     @property
     def points(self) -> np.ndarray:
         """(points, 2) all returns in the coordinates in which the section is drawn."""
-        return self.section.axes.points(np.column_stack([getattr(self, name) for name in STATE_COLUMNS]))
+        return self.section.axes.points(self.states)
 
     @property
     def returns(self) -> np.ndarray:
@@ -120,12 +120,22 @@ class PeriodicOrbits(Result):
         """(points,) the `Stability` of the orbit of each point."""
         return np.array([Stability.of(index) for index in self.stability_index], object)
 
+    @property
+    def states(self) -> np.ndarray:
+        """(points, 4) x, y, px, py at all returns."""
+        return np.column_stack([getattr(self, name) for name in STATE_COLUMNS])
+
     def nearest(self, x: float, ordinate: float) -> PeriodicOrbit | None:
         """Return the orbit with the return nearest to a place on the section; None if there is no orbit."""
+        point = self.nearest_point(x, ordinate)
+        return None if point is None else self[int(self.orbit[point]) - 1]
+
+    def nearest_point(self, x: float, ordinate: float) -> int | None:
+        """Return the number of the return nearest to a place in shares of the window, from 0; None if there is no orbit."""
         if not len(self):
             return None
-        steps = (self.points - [x, ordinate]) / np.maximum(np.ptp(self.points, axis=0), np.finfo(float).tiny)
-        return self[int(self.orbit[np.argmin(np.hypot(*steps.T))]) - 1]
+        sides = [high - low for low, high in self.spec.find_window().ranges]
+        return int(np.argmin(np.hypot(*((self.points - [x, ordinate]) / sides).T)))
 
     def describe(self) -> str:
         """Return the numbers of orbits in one sentence."""
@@ -173,7 +183,7 @@ def find_periodic_orbits(
     execution
         How the computation runs. When it is cancelled, orbits not found yet are missing.
     on_frame
-        Called with the orbits found so far, after each number of returns.
+        Called with the orbits found so far, after each number of returns but the last.
 
     Returns
     -------
@@ -192,6 +202,8 @@ def find_periodic_orbits(
     (7, [(6.2832, 'stable'), (6.8438, 'unstable')])
     """
     energy_of(spec)
+    if min(spec.resolution) < 2:
+        raise ValueError(f"spec: its resolution is {spec.resolution}; must be at least 2 columns and rows")
     returns = checked_count("returns", returns, 1, MOST_RETURNS)
     search = _Search(spec, returns, execution.part(1, 2))
     found = compute_returns(spec, returns, execution=execution.part(0, 2))
@@ -317,9 +329,11 @@ class _Search:
         return np.abs((self._points - place) / size).max(axis=1, initial=0.0)
 
     def result(self, *, complete: bool) -> PeriodicOrbits:
-        """Return the orbits found so far, by the number of returns, the period and the order in which they were found."""
+        """Return the orbits found so far, by the number of returns and the period of the original."""
         orbits = [orbit for orbit, _ in self._orbits]
-        order = sorted(range(len(orbits)), key=lambda k: (orbits[k].returns, round(orbits[k].period, DIGITS)))
+        originals = [(image_of or k) - 1 for k, (_, image_of) in enumerate(self._orbits, 1)]
+        # Images follow their originals, which were found before.
+        order = sorted(range(len(orbits)), key=lambda k: (orbits[k].returns, orbits[originals[k]].period, originals[k]))
         # Numbers from 1 in the new order; 0 stays 0.
         numbers = np.zeros(len(orbits) + 1, int)
         numbers[np.array(order, int) + 1] = np.arange(1, len(orbits) + 1)

@@ -184,7 +184,7 @@ def close_orbit(
 def _checked(potential: Potential, section: Section, trial: Trial) -> tuple[Trial, Equations] | None:
     """Return a corrected orbit with its equations; None if its parts do not join within `_LARGEST_GAP`.
 
-    Every state joins with itself after no time, which is no orbit.
+    A state after a time of 0 solves the equations as well, but is not an orbit.
     """
     equations = linearise(potential, section, trial)
     if equations is None or trial.durations.sum() < _SHORTEST_PERIOD:

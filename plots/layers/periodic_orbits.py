@@ -80,4 +80,4 @@ PERIODIC_ORBITS = Layer(
     over=Over(pictures=("curves", "basins", "times", "crossings", "characters"), legend=_entries, strokes=periodic_strokes),
     has_table=True,
 )
-"""Centres of islands, and the unstable orbits on which chaos and the boundaries of the basins hang."""
+"""Centres of islands, and the unstable orbits between them."""

@@ -60,8 +60,13 @@ def _job(subject: Subject, axis: str) -> Job[OrbitFamily]:
 
 
 def family_charts(family: OrbitFamily, palette: Palette, settings: Settings = NO_SETTINGS) -> list[Chart]:
-    """Return the charts of the returns, the stability index, the period and the action against the energy."""
-    # Rounding errors of 0 are no returns.
+    """Return the charts of the returns, the stability index, the period and the action against the energy.
+
+    Empty for a family with one member only.
+    """
+    if len(family) < 2:
+        return []
+    # Without rounding errors, which would fill the chart of returns that are all 0.
     returns = np.round(family.points, _RETURN_DECIMALS)
     axis = int(np.argmax(np.ptp(returns, axis=(0, 1))))
     curves = [one for k in range(family.returns) for one in _curves(family, returns[:, k, axis], labelled=k == 0)]
@@ -106,7 +111,7 @@ def _special(family: OrbitFamily, values: np.ndarray, label: str = "") -> list[S
 
 
 def _changes(subject: Subject, axis: str, family: OrbitFamily, x: float, y: float) -> Changes:
-    """Return the energy of the member nearest to the click, and its start."""
+    """Return the energy of the member nearest to the click, and the start of the first member of this energy."""
     member = family[int(np.argmin(np.abs(family.energy - x)))]
     return {"energy": member.energy, **start_through(family.section, subject.potential, member.state, member.energy)}
 
@@ -115,7 +120,10 @@ def _sentence(family: OrbitFamily) -> str:
     named = [_name(point) for point in family.special if point.kind is not SpecialKind.RESONANCE]
     more = f" and {len(named) - _MOST_NAMED} more" if len(named) > _MOST_NAMED else ""
     special = f" {', '.join(named[:_MOST_NAMED]).capitalize()}{more}." if named else ""
-    return f"{family.describe()}{special}{' Click a curve to open its energy.' if family.complete else ''}"
+    if not family.complete:
+        return f"{family.describe()}{special}"
+    ends = f" Lower end: {family.ends[0]}. Upper end: {family.ends[1]}."
+    return f"{family.describe()}{special}{ends}{' Click a curve to open its energy.' if len(family) > 1 else ''}"
 
 
 def _name(point: SpecialPoint) -> str:
@@ -126,6 +134,7 @@ FAMILY_STUDY = Study(
     name="family",
     title="Family",
     tab="periodic",
+    needs_orbit=True,
     button="Follow the family",
     hint="The family of the periodic orbit nearest to the chosen orbit, against h, with its special points: a few seconds.",
     axes=lambda system: (ENERGY,),

@@ -20,8 +20,8 @@ FRAME = Frame(
     "periodic",
     "Periodic orbits",
     ("", ""),
-    "Where periodic orbits return to the surface of section. A ring is a stable orbit: an island of regular orbits stands around "
-    "it. A cross is an unstable one: chaos and the boundaries of the basins hang on it. T is the period, and a the stability "
+    "Where periodic orbits return to the surface of section. A ring is a stable orbit, with an island of regular orbits around "
+    "it. A cross is an unstable one, near which orbits are chaotic or escape. T is the period, and a the stability "
     "index: an orbit is stable if a is between −1 and 1.",
     "@note<br>Click to follow the orbit from (@x{number}, @y{number})",
     described=Shape.RINGS,
@@ -42,6 +42,10 @@ UP_TO = Setting(
 def _job(subject: Subject, axis: str) -> Job[PeriodicOrbits]:
     section = subject.section
     plane, energy = section.slice_of_starts, subject.energy
+    if not section.is_drawn_on(plane):
+        raise ValueError(
+            f"Periodic orbits are not searched on {section.place}, whose points are on no slice. Choose y = 0 or x = 0."
+        )
     return periodic_job(MapSpec(subject.potential, plane, energy, window=subject.window, t_max=subject.t_max, section=section))
 
 
@@ -70,15 +74,13 @@ def note_of(orbit: PeriodicOrbit) -> str:
 
 def _changes(subject: Subject, axis: str, found: PeriodicOrbits, x: float, y: float) -> Changes:
     """Return the start of the orbit with the return nearest to the click, at this return."""
-    orbit = found.nearest(x, y)
-    if orbit is None:
-        return {}
-    nearest = np.argmin(np.hypot(*(orbit.points - [x, y]).T))
-    return start_through(found.section, subject.potential, orbit.states[nearest], subject.energy)
+    point = found.nearest_point(x, y)
+    return {} if point is None else start_through(found.section, subject.potential, found.states[point], subject.energy)
 
 
 def _sentence(found: PeriodicOrbits) -> str:
-    return f"{found.describe()}{' Click a point to follow its orbit.' if found.complete and len(found) else ''}"
+    can_click = found.complete and len(found) and found.section.plane is not None
+    return f"{found.describe()}{' Click a point to follow its orbit.' if can_click else ''}"
 
 
 PERIODIC_STUDY = Study(

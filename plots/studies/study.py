@@ -84,6 +84,8 @@ class Study[Found: Result]:
         The public function that returns the result for the arguments of the job; None if the job has this function.
     progress
         Returns the computed share of a result, 0 to 1.
+    needs_orbit
+        Whether the job is about the orbit of `Subject.state`; other studies do not depend on it.
     follows_map
         Whether the study takes so little time that it is computed for each map while its tab is open, without a button.
     sentence
@@ -121,6 +123,7 @@ class Study[Found: Result]:
     follows_map: bool = False
     button: str = ""
     tab: str = ""
+    needs_orbit: bool = False
     settings: tuple[Setting, ...] = ()
 
     def call(self, job: Job[Found]) -> Job[Found]:

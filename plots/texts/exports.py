@@ -11,8 +11,8 @@ from importlib.util import find_spec
 from textwrap import indent
 from typing import TYPE_CHECKING, Any
 
-import engine
 from engine import CASES, EscapeMap, MapSpec, Orbit, Potential, Result, Section, Slice, System, Window, judge_orbit
+from engine import __all__ as public_names  # type: ignore[attr-defined]
 from engine.jobs.job import Job
 from engine.results import OrbitVerdict
 from engine.systems.system import TYPED
@@ -132,7 +132,7 @@ def python_lines(spec: MapSpec, system: System, starts: Sequence[Sequence[float]
         "pyplot.show()",
     ]
     words = re.findall(r"\w+", "\n".join(lines))
-    names = sorted({*words}.intersection(vars(engine)["__all__"]))
+    names = sorted({*words}.intersection(public_names))
     imports = ["from matplotlib import pyplot", "", f"from escape_explorer import {', '.join(names)}", ""]
     return "\n".join([*imports, *lines]) + "\n"
 

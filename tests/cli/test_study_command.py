@@ -73,4 +73,7 @@ def test_a_family_begins_at_a_start_on_the_plane_or_at_a_state(run: Run, tmp_pat
 def test_a_family_without_a_start_is_refused(run: Run) -> None:
     code, _, err = run("study", "family", "III", "--energy", "0.3")
     assert code == 2
-    assert "Choose an orbit first" in err
+    assert "the study family needs --start X ORDINATE or --state X Y PX PY" in err
+    code, _, err = run("study", "section", "III", "--start", "0", "0")
+    assert code == 2
+    assert "the study section does not depend on --start" in err

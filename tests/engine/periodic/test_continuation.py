@@ -118,6 +118,15 @@ def test_the_family_says_why_it_ends() -> None:
     assert continue_family(orbit, 0.4, most_members=3).ends[1] == "the largest number of members is reached"
 
 
+def test_a_family_that_turns_back_to_its_first_energy_says_so() -> None:
+    straight = continue_family(find_periodic_orbit(III, [0.0, 0.0, 0.0, np.sqrt(0.4)], 1), 0.65)
+    number = [point.kind for point in straight.special].index(SpecialKind.BRANCHING)
+    branch = straight.switch(number, 1e-2)
+    # The energy falls from here to a fold, and rises again.
+    family = continue_family(branch, 0.5)
+    assert family.ends[0] == "it turns back to the lowest or highest energy"
+
+
 def test_a_family_that_tends_to_a_saddle_says_so() -> None:
     # The straight orbit of Hénon and Heiles tends to the orbit that is homoclinic to the saddle at h = 1/6.
     family = continue_family(find_periodic_orbit(HH, [0.0, 0.0, 0.0, np.sqrt(2.0 * 0.1666)], 1), 0.2)
@@ -153,7 +162,7 @@ def test_illegal_ranges_are_refused(until: object) -> None:
 def test_what_is_no_branch_is_refused(straight_in_iii: OrbitFamily) -> None:
     with pytest.raises(ValueError, match="number=99"):
         straight_in_iii.switch(99)
-    with pytest.raises(ValueError, match="no other family is followed from a resonance 1:"):
+    with pytest.raises(ValueError, match="no other family is followed from this resonance 1:"):
         straight_in_iii.switch(0)
     with pytest.raises(ValueError, match=r"step=0\.5"):
         straight_in_iii.switch([point.kind for point in straight_in_iii.special].index(SpecialKind.BRANCHING), 0.5)

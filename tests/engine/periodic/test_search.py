@@ -58,13 +58,12 @@ def test_images_name_the_orbit_of_which_they_are_images(found: PeriodicOrbits) -
             assert orbits[orbit - 1].period == pytest.approx(orbits[number - 1].period, rel=1e-9)
             assert orbits[number - 1].returns == orbits[orbit - 1].returns
     assert (found.image_of == 0).any()
+    assert (found.image_of > 0).any()
+    assert np.all(found.image_of < found.orbit)
 
 
-def test_stable_orbits_have_an_index_between_minus_1_and_1(found: PeriodicOrbits) -> None:
-    assert set(found.stability) >= {Stability.STABLE, Stability.UNSTABLE}
-    is_stable = found.stability == Stability.STABLE
-    assert np.all(np.abs(found.stability_index[is_stable]) <= 1.0)
-    assert np.all(np.abs(found.stability_index[~is_stable]) > 1.0)
+def test_orbits_of_all_kinds_of_stability_are_found(found: PeriodicOrbits) -> None:
+    assert set(found.stability) == set(Stability)
 
 
 def test_random_starts_find_no_other_orbit(found: PeriodicOrbits) -> None:
@@ -102,6 +101,14 @@ def test_a_point_is_found_by_its_place(found: PeriodicOrbits) -> None:
     assert orbit.period == pytest.approx(6.8438337339, abs=1e-9)
 
 
+def test_returns_on_a_line_are_told_apart_by_their_place() -> None:
+    on_axis = find_periodic_orbits(replace(SPEC, window=(-0.7, 0.7, -0.05, 0.05), resolution=(20, 2)), 1)
+    for x in (-0.6, 0.0, 0.6):
+        orbit = on_axis.nearest(x, 0.01)
+        assert orbit is not None
+        assert orbit.x[0] == pytest.approx(x, abs=0.01)
+
+
 def test_a_cancelled_search_is_not_complete() -> None:
     frames: list[PeriodicOrbits] = []
     cancel = threading.Event()
@@ -132,5 +139,7 @@ def test_energies_without_orbits_are_legal() -> None:
 def test_another_slice_than_that_of_the_section_is_refused() -> None:
     with pytest.raises(ValueError, match=r"spec: its plane is \(x, y\); must be the slice of its section y = 0"):
         find_periodic_orbits(replace(SPEC, plane=Plane.X_Y), 1)
+    with pytest.raises(ValueError, match=r"its resolution is \(1, 20\)"):
+        find_periodic_orbits(replace(SPEC, resolution=(1, 20)), 1)
     with pytest.raises(ValueError, match="returns=0"):
         find_periodic_orbits(SPEC, 0)

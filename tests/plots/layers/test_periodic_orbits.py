@@ -25,6 +25,9 @@ def found() -> PeriodicOrbits:
 
 def test_every_return_has_a_mark_in_the_colour_of_its_stability(found: PeriodicOrbits) -> None:
     assert found.most_returns == 1
+    marks = [len(stroke.lines) for stroke in periodic_strokes(found)]
+    stable = np.count_nonzero(found.stability == Stability.STABLE)
+    assert sum(marks) == stable + 2 * (len(found.orbit) - stable)
     for stroke in periodic_strokes(found):
         (kind,) = [kind for kind, colour in STABILITY_COLOURS.items() if colour == stroke.colour(PAPER)]
         points = found.points[found.stability == kind]
