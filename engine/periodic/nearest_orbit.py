@@ -136,5 +136,6 @@ def _reason(potential: Potential, section: Section, start: np.ndarray, returns: 
     found = len(_returns_of(potential, section, start, returns + 1, t_max))
     if found <= returns:
         times = format_count(returns, "time")
-        return f"no periodic orbit: the orbit of the start does not return {times} to {section.place} before it ends or t_max={t_max:g}"
+        end = f"before it ends or t_max={t_max:g}"
+        return f"no periodic orbit: the orbit of the start does not return {times} to {section.place} {end}"
     return "no periodic orbit: Newton's method does not converge from this start; choose a start nearer to the orbit"
