@@ -166,7 +166,8 @@ class OrbitFamily(ResultOnSection):
         Parameters
         ----------
         number
-            Number of the special point in `special`, from 0. Its kind must be branching, period doubling or touching.
+            Number of the special point in `special`, from 0. Its kind must be branching, period doubling or touching. Of the
+            branches at a touching point, one is followed.
         step
             Distance from the special point, 1e-8 to 0.1, in units of the well; a negative number for the other side.
 

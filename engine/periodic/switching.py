@@ -16,7 +16,8 @@ def first_orbit_of_branch(
 ) -> PeriodicOrbit | None:
     """Return an orbit at a distance from a special point, in a direction in which other orbits of that many periods meet it.
 
-    None if it is not found. At the point, the equations have two null vectors: along the family and along the branch.
+    None if it is not found. At the point, the equations have two null vectors: along the family and along the branch. At a
+    touching point there is a third one, along another branch, which is not followed.
 
     Parameters
     ----------

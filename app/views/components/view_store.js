@@ -8,6 +8,9 @@ const REST_MS = 90
 /** Longest pause between drags or steps of the wheel that share an entry of the browser's history, in ms. */
 const GESTURE_PAUSE_MS = 500
 
+/** Events at which a touch ends. */
+const TOUCH_ENDS = ["touchend", "touchcancel"]
+
 /** @param {any} model  of the component */
 export function connectStore(model) {
   const store = storeOf(model.document)
@@ -52,10 +55,10 @@ export function connectStore(model) {
   for (const range of [x, y]) for (const name of ["start", "end"]) range.connect(range.properties[name].change, take)
   // Bokeh reports the end of a drag at once, and a step of the wheel after half a second, but not the end of a touch by two fingers.
   figure.on_event("rangesupdate", endGesture)
-  document.addEventListener("touchend", endGesture)
+  for (const name of TOUCH_ENDS) document.addEventListener(name, endGesture)
   model.on("lifecycle:remove", () => {
     ignore()
-    document.removeEventListener("touchend", endGesture)
+    for (const name of TOUCH_ENDS) document.removeEventListener(name, endGesture)
   })
   follow()
 }

@@ -60,7 +60,10 @@ class ViewStore(JSComponent):
         self._show(window, self.window["count"])
 
     def go_to(self, window: Window) -> None:
-        """Show a window that was chosen elsewhere, and drop a move that the browser has not sent yet."""
+        """Show a window that was chosen elsewhere, and drop a move that the browser has not sent yet.
+
+        A window that is shown already, apart from rounding, changes nothing.
+        """
         self._show(window, self.window["count"] + 1)
 
     def _show(self, window: Window, count: int) -> None:
