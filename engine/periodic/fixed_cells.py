@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 # Widening of the range of displacements in a cell, as a share of it, beyond those at its corners.
@@ -13,10 +15,12 @@ _CORRECTIONS = 4
 def cells_near_zero(displacements: np.ndarray, *, also_incomplete: bool = False) -> np.ndarray:
     """Return the cells in which the displacement can vanish, of shape (n, 2): row and column of the first corner.
 
+    For displacements of shape (…, rows, columns, 2), of several grids, the indices of the grid precede the row.
+
     A cell is among them if 0 is within the range of the displacements at its corners, widened on both sides, for each coordinate.
     With `also_incomplete`, cells without the displacements of some of their corners are among them.
     """
-    corners = np.stack([displacements[:-1, :-1], displacements[:-1, 1:], displacements[1:, 1:], displacements[1:, :-1]])
+    corners = np.stack(_corners(displacements))
     low, high = corners.min(axis=0), corners.max(axis=0)
     margin = _WIDENING * (high - low)
     # Comparisons with NaN are false.
@@ -26,7 +30,7 @@ def cells_near_zero(displacements: np.ndarray, *, also_incomplete: bool = False)
 
 
 def cells_with_index(displacements: np.ndarray) -> np.ndarray:
-    """Return the cells whose corners have displacements that turn around, of shape (n, 2): row and column of the first corner.
+    """Return the cells whose corners have displacements that turn around, as `cells_near_zero` does.
 
     The index is the number of turns of the displacement on the way around a cell. It is +1 around a fixed point that is stable or
     unstable with reflection, and −1 around another unstable point (Greene 1979, J. Math. Phys. 20, 1183). A cell with two fixed
@@ -35,14 +39,18 @@ def cells_with_index(displacements: np.ndarray) -> np.ndarray:
     Parameters
     ----------
     displacements
-        (rows, columns, 2) the point after some returns minus the start; NaN for starts without these returns.
+        (…, rows, columns, 2) the point after some returns minus the start; NaN for starts without these returns.
     """
-    angle = np.arctan2(displacements[..., 1], displacements[..., 0])
-    corners = [angle[:-1, :-1], angle[:-1, 1:], angle[1:, 1:], angle[1:, :-1]]
-    steps = (later - earlier for earlier, later in zip(corners, np.roll(corners, -1, axis=0), strict=True))
+    corners = _corners(np.arctan2(displacements[..., 1:], displacements[..., :1]))
+    steps = (later[..., 0] - earlier[..., 0] for earlier, later in pairwise([*corners, corners[0]]))
     turns = sum((step + np.pi) % (2.0 * np.pi) - np.pi for step in steps)
     # Comparisons with NaN are false.
     return np.argwhere(np.abs(turns) > np.pi)
+
+
+def _corners(values: np.ndarray) -> list[np.ndarray]:
+    """Return the values (…, rows, columns, n) at the four corners of each cell, around the cell."""
+    return [values[..., :-1, :-1, :], values[..., :-1, 1:, :], values[..., 1:, 1:, :], values[..., 1:, :-1, :]]
 
 
 def zero_in_cell(displacements: np.ndarray, row: int, column: int) -> np.ndarray:

@@ -27,12 +27,16 @@ _COLUMNS = ("orbit", "time", *STATE_COLUMNS, "period", "stability_index", "actio
 _NUMBERS = ("orbit", "image_of")
 # Numbers of parts along each side of a cell, and of each such part.
 _FIRST_PARTS, _SECOND_PARTS = 6, 4
-# Largest displacement at an interpolated zero, as a share of the largest one at the corners.
-_SMALLER = 0.5
+# Number of starts that are followed at once, which limits memory.
+_STARTS_AT_ONCE = 20_000
+# Number of corrections of places, distance of the starts for their derivatives, and last correction of a fixed point, in cells.
+_CORRECTIONS, _DIFFERENCE, _CONVERGED = 12, 1e-6, 1e-5
+# Longest correction, in cells.
+_LONGEST = 0.1
 # Distance within which two points of orbits are the same, in cells; Newton's method leads farther only to another orbit.
 _SAME, _FARTHEST = 1e-5, 3.0
-# Distance from a known point within which no other one is searched, in parts of cells.
-_SEARCHED = 1.5
+# Distance from a known point within which a place is the same point, in cells.
+_SEARCHED = 1e-4
 
 
 @shows_progress("periodic orbits")
@@ -105,7 +109,6 @@ class _Search:
         x, ordinate = spec.pixel_centres()
         self.starts = np.stack(np.meshgrid(x, ordinate), axis=-1)
         self._cell = np.array([x[-1] - x[0], ordinate[-1] - ordinate[0]]) / np.maximum(np.array(spec.resolution) - 1, 1)
-        self._part = self._cell / (_FIRST_PARTS * _SECOND_PARTS)
         self._symmetries = symmetries_of(spec.potential)
         self._orbits: list[tuple[PeriodicOrbit, int]] = []
         self._points, self._counts = np.empty((0, 2)), np.empty(0, int)
@@ -114,16 +117,35 @@ class _Search:
         """Return the places, (k, 2), near which the n-th return has fixed points, given its displacements on the grid.
 
         In a cell, the return map can be far from linear. Cells in which the displacement can vanish are therefore divided, and
-        such parts again. Where the map jumps, the displacement at the interpolated zero is not smaller than at the corners.
+        such parts again. Where the map jumps, there is no fixed point, and the corrections do not converge.
         """
         cells = cells_near_zero(displacements, also_incomplete=True)
         corners, size = self.starts[cells[:, 0], cells[:, 1]], self._cell
         corners, size, _ = self._divided(n, corners, size, _FIRST_PARTS, cells_near_zero)
         corners, size, around = self._divided(n, corners, size, _SECOND_PARTS, cells_with_index)
         shares = np.array([zero_in_cell(part, 0, 0) for part in around]).reshape(-1, 2)
-        found = corners + size * shares
-        distances = np.hypot(*np.moveaxis(self._displacements(n, found), -1, 0))
-        return found[distances < _SMALLER * np.hypot(*np.moveaxis(around, -1, 0)).max(axis=(1, 2), initial=0.0)]
+        return self._corrected(n, corners + size * shares)
+
+    def _corrected(self, n: int, places: np.ndarray) -> np.ndarray:
+        """Return places (k, 2) after Newton's method for the displacement of the n-th return, where it converges nearby.
+
+        All places are corrected together. Derivatives are differences of neighbouring starts.
+        """
+        step, current = _DIFFERENCE * self._cell, places
+        neighbours = step * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
+        correction = np.full(places.shape, np.inf)
+        for _ in range(_CORRECTIONS):
+            value = self._displacements(n, current)
+            around = self._displacements(n, current[:, None] + neighbours)
+            (xx, yx), (xy, yy) = ((around[:, k] - around[:, k + 1]).T / (2.0 * step[k // 2]) for k in (0, 2))
+            # Places without a correction are NaN or infinite, and are left out.
+            with np.errstate(divide="ignore", invalid="ignore"):
+                correction = np.column_stack([yy * value[:, 0] - xy * value[:, 1], xx * value[:, 1] - yx * value[:, 0]])
+                correction /= (xx * yy - xy * yx)[:, None]
+            # Longer corrections are shortened.
+            current = current - correction / np.maximum(np.abs(correction / (_LONGEST * self._cell)).max(axis=1), 1.0)[:, None]
+        has_converged = np.all(np.abs(correction) < _CONVERGED * self._cell, axis=1)
+        return current[has_converged & np.all(np.abs(current - places) <= _FARTHEST * self._cell, axis=1)]
 
     def _divided(
         self, n: int, corners: np.ndarray, size: np.ndarray, parts: int, choose: Callable[[np.ndarray], np.ndarray]
@@ -131,29 +153,32 @@ class _Search:
         """Return the chosen parts of cells: their first corners (k, 2), size (2,) and displacements at corners (k, 2, 2, 2)."""
         shares = np.linspace(0.0, 1.0, parts + 1)
         grids = corners[:, None, None] + np.stack(np.meshgrid(shares, shares), axis=-1) * size
-        first, around = [np.empty((0, 2))], [np.empty((0, 2, 2, 2))]
-        for grid, displacements in zip(grids, self._displacements(n, grids), strict=True):
-            for row, column in choose(displacements):
-                first.append(grid[row, column][None])
-                around.append(displacements[row : row + 2, column : column + 2][None])
-        return np.concatenate(first), size / parts, np.concatenate(around)
+        displacements = self._displacements(n, grids)
+        cell, row, column = choose(displacements).T
+        around = [displacements[cell, row + i, column + j] for i in (0, 1) for j in (0, 1)]
+        return grids[cell, row, column], size / parts, np.stack(around, axis=1).reshape(-1, 2, 2, 2)
 
     def _displacements(self, n: int, places: np.ndarray) -> np.ndarray:
         """Return the displacements of the n-th return of starts at places (…, 2); NaN without this return."""
         spec, displacements = self._spec, np.full(places.shape, np.nan)
         states = spec.start_states(*places.reshape(-1, 2).T).reshape(*places.shape[:-1], 4)
         is_start = np.isfinite(states).all(axis=-1)
-        if is_start.any():
-            found = find_returns(
-                spec.potential, energy_of(spec), states[is_start], n, spec.t_max, section=spec.section,
-                execution=replace(self._execution, on_progress=None),
-            )  # fmt: skip
-            displacements[is_start] = spec.section.axes.points(found.states[n - 1]) - places[is_start]
+        parts = np.array_split(states[is_start], 1 + np.count_nonzero(is_start) // _STARTS_AT_ONCE)
+        points = [self._points_after(n, part) for part in parts if len(part)]
+        displacements[is_start] = np.concatenate([np.empty((0, 2)), *points]) - places[is_start]
         return displacements
 
+    def _points_after(self, n: int, states: np.ndarray) -> np.ndarray:
+        """Return the points of the n-th returns of states (k, 4), in the coordinates of the section."""
+        spec, execution = self._spec, replace(self._execution, on_progress=None)
+        found = find_returns(
+            spec.potential, energy_of(spec), states, n, spec.t_max, section=spec.section, execution=execution
+        )  # fmt: skip
+        return spec.section.axes.points(found.states[n - 1])
+
     def try_place(self, n: int, place: np.ndarray) -> None:
-        """Search for an orbit with n returns near a place, unless one is known within a part of a cell."""
-        is_near = self._distances(place, self._part) < _SEARCHED
+        """Search for an orbit with n returns near a place, unless one is known there."""
+        is_near = self._distances(place, self._cell) < _SEARCHED
         if np.any(is_near & (n % self._counts == 0)):
             return
         (start,) = self._spec.start_states(place[:1], place[1:])
