@@ -202,7 +202,9 @@ class ViewState(param.Parameterized):
     def subject(self) -> Subject:
         """What the studies of the view are about."""
         window = self.window if self.section.is_drawn_on(self.plane) else None
-        state = None if self.chosen_start is None else self.start_state(self.chosen_start)
+        # Along a parameter, starts belong to other potentials.
+        start = self.chosen_start if self.plane.parameter is None else None
+        state = None if start is None else self.start_state(start)
         return Subject(
             self.system, self.potential, self.plane, self.energy, self.energies, self.t_max, self.section, window, state
         )

@@ -10,7 +10,7 @@ import pytest
 
 from app.state.view import default_settings
 from app.state.view_state import ViewState
-from engine import CASES, Plane, System, Window, read_section
+from engine import CASES, Coordinate, ParameterAxis, Plane, Slice, System, Window, read_section
 from engine.systems.catalogue.table import PAPER_ENERGIES
 from plots.pictures.palette import MOST_ORBITS
 
@@ -107,3 +107,13 @@ def test_a_study_has_the_window_of_a_map_with_the_axes_of_the_section() -> None:
         section = read_section(text)
         subject = ViewState(plane=section.slice_of_starts, section=section, window=window).subject
         assert subject.window == (window if text == "x = 0" else None)
+
+
+def test_a_study_has_the_state_of_the_chosen_start_on_a_slice_of_one_potential() -> None:
+    state = ViewState(starts=((0.1, 0.2),), chosen=0)
+    x, y, px, py = state.subject.state or ()
+    assert (x, y, px) == (0.1, 0.0, 0.2)
+    assert state.potential.energy(np.array([x, y, px, py])) == pytest.approx(state.energy)
+    along = Slice(Coordinate.X, ParameterAxis("epsilon", 0.5, 1.5, state.system), Coordinate.PY, 1)
+    state.param.update(plane=along, starts=((0.1, 0.9),), chosen=0)
+    assert state.subject.state is None
