@@ -171,14 +171,12 @@ class _Search:
     def _points_after(self, n: int, states: np.ndarray) -> np.ndarray:
         """Return the points of the n-th returns of states (k, 4), in the coordinates of the section."""
         spec, execution = self._spec, replace(self._execution, on_progress=None)
-        found = find_returns(
-            spec.potential, energy_of(spec), states, n, spec.t_max, section=spec.section, execution=execution
-        )  # fmt: skip
+        found = find_returns(spec.potential, energy_of(spec), states, n, spec.t_max, section=spec.section, execution=execution)
         return spec.section.axes.points(found.states[n - 1])
 
     def try_place(self, n: int, place: np.ndarray) -> None:
         """Search for an orbit with n returns near a place, unless one is known there."""
-        is_near = self._distances(place, self._cell) < _SEARCHED
+        is_near = self._distances(place) < _SEARCHED
         if np.any(is_near & (n % self._counts == 0)):
             return
         (start,) = self._spec.start_states(place[:1], place[1:])
@@ -203,7 +201,7 @@ class _Search:
     def _is_known(self, state: np.ndarray, returns: int) -> bool:
         """Return whether a state on the section, in units of the well, is on a known orbit with this number of returns."""
         place = self._spec.section.axes.points(state * self._spec.potential.units.state)
-        return bool(np.any((self._distances(place, self._cell) < _SAME) & (self._counts == returns)))
+        return bool(np.any((self._distances(place) < _SAME) & (self._counts == returns)))
 
     def _add_images(self, orbit: PeriodicOrbit) -> None:
         """Add the images of the orbit that was added last, unless they are known."""
@@ -225,9 +223,9 @@ class _Search:
         self._points = np.vstack([self._points, orbit.points])
         self._counts = np.append(self._counts, np.full(orbit.returns, orbit.returns))
 
-    def _distances(self, place: np.ndarray, size: np.ndarray) -> np.ndarray:
-        """Return the distances of all known points from a place, in units of a size (2,)."""
-        return np.abs((self._points - place) / size).max(axis=1, initial=0.0)
+    def _distances(self, place: np.ndarray) -> np.ndarray:
+        """Return the distances of all known points from a place, in cells."""
+        return np.abs((self._points - place) / self._cell).max(axis=1, initial=0.0)
 
     def result(self, *, complete: bool) -> PeriodicOrbits:
         """Return the orbits found so far, by the number of returns and the period of the original."""
