@@ -14,7 +14,7 @@ from engine.foundations.wording import format_count, format_number
 from engine.periodic.periodic_orbit import DIGITS, STATE_COLUMNS, PeriodicOrbit, ResultOnSection, Stability
 from engine.periodic.shooting import close_orbit
 from engine.periodic.special_points import SpecialKind
-from engine.periodic.switching import first_orbit_of_branch
+from engine.periodic.switching import first_orbits_of_branches
 from engine.slices.sections.section_text import section_of_file
 
 if TYPE_CHECKING:
@@ -23,10 +23,12 @@ if TYPE_CHECKING:
 NUMBERS = ("energy", "period", "stability_index", "action")
 """Attributes that are numbers of each member."""
 
-# Periods of the family after which the orbits of a branch close.
+# Periods of the family after which the orbits of a branch close; a resonance m : n has its own number n.
 _PERIODS_OF_BRANCHES = {SpecialKind.BRANCHING: 1, SpecialKind.DOUBLING: 2, SpecialKind.TOUCHING: 2}
-# Smallest and largest distance of the first orbit of a branch from the special point, and the default, in units of the well.
-_STEPS, _STEP = (1e-8, 0.1), 1e-3
+# Kinds of points at which all orbits near the orbit close, to first order in their distance.
+_ALL_CLOSE = SpecialKind.TOUCHING, SpecialKind.RESONANCE
+# Smallest and largest distance of the first orbits of branches from the special point, and those tried, in units of the well.
+_STEPS, _DEFAULT_STEPS = (1e-6, 0.5), (0.01, 0.02, 0.04, 0.08, 0.16, 0.32)
 
 
 @dataclass(frozen=True)
@@ -160,16 +162,21 @@ class OrbitFamily(ResultOnSection):
         closed = close_orbit(self.potential.in_well_units, self.section.in_well_units(units), guess)
         return None if closed is None else PeriodicOrbit.from_trial(self.potential, self.section, closed[0])
 
-    def switch(self, number: int, step: float = _STEP) -> PeriodicOrbit:
-        """Return an orbit of the family that branches off at a special point, near that point, to be continued.
+    def switch(self, number: int, step: float | None = None) -> tuple[PeriodicOrbit, ...]:
+        """Return orbits of the other families that meet this one at a special point, one for each branch found, to be continued.
+
+        Where the family branches, there is one on each side; at a period doubling there is one. At a resonance and at a touching
+        point there are usually two: those of a chain of islands and of the unstable orbits between them, or one below and one
+        above the energy of the point.
 
         Parameters
         ----------
         number
-            Number of the special point in `special`, from 0. Its kind must be branching, period doubling or touching. Of the
-            branches at a touching point, one is followed.
+            Number of the special point in `special`, from 0. Its kind must not be fold, because no other family meets there.
         step
-            Distance from the special point, 1e-8 to 0.1, in units of the well; a negative number for the other side.
+            Distance of the orbits from the special point, 1e-6 to 0.5, in units of the well; None for the smallest of 0.01, 0.02,
+            0.04 to 0.32 at which orbits are found. Nearer to a resonance m : n with a large n, all orbits close within rounding
+            errors.
 
         Raises
         ------
@@ -179,17 +186,19 @@ class OrbitFamily(ResultOnSection):
         if not self.special:
             raise ValueError(f"number={number}: the family has no special points")
         point = self.special[checked_count("number", number, 0, len(self.special) - 1)]
-        legal = [k for k, each in enumerate(self.special) if each.kind in _PERIODS_OF_BRANCHES and each.converged]
+        legal = [k for k, each in enumerate(self.special) if each.kind is not SpecialKind.FOLD and each.converged]
         if number not in legal:
             raise ValueError(f"number={number}: no other family is followed from this {point.name}; must be one of {legal}")
-        step = checked_number("step", step)
-        if not _STEPS[0] <= abs(step) <= _STEPS[1]:
-            raise ValueError(f"step={step:g}: must be from {_STEPS[0]:g} to {_STEPS[1]:g} in magnitude")
+        if step is not None and not _STEPS[0] <= (step := checked_number("step", step)) <= _STEPS[1]:
+            raise ValueError(f"step={step:g}: must be from {_STEPS[0]:g} to {_STEPS[1]:g}")
         neighbours = self[max(point.member - 1, 0)], self[min(point.member + 1, len(self) - 1)]
-        orbit = first_orbit_of_branch(self[point.member], neighbours, _PERIODS_OF_BRANCHES[point.kind], step)
-        if orbit is None:
-            raise ValueError(f"step={step:g}: no orbit of a branch was found at this distance; choose another one")
-        return orbit
+        periods = point.periods or _PERIODS_OF_BRANCHES[point.kind]
+        dimensions = 2 if point.kind in _ALL_CLOSE else 1
+        for distance in _DEFAULT_STEPS if step is None else (step,):
+            orbits = first_orbits_of_branches(self[point.member], neighbours, periods, dimensions, distance)
+            if orbits:
+                return tuple(orbits)
+        raise ValueError(f"step={step}: no orbit of a branch was found at this distance; choose another one")
 
     def describe(self) -> str:
         """Describe the family in a sentence."""

@@ -57,7 +57,7 @@ def test_family_g_of_hills_problem_loses_its_stability_where_henon_found_it() ->
     assert family.states[point.member, 0, 0] == pytest.approx(0.2834967478, abs=1e-8)
     assert point.period == pytest.approx(1.2258745653, abs=1e-8)
     # The other family, g', is not symmetric about the y axis.
-    branch = family.switch(family.special.index(point))
+    branch, _ = family.switch(family.special.index(point))
     (of_family,) = family.at(branch.energy)
     assert abs(branch.x[0] - of_family.x[0]) > 1e-4
 
@@ -80,7 +80,7 @@ def test_the_slope_of_the_action_is_the_period(straight_in_hh: OrbitFamily) -> N
 def test_a_family_is_followed_through_its_fold() -> None:
     straight = continue_family(find_periodic_orbit(III, [0.0, 0.0, 0.0, np.sqrt(0.4)], 1), 0.65)
     number = [point.kind for point in straight.special].index(SpecialKind.BRANCHING)
-    family = continue_family(straight.switch(number, 1e-2), (0.5, 0.7))
+    family = continue_family(straight.switch(number)[0], (0.5, 0.7))
     folds = [point for point in family.special if point.kind is SpecialKind.FOLD]
     # The branch begins below the point at which it is born, turns, and crosses the energy of this point again.
     assert min(point.energy for point in folds) < straight.special[number].energy < family.energy.max()
@@ -92,7 +92,7 @@ def test_a_family_is_followed_through_its_fold() -> None:
 
 def test_a_doubled_orbit_has_twice_the_returns_and_period(straight_in_hh: OrbitFamily) -> None:
     number = [point.kind for point in straight_in_hh.special].index(SpecialKind.DOUBLING)
-    branch = straight_in_hh.switch(number)
+    (branch,) = straight_in_hh.switch(number, 1e-3)
     assert branch.returns == 2
     assert branch.period == pytest.approx(2.0 * straight_in_hh.special[number].period, rel=1e-4)
     assert abs(branch.x[0]) > 1e-5
@@ -100,7 +100,7 @@ def test_a_doubled_orbit_has_twice_the_returns_and_period(straight_in_hh: OrbitF
 
 def test_both_sides_of_a_branch_are_mirror_images(straight_in_iii: OrbitFamily) -> None:
     number = [point.kind for point in straight_in_iii.special].index(SpecialKind.BRANCHING)
-    one, other = straight_in_iii.switch(number), straight_in_iii.switch(number, -1e-3)
+    one, other = straight_in_iii.switch(number)
     np.testing.assert_allclose(other.states * [-1.0, 1.0, -1.0, 1.0], one.states, atol=1e-9)
 
 
@@ -121,7 +121,7 @@ def test_the_family_says_why_it_ends() -> None:
 def test_a_family_that_turns_back_to_its_first_energy_says_so() -> None:
     straight = continue_family(find_periodic_orbit(III, [0.0, 0.0, 0.0, np.sqrt(0.4)], 1), 0.65)
     number = [point.kind for point in straight.special].index(SpecialKind.BRANCHING)
-    branch = straight.switch(number, 1e-2)
+    branch = straight.switch(number)[0]
     # The energy falls from here to a fold, and rises again.
     family = continue_family(branch, 0.5)
     assert family.ends[0] == "it turns back to the lowest or highest energy"
@@ -162,7 +162,43 @@ def test_illegal_ranges_are_refused(until: object) -> None:
 def test_what_is_no_branch_is_refused(straight_in_iii: OrbitFamily) -> None:
     with pytest.raises(ValueError, match="number=99"):
         straight_in_iii.switch(99)
-    with pytest.raises(ValueError, match="no other family is followed from this resonance 1:"):
-        straight_in_iii.switch(0)
-    with pytest.raises(ValueError, match=r"step=0\.5"):
-        straight_in_iii.switch([point.kind for point in straight_in_iii.special].index(SpecialKind.BRANCHING), 0.5)
+    with pytest.raises(ValueError, match=r"step=0\.6"):
+        straight_in_iii.switch(0, 0.6)
+
+
+def test_no_family_is_followed_from_a_fold() -> None:
+    branch = continue_family(find_periodic_orbit(III, [0.0, 0.0, 0.0, np.sqrt(0.4)], 1), 0.65)
+    branch = continue_family(branch.switch([point.kind for point in branch.special].index(SpecialKind.BRANCHING))[0], 0.55)
+    number = [point.kind for point in branch.special].index(SpecialKind.FOLD)
+    with pytest.raises(ValueError, match="no other family is followed from this fold"):
+        branch.switch(number)
+
+
+# Birkhoff 1913, Trans. Amer. Math. Soc. 14, 14: orbits of a chain of islands alternate with unstable ones.
+@pytest.mark.parametrize(("turns", "returns"), [(1, 5), (1, 3), (2, 5), (1, 6)])
+def test_a_stable_and_an_unstable_orbit_are_born_at_a_resonance(straight_in_hh: OrbitFamily, turns: int, returns: int) -> None:
+    number = [point.name for point in straight_in_hh.special].index(f"resonance {turns}:{returns}")
+    point = straight_in_hh.special[number]
+    branches = straight_in_hh.switch(number, 0.05)
+    assert {orbit.returns for orbit in branches} == {returns}
+    excess = [orbit.stability_index - 1.0 for orbit in branches]
+    assert min(excess) < 0.0 < max(excess)
+    assert max(excess) == pytest.approx(-min(excess), rel=0.2)
+    for orbit in branches:
+        assert orbit.period == pytest.approx(returns * point.period, rel=0.01)
+        assert find_periodic_orbit(HH, orbit.state, returns).period == pytest.approx(orbit.period, rel=1e-9)
+
+
+def test_the_orbits_of_a_branch_approach_the_special_point(straight_in_hh: OrbitFamily) -> None:
+    number = [point.name for point in straight_in_hh.special].index("resonance 1:3")
+    point = straight_in_hh.special[number]
+    distances = [min(abs(orbit.energy - point.energy) for orbit in straight_in_hh.switch(number, step)) for step in (0.02, 0.04)]
+    # The energy changes with the square of the distance.
+    assert distances[1] == pytest.approx(4.0 * distances[0], rel=0.05)
+
+
+def test_several_families_meet_a_touching_orbit(straight_in_iii: OrbitFamily) -> None:
+    number = [point.kind for point in straight_in_iii.special].index(SpecialKind.TOUCHING)
+    branches = straight_in_iii.switch(number, 0.02)
+    assert {orbit.returns for orbit in branches} == {2}
+    assert min(orbit.stability_index for orbit in branches) < 1.0 < max(orbit.stability_index for orbit in branches)
