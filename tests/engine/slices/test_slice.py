@@ -190,10 +190,11 @@ def test_mirror_images_of_any_slice_are_reflected_states(shape: tuple[int, int],
     if images is not None:
         np.testing.assert_array_equal(states[images], reflected)
     else:
-        # The reflection of a start is no other start of the slice. Starts that are their own images are left out.
+        # The reflection of some start is no start of the slice. Starts that are their own images are left out.
         exists = np.isfinite(states).all(axis=1)
         others = exists & np.any(states != reflected, axis=1)
-        assert not np.any(np.all(states[exists][:, None] == reflected[others], axis=2))
+        has_image = np.any(np.all(states[exists][:, None] == reflected[others], axis=2), axis=0)
+        assert not others.any() or not has_image.all()
 
 
 @given(slices())
