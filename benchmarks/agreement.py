@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from engine import MapSpec, System, Trust, compute_map, compute_trust
-from tests.app.browser.test_agreement import expected_fate, random_specs, run_views
+from tests.plots.browser.test_agreement import expected_fate, random_specs, run_views
 
 SYSTEMS = ("I", "III", "C5", "HH", "Barred galaxy", "Copenhagen", "Two Yukawa centres")
 # Numbers of zooms from the whole plane to each view.

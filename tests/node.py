@@ -1,4 +1,4 @@
-"""Run the scripts for Node.js that are in the folder of the tests of app/browser."""
+"""Run the scripts for Node.js that are in the folder of the tests of plots/browser."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import pytest
 from engine.integrator.portable_kernels import kernel_module
 from tests.waiting import SECONDS
 
-SCRIPTS = Path(__file__).parent / "app" / "browser"
+_SCRIPTS = Path(__file__).parent / "plots" / "browser"
 
 needs_node = pytest.mark.skipif(shutil.which("node") is None, reason="Node.js is not installed")
 
@@ -30,7 +30,7 @@ def run_node(script: str, data: dict[str, Any], folder: Path) -> Any:
             (folder / name).write_bytes(value)
             data[name] = str(folder / name)
     (folder / "input.json").write_text(json.dumps(data))
-    command = ["node", str(SCRIPTS / script), str(folder / "input.json")]
+    command = ["node", str(_SCRIPTS / script), str(folder / "input.json")]
     done = subprocess.run(command, capture_output=True, text=True, timeout=SECONDS, check=False)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)

@@ -15,30 +15,34 @@ from tornado.web import RequestHandler, StaticFileHandler
 
 from engine.integrator.portable_kernels import kernel_module, module_digest
 
-MODULES_FOLDER = Path(__file__).parent / "modules"
-"""Folder of the modules."""
+_ROOT = Path(__file__).parents[2]
+# Folders of the modules: those that need the page, and those that do not.
+_FOLDERS = "app/browser/modules", "plots/browser/modules"
 
-NUMBERS_MODULE = MODULES_FOLDER / "numbers.js"
+NUMBERS_MODULE = _ROOT / "plots/browser/modules/numbers.js"
 """Module that writes numbers as text. Callbacks of Bokeh and components also use it."""
 
 
 def _digest() -> str:
     """Return a hash of all modules and of the sources of the kernels."""
     digest = hashlib.sha256(module_digest().encode())
-    for path in sorted(MODULES_FOLDER.rglob("*.js")):
-        digest.update(path.name.encode() + path.read_bytes())
+    for folder in _FOLDERS:
+        for path in sorted((_ROOT / folder).rglob("*.js")):
+            digest.update(path.name.encode() + path.read_bytes())
     return digest.hexdigest()[:16]
 
 
 _FOLDER = f"browser/{_digest()}"
+# The modules import each other by their places in the project.
+_PAGE_FOLDER = f"{_FOLDER}/{_FOLDERS[0]}"
 
-ADDRESS = f"{_FOLDER}/main.js"
+ADDRESS = f"{_PAGE_FOLDER}/main.js"
 """Address of the first module, relative to the page."""
 
-WATCH_ADDRESS = f"{_FOLDER}/gestures/watch.js"
+WATCH_ADDRESS = f"{_PAGE_FOLDER}/gestures/watch.js"
 """Address of the module of the ensemble player, which the page loads when the player is first shown."""
 
-LIVE_SECTION_ADDRESS = f"{_FOLDER}/gestures/live_section.js"
+LIVE_SECTION_ADDRESS = f"{_PAGE_FOLDER}/gestures/live_section.js"
 """Address of the module of the live section, which the page loads when the section is first shown."""
 
 KERNELS_ADDRESS = f"{_FOLDER}/kernels.wasm"
@@ -77,7 +81,7 @@ class KernelsHandler(RequestHandler):
 
 
 ROUTES: tuple[tuple[str, type[RequestHandler], dict[str, Any]], ...] = (
-    (rf"/{_FOLDER}/((?:[a-z]+/)?[a-z_]+\.js)", ModuleHandler, {"path": str(MODULES_FOLDER)}),
+    (rf"/{_FOLDER}/([a-z]+/browser/modules/(?:[a-z]+/)?[a-z_]+\.js)", ModuleHandler, {"path": str(_ROOT)}),
     (f"/{KERNELS_ADDRESS}", KernelsHandler, {}),
 )
 """Paths below the server's prefix, with their handlers and the handlers' arguments."""

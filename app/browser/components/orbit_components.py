@@ -9,7 +9,7 @@ from typing import Any
 import param
 from panel.custom import JSComponent
 
-from app.browser.javascript import component_code
+from plots.browser.javascript import component_code
 
 
 class OrbitList(JSComponent):

@@ -1,5 +1,5 @@
 // @ts-check
-import {number} from "../modules/numbers.js"
+import {number} from "../../../plots/browser/modules/numbers.js"
 
 /**
  * A button and a slider for the time along the orbits. The steps from `begin` to `end` are played in a loop, and each is sent.

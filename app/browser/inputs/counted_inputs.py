@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import param
 from panel.custom import JSComponent
 
-from app.browser.javascript import component_code
+from plots.browser.javascript import component_code
 
 LONGEST_TYPED = 4000
 """Largest length of a typed text, in characters. The box cuts longer texts silently, so this is larger than the limit for

@@ -2,11 +2,11 @@
 /** Connects the component on the page (`app/views/panels/engine_component.py`) with the modules. */
 
 import {Card} from "./gestures/card.js"
-import {Frames} from "./workers/frames.js"
+import {Frames} from "../../../plots/browser/modules/workers/frames.js"
 import {highlightPixels} from "./painting/legend.js"
 import {Overlay} from "./painting/overlay.js"
-import {EnergyPlayer} from "./gestures/player.js"
-import {Pool, workerCount} from "./workers/pool.js"
+import {EnergyPlayer} from "../../../plots/browser/modules/gestures/player.js"
+import {Pool, workerCount} from "../../../plots/browser/modules/workers/pool.js"
 import {setPresent} from "./gestures/present.js"
 import {Preview} from "./gestures/preview.js"
 import {storeOf} from "./view_store.js"
@@ -41,8 +41,9 @@ export function start(model, el) {
     find(picture)
       .renderers.map((/** @type {any} */ renderer) => renderer.data_source)
       .find((/** @type {any} */ source) => source?.name === name)
-  const kernels = WebAssembly.compileStreaming(fetch(new URL("./kernels.wasm", import.meta.url)))
-  const pool = new Pool(() => new Worker(new URL("./workers/worker.js", import.meta.url), {type: "module"}))
+  const kernels = WebAssembly.compileStreaming(fetch(new URL("../../../kernels.wasm", import.meta.url)))
+  const worker = new URL("../../../plots/browser/modules/workers/worker.js", import.meta.url)
+  const pool = new Pool(() => new Worker(worker, {type: "module"}))
   const frames = new Frames(pool, workerCount(), (view, pixels, isMoving) => preview.show(view, pixels, isMoving))
   const store = storeOf(model.document)
   /** @type {Preview} */
@@ -62,7 +63,7 @@ export function start(model, el) {
     () => model.view,
   )
   // The last system from the server, and its compiled modules.
-  /** @type {{system: import("./engine/system.js").System, modules: import("./engine/integrator.js").Modules} | null} */
+  /** @type {{system: import("../../../plots/browser/modules/engine/system.js").System, modules: import("../../../plots/browser/modules/engine/integrator.js").Modules} | null} */
   let compiled = null
   const updatePresent = () => {
     const colours = () => model.view.colours ?? []

@@ -9,7 +9,6 @@ import numpy as np
 import param
 from panel.custom import JSComponent
 
-from app.browser.browser_system import slice_name, window_in_browser
 from app.browser.module_files import LIVE_SECTION_ADDRESS
 from app.job_clients.latest_request import Locked
 from app.job_clients.shown_results import ShownResults
@@ -17,6 +16,7 @@ from app.state.view_state import ViewState
 from app.views.components.widgets import LOADED_MODULE
 from engine import Section, Slice, System
 from engine.foundations.validation import LARGEST_NUMBER
+from plots.browser.browser_system import slice_name, window_in_browser
 from plots.pictures.setting import Settings
 from plots.studies.section import CELLS, COLOURS, DENSITIES, RETURNS, SECTION_STUDY, density_colours, start_through
 from plots.studies.study import Changes

@@ -10,9 +10,9 @@ import numpy as np
 import panel as pn
 from bokeh.models import CustomJSTickFormatter
 
-from app.browser.javascript import callback_code
 from app.browser.module_files import NUMBERS_MODULE
 from app.views.components.plots import CHART_BORDERS, chart_hover, style_chart
+from plots.browser.javascript import callback_code
 from plots.pictures.charts import Chart, Frame, Series, Shape
 from plots.pictures.holoviews_elements import axis_options, chart_elements
 from plots.pictures.palette import MEASURED

@@ -27,10 +27,10 @@ from bokeh.models import (
 from bokeh.models.dom import HTML
 from bokeh.plotting import figure
 
-from app.browser.javascript import callback_code
 from app.browser.module_files import NUMBERS_MODULE
 from app.state.help_texts import HELP_TEXTS, title_with_help
 from engine import Window
+from plots.browser.javascript import callback_code
 from plots.pictures.axis_labels import find_offset
 from plots.pictures.histories import logarithmic_limits
 

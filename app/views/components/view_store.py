@@ -12,11 +12,11 @@ import param
 from bokeh.models import Range1d
 from panel.custom import JSComponent
 
-from app.browser.browser_system import WINDOW_EDGES, window_in_browser
 from app.job_clients.latest_request import Locked
 from app.state.view_state import ViewState
 from engine import MapSpec, Window
 from engine.maps.spec import finest_pixel
+from plots.browser.browser_system import WINDOW_EDGES, window_in_browser
 
 
 class ViewStore(JSComponent):

@@ -6,10 +6,10 @@ from pathlib import Path
 
 from bokeh.models import ColumnDataSource, CustomJSHover, HoverTool, Range1d
 
-from app.browser.javascript import callback_code
 from app.views.components.plots import hover_html
 from engine import Evidence, Fate
 from engine.propagation.fates import describe_evidence
+from plots.browser.javascript import callback_code
 from plots.layers.table import LAYERS
 from plots.pictures.image_columns import FIRST_CLASS
 from plots.pictures.palette import CROSSING_CLASSES, OUTCOMES

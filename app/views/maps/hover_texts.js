@@ -1,5 +1,5 @@
 // @ts-check
-import {number} from "../../browser/modules/numbers.js"
+import {number} from "../../../plots/browser/modules/numbers.js"
 
 /**
  * Texts of Bokeh's hover tools; `app/browser/javascript.py` makes callbacks of these functions.

@@ -10,7 +10,6 @@ import numpy as np
 from bokeh.models import ColumnDataSource, MultiLine, Text
 from bokeh.plotting import figure
 
-from app.browser.browser_system import EXIT_NUMBER_DISTANCE
 from app.state.view_state import ViewState
 from app.views.components.plots import LaterGlyphs, SourcedGlyphs, with_gaps
 from app.views.components.theme import theme_colour, theme_line
@@ -18,6 +17,7 @@ from engine import LyapunovOrbit, MapSpec, find_lyapunov_orbits
 from engine.slices.limiting_curves import trace_equipotentials, trace_zero_velocity_curve
 from engine.systems.review.energy_ranges import depth_levels
 from engine.systems.review.potential_review import critical_energies
+from plots.browser.browser_system import EXIT_NUMBER_DISTANCE
 from plots.pictures.palette import LIGHT, MOST_CHANNELS, Entry
 
 # Number of maps whose curves are cached.

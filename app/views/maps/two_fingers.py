@@ -8,7 +8,7 @@ from bokeh.events import Pinch, PinchStart
 from bokeh.models import CustomJS, Range1d
 from bokeh.plotting import figure
 
-from app.browser.javascript import callback_code
+from plots.browser.javascript import callback_code
 
 _FOLLOW_CODE = callback_code(Path(__file__).with_name("two_fingers.js"), "followFingers(cb_obj, ranges, held)")
 

@@ -9,8 +9,6 @@ from typing import Any
 
 import param
 
-from app.browser.browser_system import BrowserSystem, make_browser_system, slice_name, system_key
-from app.browser.javascript import component_code
 from app.browser.module_files import ADDRESS
 from app.job_clients.latest_request import LatestRequest, Locked
 from app.job_clients.shown_results import ShownResults
@@ -19,6 +17,8 @@ from app.views.components.view_store import ViewStore
 from engine import EscapeMap, Window
 from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job, Queue
+from plots.browser.browser_system import BrowserSystem, make_browser_system, slice_name, system_key
+from plots.browser.javascript import component_code
 from plots.layers.map_images import LAYER_COLUMNS
 from plots.pictures.image_columns import pixel_coding
 

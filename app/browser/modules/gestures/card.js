@@ -4,12 +4,13 @@
  * map. A finger shows orbits after it has rested on a map, also while it then moves.
  */
 
-import {exitLines, LimitingCurves} from "../engine/curves.js"
-import {Integrator} from "../engine/integrator.js"
-import {findPath} from "../engine/path.js"
-import {windowAt} from "../engine/starts.js"
-import {number} from "../numbers.js"
-import {cover, mapPictures, strokeLine, wellPicture} from "../painting/pictures.js"
+import {LimitingCurves} from "../../../../plots/browser/modules/engine/curves.js"
+import {Integrator} from "../../../../plots/browser/modules/engine/integrator.js"
+import {findPath} from "../../../../plots/browser/modules/engine/path.js"
+import {windowAt} from "../../../../plots/browser/modules/engine/starts.js"
+import {cover} from "../../../../plots/browser/modules/painting/canvas.js"
+import {drawOrbit} from "../../../../plots/browser/modules/painting/orbit_drawing.js"
+import {mapPictures, wellPicture} from "../painting/pictures.js"
 
 /** Longest time for which an orbit is followed, in units of the well. */
 const LONGEST_TIME = 200
@@ -21,44 +22,14 @@ const PRESS_PIXELS = 8
 const CLICK_PIXELS = 12
 /** Side of the card over the only map, as a share of the width of the map. */
 const SHARE_OF_MAP = 0.55
-/** Radius of the point that marks the start, in pixels. */
-const START_RADIUS = 3.5
-/** Space around the text, in pixels. */
-const PADDING = 6
-/** Height of the line of text, in pixels. */
-const TEXT_HEIGHT = 22
 const STYLE = `position:fixed;pointer-events:none;z-index:5;display:none;background:var(--ui-page,#fff);
   border:1px solid var(--ui-edge,#ccc);border-radius:4px;box-sizing:border-box`
-
-/**
- * Describe the outcome of an orbit.
- *
- * @param {Pick<import("../engine/path.js").Path, "channel" | "time" | "crossings">} path
- * @param {number} unit  unit of time of the well, in units of the page
- * @param {string[]} labels  of the outcomes, exits first
- */
-export function describeOutcome({channel, time, crossings}, unit, labels) {
-  const crossingCount = crossings === 1 ? "1 crossing" : `${crossings} crossings`
-  const label = labels[channel - 1] ?? "inside until"
-  return `${label[0].toUpperCase()}${label.slice(1)} ${channel > 0 ? "at " : ""}t = ${number(time * unit)}, ${crossingCount}`
-}
-
-/**
- * Return the points of an orbit in units of the page.
- *
- * @param {Pick<import("../engine/path.js").Path, "x" | "y">} path
- * @param {{length: number}} units  units of the well, in units of the page
- */
-export function toPageUnits({x, y}, {length}) {
-  const [xs, ys] = [x, y].map(values => values.map(value => value * length))
-  return {xs, ys}
-}
 
 /** Shows the orbit under the pointer, for as long as the page exists. */
 export class Card {
   /**
    * @param {HTMLElement} el  gets the card
-   * @param {() => import("../workers/frames.js").Scene | null} scene  what the pictures show
+   * @param {() => import("../../../../plots/browser/modules/workers/frames.js").Scene | null} scene  what the pictures show
    * @param {() => any} maps  the columns of the data source of the maps
    * @param {() => {colours: string[], labels: string[]}} view  colours and labels of the outcomes
    */
@@ -98,8 +69,8 @@ export class Card {
   #clickPoint = null
 
   /**
-   * @param {import("../engine/system.js").System} system
-   * @param {import("../engine/integrator.js").Modules} modules
+   * @param {import("../../../../plots/browser/modules/engine/system.js").System} system
+   * @param {import("../../../../plots/browser/modules/engine/integrator.js").Modules} modules
    */
   setSystem(system, modules) {
     this.#integrator = new Integrator(system, modules)
@@ -203,7 +174,7 @@ export class Card {
    *
    * @param {import("../painting/pictures.js").Picture} picture  under the pointer
    * @param {number} pointerLeft  distance of the pointer from the left of the screen, in pixels
-   * @param {import("../engine/path.js").Path} path
+   * @param {import("../../../../plots/browser/modules/engine/path.js").Path} path
    */
   #draw(picture, pointerLeft, path) {
     const [integrator, context] = [this.#integrator, this.#canvas.getContext("2d")]
@@ -217,37 +188,8 @@ export class Card {
     context.clearRect(0, 0, box.width, box.height)
     const style = getComputedStyle(this.#canvas)
     const [ink, paper] = ["--ui-ink", "--ui-page"].map(name => style.getPropertyValue(name))
-    const draw = strokeLine.bind(null, context, window, box)
     const limit = this.#limits.trace(integrator, {slice: system.space, window, energy})
-    for (const line of limit) draw(line, ink, 1.5)
-    const {colours, labels} = this.#view()
-    for (const {channel, xs, ys} of exitLines(integrator, energy)) draw({xs, ys}, colours[channel - 1], 3)
-    const {xs, ys} = toPageUnits(path, system.units)
-    draw({xs, ys}, path.channel > 0 ? colours[path.channel - 1] : ink, 1)
-    context.fillStyle = ink
-    context.beginPath()
-    const scale = box.width / (window.xHigh - window.xLow)
-    context.arc((xs[0] - window.xLow) * scale, (window.ordinateHigh - ys[0]) * scale, START_RADIUS, 0, 2 * Math.PI)
-    context.fill()
-    this.#writeText(context, describeOutcome(path, system.units.time, labels), box, ink, paper)
-  }
-
-  /**
-   * Write text in the lower left corner, and for screen readers.
-   *
-   * @param {CanvasRenderingContext2D} context
-   * @param {string} text
-   * @param {DOMRect} box
-   * @param {string} ink  colour of the text
-   * @param {string} paper  colour behind the text
-   */
-  #writeText(context, text, box, ink, paper) {
-    context.font = "12px system-ui, sans-serif"
-    context.fillStyle = paper
-    context.fillRect(0, box.height - TEXT_HEIGHT, context.measureText(text).width + 2 * PADDING, TEXT_HEIGHT)
-    context.fillStyle = ink
-    // On a small card the text is compressed.
-    context.fillText(text, PADDING, box.height - PADDING, box.width - 2 * PADDING)
+    const text = drawOrbit(context, box, integrator, {window, limit, path, ink, paper, ...this.#view()})
     this.#canvas.setAttribute("aria-label", text)
   }
 }

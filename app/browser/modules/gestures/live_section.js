@@ -4,11 +4,11 @@
  * the server's chart of this energy is complete.
  */
 
-import {Integrator} from "../engine/integrator.js"
-import {Returns} from "../engine/returns.js"
-import {isNearWindow, windowAt} from "../engine/starts.js"
-import {number} from "../numbers.js"
-import {sameEnergy} from "../painting/columns.js"
+import {Integrator} from "../../../../plots/browser/modules/engine/integrator.js"
+import {Returns} from "../../../../plots/browser/modules/engine/returns.js"
+import {isNearWindow, windowAt} from "../../../../plots/browser/modules/engine/starts.js"
+import {number} from "../../../../plots/browser/modules/numbers.js"
+import {sameEnergy} from "../../../../plots/browser/modules/painting/columns.js"
 import {Dots} from "../painting/dots.js"
 import {LocalWhenPresent} from "../painting/local.js"
 import {pictureNamed} from "../painting/pictures.js"
@@ -31,7 +31,7 @@ const DIGITS = 6
  * @property {import("./present.js").Shown} shown
  * @property {import("../painting/pictures.js").Picture} chart
  * @property {number} energy
- * @property {import("../engine/starts.js").Window | null} window  that of the map; null for the default window
+ * @property {import("../../../../plots/browser/modules/engine/starts.js").Window | null} window  that of the map; null for the default window
  */
 
 class LiveSection {
@@ -175,8 +175,8 @@ class LiveSection {
    * Show the window of the map, or a default window unless that of the chart is near it; return the window that is shown.
    *
    * @param {import("../painting/pictures.js").Picture} chart
-   * @param {import("../engine/starts.js").Window | null} mapWindow
-   * @param {import("../engine/starts.js").Window | null} defaultWindow
+   * @param {import("../../../../plots/browser/modules/engine/starts.js").Window | null} mapWindow
+   * @param {import("../../../../plots/browser/modules/engine/starts.js").Window | null} defaultWindow
    */
   #showWindow({view}, mapWindow, defaultWindow) {
     const {x_range: x, y_range: y} = view.model

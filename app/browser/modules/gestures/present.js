@@ -3,9 +3,9 @@
  * What the page shows now, which `main.js` sets for modules that are loaded later.
  *
  * @typedef {object} Shown
- * @property {import("../engine/system.js").System} system
- * @property {import("../engine/integrator.js").Modules} modules
- * @property {() => import("../workers/frames.js").Scene | null} scene  slice, energy and window; null if not computable here
+ * @property {import("../../../../plots/browser/modules/engine/system.js").System} system
+ * @property {import("../../../../plots/browser/modules/engine/integrator.js").Modules} modules
+ * @property {() => import("../../../../plots/browser/modules/workers/frames.js").Scene | null} scene  slice, energy and window; null if not computable here
  * @property {() => string[]} colours  of the outcomes, exits first
  * @property {() => string[]} labels  of the outcomes
  * @property {HTMLElement} host  for canvases over the pictures

@@ -4,14 +4,14 @@
  * view is complete or has at least as many pixels.
  */
 
-import {exitLines, LimitingCurves} from "../engine/curves.js"
-import {Integrator} from "../engine/integrator.js"
-import {energyAxis, isNearWindow, showsPositions, windowAt} from "../engine/starts.js"
-import {coversEnergy} from "../engine/system.js"
-import {pixelColumns, sameEnergy, showsScene} from "../painting/columns.js"
+import {exitLines, LimitingCurves} from "../../../../plots/browser/modules/engine/curves.js"
+import {Integrator} from "../../../../plots/browser/modules/engine/integrator.js"
+import {energyAxis, isNearWindow, showsPositions, windowAt} from "../../../../plots/browser/modules/engine/starts.js"
+import {coversEnergy} from "../../../../plots/browser/modules/engine/system.js"
+import {pixelColumns, sameEnergy, showsScene} from "../../../../plots/browser/modules/painting/columns.js"
 import {Local, LocalWhenPresent} from "../painting/local.js"
 import {Outlines} from "../painting/outlines.js"
-import {LEAST_SIDE} from "../workers/frames.js"
+import {LEAST_SIDE} from "../../../../plots/browser/modules/workers/frames.js"
 
 /**
  * The view as the server describes it.
@@ -19,11 +19,11 @@ import {LEAST_SIDE} from "../workers/frames.js"
  * @typedef {object} ServerView
  * @property {string} system  key of the system
  * @property {string} plane  name of the slice
- * @property {import("../engine/system.js").Slice | null} slice  null for a slice that only the server can compute
+ * @property {import("../../../../plots/browser/modules/engine/system.js").Slice | null} slice  null for a slice that only the server can compute
  * @property {boolean} home  whether the window is the default window of its energy
  * @property {string[]} colours  of the outcomes, exits first
  * @property {string[]} labels  of the outcomes
- * @property {import("../painting/columns.js").Coding} coding
+ * @property {import("../../../../plots/browser/modules/painting/columns.js").Coding} coding
  * @property {number} resolution  pixels along a side of the server's map
  */
 
@@ -37,7 +37,7 @@ export class Preview {
   /**
    * @param {FindModel} find
    * @param {(picture: string, name: string) => any} findSource  finds a data source of a picture
-   * @param {import("../workers/frames.js").Frames} frames
+   * @param {import("../../../../plots/browser/modules/workers/frames.js").Frames} frames
    * @param {import("../painting/overlay.js").Overlay} overlay
    * @param {import("../view_store.js").ViewStore} store
    */
@@ -65,20 +65,20 @@ export class Preview {
   #status
   #mapCurves = new LimitingCurves()
   #wellCurves = new LimitingCurves()
-  /** @type {import("../engine/system.js").System | null} */
+  /** @type {import("../../../../plots/browser/modules/engine/system.js").System | null} */
   #system = null
   /** @type {Integrator | null} */
   #integrator = null
   /** @type {ServerView | null} */
   #view = null
-  /** The preview on the page. @type {import("../engine/pixels.js").View | null} */
+  /** The preview on the page. @type {import("../../../../plots/browser/modules/engine/pixels.js").View | null} */
   #shownView = null
 
   /**
    * Set the system of the view, or of the next view.
    *
-   * @param {import("../engine/system.js").System} system
-   * @param {import("../engine/integrator.js").Modules} modules
+   * @param {import("../../../../plots/browser/modules/engine/system.js").System} system
+   * @param {import("../../../../plots/browser/modules/engine/integrator.js").Modules} modules
    */
   setSystem(system, modules) {
     this.#system = system
@@ -94,7 +94,7 @@ export class Preview {
     if (viewChanged) this.#restore()
   }
 
-  /** The scene to show; null if the browser cannot compute it. @returns {import("../workers/frames.js").Scene | null} */
+  /** The scene to show; null if the browser cannot compute it. @returns {import("../../../../plots/browser/modules/workers/frames.js").Scene | null} */
   get scene() {
     const [view, system, window] = [this.#view, this.#system, this.#sceneWindow]
     if (!view?.slice || !system || view.system !== system.key || !window) return null
@@ -110,7 +110,7 @@ export class Preview {
     return this.#view?.home && this.#view.system === this.#system?.key && this.#energy.isNewer && !this.#window.isNewer
   }
 
-  /** The window on the page, or to be shown with the pixels. @returns {import("../engine/starts.js").Window | null} */
+  /** The window on the page, or to be shown with the pixels. @returns {import("../../../../plots/browser/modules/engine/starts.js").Window | null} */
   get #sceneWindow() {
     const [view, integrator, shown] = [this.#view, this.#integrator, this.#window.value]
     if (!this.#followsDefault || !view || !integrator || !shown) return shown
@@ -146,8 +146,8 @@ export class Preview {
   /**
    * Show a preview: in Bokeh's pictures, or while the energy moves, on canvases over these pictures.
    *
-   * @param {import("../engine/pixels.js").View} view
-   * @param {import("../engine/pixels.js").Pixels} pixels
+   * @param {import("../../../../plots/browser/modules/engine/pixels.js").View} view
+   * @param {import("../../../../plots/browser/modules/engine/pixels.js").Pixels} pixels
    * @param {boolean} isMoving  whether another preview may follow in the next frame
    */
   show(view, pixels, isMoving) {
@@ -186,7 +186,7 @@ export class Preview {
    * Return the window and the zero-velocity curve of the well; null on a slice with an axis h, where the well does not change.
    *
    * @param {Integrator} integrator
-   * @param {import("../engine/pixels.js").View} view
+   * @param {import("../../../../plots/browser/modules/engine/pixels.js").View} view
    */
   #traceWell(integrator, {slice, energy}) {
     const {system} = integrator
@@ -210,7 +210,7 @@ const findStatus = () => [...Bokeh.index.all_views()].find(view => view.model.cs
 /**
  * Return the scene of a view.
  *
- * @param {import("../engine/pixels.js").View} view
- * @returns {import("../workers/frames.js").Scene}
+ * @param {import("../../../../plots/browser/modules/engine/pixels.js").View} view
+ * @returns {import("../../../../plots/browser/modules/workers/frames.js").Scene}
  */
 const sceneOf = ({slice, energy, window, mostPixels}) => ({slice, energy, window, mostPixels})

@@ -1,12 +1,13 @@
 // @ts-check
 /** The player of an ensemble: its controls, particles over the well and the section, counters, and the chart of survival. */
 
-import {Ensemble, Outcomes} from "../engine/ensemble.js"
-import {Integrator} from "../engine/integrator.js"
-import {drawStarts} from "../engine/random_starts.js"
-import {energyAxis, windowAt} from "../engine/starts.js"
-import {count as whole, number, percentWithDecimal} from "../numbers.js"
-import {cover, mapPictures, onMoved, wellPicture} from "../painting/pictures.js"
+import {Ensemble, Outcomes} from "../../../../plots/browser/modules/engine/ensemble.js"
+import {Integrator} from "../../../../plots/browser/modules/engine/integrator.js"
+import {drawStarts} from "../../../../plots/browser/modules/engine/random_starts.js"
+import {energyAxis, windowAt} from "../../../../plots/browser/modules/engine/starts.js"
+import {count as whole, number, percentWithDecimal} from "../../../../plots/browser/modules/numbers.js"
+import {cover} from "../../../../plots/browser/modules/painting/canvas.js"
+import {mapPictures, onMoved, wellPicture} from "../painting/pictures.js"
 import {drawSurvival} from "../painting/survival_chart.js"
 import {onPresent, present} from "./present.js"
 
@@ -214,7 +215,7 @@ class EnsemblePlayer {
    * Make the ensemble of random starts, and prepare the search for its outcomes.
    *
    * @param {import("./present.js").Shown} shown
-   * @param {import("../workers/frames.js").Scene} scene
+   * @param {import("../../../../plots/browser/modules/workers/frames.js").Scene} scene
    */
   #makeEnsemble({system, modules}, scene) {
     const {where, count, seed, radius, point, box} = this.#model
@@ -343,7 +344,7 @@ class EnsemblePlayer {
    *
    * @param {HTMLCanvasElement} canvas
    * @param {DOMRect} box
-   * @param {import("../engine/starts.js").Window} window
+   * @param {import("../../../../plots/browser/modules/engine/starts.js").Window} window
    * @param {string[]} colours  of the outcomes
    * @param {{xs: Float64Array, ys: Float64Array, units: [number, number]}} points  a point for each orbit
    */

@@ -23,7 +23,7 @@ export class Dots {
   /**
    * @param {CanvasRenderingContext2D} context
    * @param {{width: number, height: number}} box  the frame that the window fills, in pixels
-   * @param {import("../engine/starts.js").Window} window
+   * @param {import("../../../../plots/browser/modules/engine/starts.js").Window} window
    * @param {Colouring} colouring
    */
   constructor(context, box, window, colouring) {

@@ -5,7 +5,7 @@ import {LocalWhenPresent} from "./local.js"
 
 /**
  * @typedef {{xs: number[], ys: number[]}} Line
- * @typedef {ReturnType<typeof import("../engine/curves.js").exitLines>[number] & {colour: string}} Exit
+ * @typedef {ReturnType<typeof import("../../../../plots/browser/modules/engine/curves.js").exitLines>[number] & {colour: string}} Exit
  */
 
 export class Outlines {

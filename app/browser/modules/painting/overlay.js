@@ -4,7 +4,9 @@
  * the browser takes to compute the pixels. Palettes and styles of lines come from the models of Bokeh.
  */
 
-import {cover, mapPictures, strokeLine, wellPicture} from "./pictures.js"
+import {cover, strokeLine} from "../../../../plots/browser/modules/painting/canvas.js"
+import {PixelImage} from "../../../../plots/browser/modules/painting/pixel_image.js"
+import {mapPictures, wellPicture} from "./pictures.js"
 
 /** Style of the canvases, which are below cards and drawers. */
 const STYLE = "position:fixed;pointer-events:none;z-index:1;display:none;background:var(--ui-page)"
@@ -14,10 +16,10 @@ const STYLE = "position:fixed;pointer-events:none;z-index:1;display:none;backgro
  *
  * @typedef {object} Painting
  * @property {number} energy
- * @property {import("../engine/starts.js").Window} window
- * @property {import("./columns.js").Columns} columns
+ * @property {import("../../../../plots/browser/modules/engine/starts.js").Window} window
+ * @property {import("../../../../plots/browser/modules/painting/columns.js").Columns} columns
  * @property {Lines} lines  of the maps
- * @property {{window: import("../engine/starts.js").Window, lines: Lines} | null} well  null for a well that does not change
+ * @property {{window: import("../../../../plots/browser/modules/engine/starts.js").Window, lines: Lines} | null} well  null for a well that does not change
  *
  * Lines by the names of Bokeh's data sources.
  *
@@ -34,7 +36,7 @@ export class Overlay {
   #el
   /** @type {Map<string, HTMLCanvasElement>} */
   #canvases = new Map()
-  #pixels = document.createElement("canvas")
+  #image = new PixelImage()
   #isShown = false
 
   /** Paint all pictures on their canvases, and the well if it changes. @param {Painting} painting */
@@ -45,7 +47,7 @@ export class Overlay {
       const context = this.#canvasFor(view.model.name, box, energy)
       if (!context) continue
       for (const {glyph, data_source: source} of view.model.renderers) {
-        if (source.name === "maps") this.#paintImage(context, box, columns[glyph.image.field][0], glyph.color_mapper)
+        if (source.name === "maps") this.#image.paint(context, box, columns[glyph.image.field][0], glyph.color_mapper)
       }
       strokeLines(context, view.model, window, box, lines)
       context.canvas.dataset.side = String(columns.fate[0].shape[0])
@@ -83,26 +85,6 @@ export class Overlay {
     return context
   }
 
-  /**
-   * Paint an image pixel by pixel, then enlarge it to the size of the box.
-   *
-   * @param {CanvasRenderingContext2D} context
-   * @param {DOMRect} box
-   * @param {any} image  numbers, with the numbers of rows and columns as `shape`
-   * @param {any} mapper  of Bokeh
-   */
-  #paintImage(context, box, image, mapper) {
-    const [rows, columns] = image.shape
-    const canvas = this.#pixels
-    if (canvas.width !== columns || canvas.height !== rows) Object.assign(canvas, {width: columns, height: rows})
-    const pixelContext = canvas.getContext("2d")
-    if (!pixelContext) return
-    const pixels = pixelContext.createImageData(columns, rows)
-    mapColours(image, mapper, new Uint32Array(pixels.data.buffer), columns)
-    pixelContext.putImageData(pixels, 0, 0)
-    context.drawImage(canvas, 0, 0, box.width, box.height)
-  }
-
   /** Return the canvas over a picture, which the first call makes. @param {string} name */
   #canvasOf(name) {
     const canvas = this.#canvases.get(name) ?? document.createElement("canvas")
@@ -120,7 +102,7 @@ export class Overlay {
  *
  * @param {CanvasRenderingContext2D} context
  * @param {any} plot
- * @param {import("../engine/starts.js").Window} window
+ * @param {import("../../../../plots/browser/modules/engine/starts.js").Window} window
  * @param {DOMRect} box
  * @param {Lines} lines
  */
@@ -137,46 +119,4 @@ function strokeLines(context, plot, window, box, lines) {
 const valueOf = property => {
   const value = property?.value ?? property
   return property?.transform ? property.transform.compute(value) : value
-}
-
-/** Colours of palettes as 32-bit numbers for canvases. @type {WeakMap<any[], Uint32Array>} */
-const colourTables = new WeakMap()
-
-/**
- * Return the colour table of a palette.
- *
- * @param {any[]} palette  of "#rrggbb" or "#rrggbbaa", or of numbers 0xrrggbbaa
- */
-function tableOf(palette) {
-  const cachedTable = colourTables.get(palette)
-  if (cachedTable) return cachedTable
-  const table = Uint32Array.from(palette, colour => {
-    // The bytes of a canvas are red, green, blue, alpha. A 32-bit number has its lowest byte first.
-    const value = typeof colour === "number" ? colour : parseInt(colour.slice(1).padEnd(8, "f"), 16)
-    return ((value & 0xff) << 24) | ((value & 0xff00) << 8) | ((value >>> 8) & 0xff00) | (value >>> 24)
-  })
-  colourTables.set(palette, table)
-  return table
-}
-
-/**
- * Compute the colours of an image as the linear and logarithmic mappers of Bokeh do. An image begins with its lowest row, the
- * result with the highest row.
- *
- * @param {any} image  numbers, with NaN for no colour
- * @param {{type: string, palette: any[], low: number, high: number}} mapper
- * @param {Uint32Array} colours  written, one for each number of the image
- * @param {number} columns  of the image
- */
-export function mapColours(image, {type, palette, low, high}, colours, columns) {
-  const table = tableOf(palette)
-  const scale = type === "LogColorMapper" ? Math.log : (/** @type {number} */ value) => value
-  const scaledLow = scale(low)
-  const coloursPerUnit = table.length / (scale(high) - scaledLow)
-  const rows = image.length / columns
-  for (let i = 0; i < image.length; i++) {
-    const index = Math.floor((scale(image[i]) - scaledLow) * coloursPerUnit)
-    const row = rows - 1 - Math.floor(i / columns)
-    colours[row * columns + (i % columns)] = Number.isNaN(image[i]) ? 0 : table[Math.min(Math.max(index, 0), table.length - 1)]
-  }
 }

@@ -1,5 +1,5 @@
 // @ts-check
-/** The places of the pictures on the screen, and canvases over them. */
+/** The places of the pictures on the screen. */
 
 /**
  * A picture on the page: the view of Bokeh, and the box of its frame on the screen.
@@ -54,45 +54,4 @@ export function onMoved(call) {
   }
   request = requestAnimationFrame(compare)
   return () => cancelAnimationFrame(request)
-}
-
-/**
- * Make a canvas cover a box on the screen, and return its context, whose unit is a pixel of the page.
- *
- * @param {HTMLCanvasElement} canvas
- * @param {DOMRect} box
- */
-export function cover(canvas, box) {
-  const ratio = window.devicePixelRatio
-  const [width, height] = [Math.round(box.width * ratio), Math.round(box.height * ratio)]
-  if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, {width, height})
-  Object.assign(canvas.style, {
-    display: "block",
-    left: `${box.left}px`,
-    top: `${box.top}px`,
-    width: `${box.width}px`,
-    height: `${box.height}px`,
-  })
-  const context = canvas.getContext("2d")
-  context?.setTransform(ratio, 0, 0, ratio, 0, 0)
-  return context
-}
-
-/**
- * Draw a line, with coordinates in a window that fills the box.
- *
- * @param {CanvasRenderingContext2D} context
- * @param {import("../engine/starts.js").Window} window
- * @param {DOMRect} box
- * @param {{xs: ArrayLike<number>, ys: ArrayLike<number>}} line
- * @param {string} colour
- * @param {number} width  in pixels
- */
-export function strokeLine(context, {xLow, xHigh, ordinateLow, ordinateHigh}, box, {xs, ys}, colour, width) {
-  const [scaleX, scaleY] = [box.width / (xHigh - xLow), box.height / (ordinateHigh - ordinateLow)]
-  context.strokeStyle = colour
-  context.lineWidth = width
-  context.beginPath()
-  for (let i = 0; i < xs.length; i++) context.lineTo((xs[i] - xLow) * scaleX, (ordinateHigh - ys[i]) * scaleY)
-  context.stroke()
 }

@@ -1,7 +1,7 @@
 // @ts-check
 /** The chart of the share of an ensemble that is still inside, on a logarithmic axis, with the law of mixed motion. */
 
-import {number} from "../numbers.js"
+import {number} from "../../../../plots/browser/modules/numbers.js"
 
 /** Smallest share on the axis of shares. */
 const LEAST_SHARE = 1e-3

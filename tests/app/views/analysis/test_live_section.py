@@ -8,11 +8,11 @@ from typing import Any
 
 import pytest
 
-from app.browser.browser_system import make_browser_system
 from app.job_clients.shown_results import ShownResults
 from app.state.view_state import ViewState
 from app.views.analysis.live_section import LiveSection
 from engine import CASES, Execution, MapSpec, Plane, compute_returns, read_section
+from plots.browser.browser_system import make_browser_system
 from plots.studies.section import COLOURS
 from plots.studies.study import Changes
 from tests.app.browser_messages import send

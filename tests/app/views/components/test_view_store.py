@@ -6,9 +6,9 @@ from typing import Any
 
 import pytest
 
-from app.browser.browser_system import window_in_browser
 from app.state.view_state import ViewState
 from engine import CASES, MapSpec, Plane, Window
+from plots.browser.browser_system import window_in_browser
 from tests.app.browser_messages import send
 from tests.app.map_actions import make_browser_engine
 

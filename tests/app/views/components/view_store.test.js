@@ -5,7 +5,7 @@ import {afterEach, beforeEach, mock, test} from "node:test"
 import {storeOf} from "../../../../app/browser/modules/view_store.js"
 import {connectStore} from "../../../../app/views/components/view_store.js"
 
-/** @typedef {import("../../../../app/browser/modules/engine/starts.js").Window} Window */
+/** @typedef {import("../../../../plots/browser/modules/engine/starts.js").Window} Window */
 
 const HOME = makeWindow(-1, 1)
 const CLOSER = makeWindow(-0.5, 0.5)

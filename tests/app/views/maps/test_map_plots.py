@@ -9,12 +9,12 @@ from bokeh.document import Document
 from bokeh.events import DoubleTap, Tap
 from bokeh.models import BasicTickFormatter, BoxSelectTool, BoxZoomTool, CustomJSTickFormatter, PanTool, WheelZoomTool
 
-from app.browser.browser_system import window_in_browser
 from app.state.view import View
 from app.state.view_state import ViewState
 from app.views.maps.map_plots import MAPS, MapsView
 from app.views.maps.map_toolbar import Drag
 from engine import CASES, MapSpec, Plane, Window, compute_map
+from plots.browser.browser_system import window_in_browser
 from plots.layers.table import LAYERS
 from plots.pictures.image_columns import map_columns
 from plots.pictures.time_scale import TimeScale, fitted_scale

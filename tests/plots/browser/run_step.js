@@ -1,9 +1,9 @@
 // @ts-check
 /** The first steps of some orbits, their crossings, and the series of the first step of each. */
 
-import {Exits} from "../../../app/browser/modules/engine/exits.js"
-import {Integrator} from "../../../app/browser/modules/engine/integrator.js"
-import {makeOrbits, propagate} from "../../../app/browser/modules/engine/orbits.js"
+import {Exits} from "../../../plots/browser/modules/engine/exits.js"
+import {Integrator} from "../../../plots/browser/modules/engine/integrator.js"
+import {makeOrbits, propagate} from "../../../plots/browser/modules/engine/orbits.js"
 import {input, modules} from "./read_input.js"
 
 const {system, states, energy, horizon, count} = input

@@ -29,9 +29,9 @@ from engine.exits.interior import find_outside_channels
 from engine.results import Outcomes
 from engine.slices.portable_system import make_portable_system
 from engine.systems.outcomes import SMALLEST_RADIUS, Centre
-from tests.app.browser.test_agreement import HORIZON as VIEW_HORIZON
-from tests.app.browser.test_agreement import LEAST_SHARE, SIDE, as_view, expected_fate
 from tests.node import needs_node, run_node
+from tests.plots.browser.test_agreement import HORIZON as VIEW_HORIZON
+from tests.plots.browser.test_agreement import LEAST_SHARE, SIDE, as_view, expected_fate
 
 COUNT = 400
 # In units of the well, as the page computes at rest.

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict"
 import {mock, test} from "node:test"
 
-import {Frames, LEAST_SIDE, mirroredAxes, PixelCollector} from "../../../app/browser/modules/workers/frames.js"
+import {Frames, LEAST_SIDE, mirroredAxes, PixelCollector} from "../../../plots/browser/modules/workers/frames.js"
 import {X_PX as slice} from "./x_px.js"
 
 const window = {xLow: -1, xHigh: 1, ordinateLow: -1, ordinateHigh: 1}

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict"
 import {test} from "node:test"
 
-import {count, number, percent} from "../../../app/browser/modules/numbers.js"
+import {count, number, percent} from "../../../plots/browser/modules/numbers.js"
 
 test("a number has four digits and typographic signs", () => {
   const cases = [0.000012345, 1234.56, 0, -0.5, 123456, -1.9e-12, 20000]

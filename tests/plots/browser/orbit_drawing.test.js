@@ -2,7 +2,7 @@
 import assert from "node:assert/strict"
 import {test} from "node:test"
 
-import {describeOutcome, toPageUnits} from "../../../app/browser/modules/gestures/card.js"
+import {describeOutcome, toPageUnits} from "../../../plots/browser/modules/painting/orbit_drawing.js"
 
 test("the path of an orbit is in units of the page", () => {
   assert.deepEqual(toPageUnits({x: [0.5, 1], y: [-1, 0.25]}, {length: 4}), {xs: [2, 4], ys: [-4, 1]})

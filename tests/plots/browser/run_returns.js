@@ -1,8 +1,8 @@
 // @ts-check
 /** The returns of each orbit of a grid of starts, in the order of time. */
 
-import {Integrator} from "../../../app/browser/modules/engine/integrator.js"
-import {Returns} from "../../../app/browser/modules/engine/returns.js"
+import {Integrator} from "../../../plots/browser/modules/engine/integrator.js"
+import {Returns} from "../../../plots/browser/modules/engine/returns.js"
 import {input, modules} from "./read_input.js"
 
 const {system, starts} = input

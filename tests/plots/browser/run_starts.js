@@ -1,14 +1,14 @@
 // @ts-check
 /** Starts of points of slices with their energies, and default windows, in units of the page. */
 
-import {Integrator} from "../../../app/browser/modules/engine/integrator.js"
-import {findStarts, windowAt} from "../../../app/browser/modules/engine/starts.js"
+import {Integrator} from "../../../plots/browser/modules/engine/integrator.js"
+import {findStarts, windowAt} from "../../../plots/browser/modules/engine/starts.js"
 import {input, modules} from "./read_input.js"
 
 const {system, slices, energy, points, windows} = input
 const integrator = new Integrator(system, modules)
 
-const starts = slices.map((/** @type {import("../../../app/browser/modules/engine/system.js").Slice} */ slice) => {
+const starts = slices.map((/** @type {import("../../../plots/browser/modules/engine/system.js").Slice} */ slice) => {
   const scaled = points.map((/** @type {number[]} */ along, /** @type {number} */ axis) =>
     along.map(value => value / slice.units[axis]),
   )

@@ -1,12 +1,12 @@
 // @ts-check
 /** Ends of orbits as the previews, the card and the player of ensembles find them, in units of the well. */
 
-import {Ensemble} from "../../../app/browser/modules/engine/ensemble.js"
-import {Exits} from "../../../app/browser/modules/engine/exits.js"
-import {Integrator} from "../../../app/browser/modules/engine/integrator.js"
-import {findAllEnds} from "../../../app/browser/modules/engine/orbits.js"
-import {followOrbit} from "../../../app/browser/modules/engine/path.js"
-import {reversedInTime} from "../../../app/browser/modules/engine/system.js"
+import {Ensemble} from "../../../plots/browser/modules/engine/ensemble.js"
+import {Exits} from "../../../plots/browser/modules/engine/exits.js"
+import {Integrator} from "../../../plots/browser/modules/engine/integrator.js"
+import {findAllEnds} from "../../../plots/browser/modules/engine/orbits.js"
+import {followOrbit} from "../../../plots/browser/modules/engine/path.js"
+import {reversedInTime} from "../../../plots/browser/modules/engine/system.js"
 import {input, modules} from "./read_input.js"
 
 const {energy, states, horizon, isBackward} = input
@@ -30,7 +30,7 @@ function card() {
     integrator.temporarily(() => followOrbit(integrator, integrator.array("float64", [1, 4], state), exits, energy, horizon)),
   )
   const all = (/** @type {"channel" | "time" | "crossings"} */ name) =>
-    paths.map((/** @type {import("../../../app/browser/modules/engine/path.js").Path} */ path) => path[name])
+    paths.map((/** @type {import("../../../plots/browser/modules/engine/path.js").Path} */ path) => path[name])
   return {fate: all("channel"), time: all("time"), crossings: all("crossings")}
 }
 

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict"
 import {test} from "node:test"
 
-import {Pool} from "../../../app/browser/modules/workers/pool.js"
+import {Pool} from "../../../plots/browser/modules/workers/pool.js"
 
 /** A worker that answers when it is told to. */
 class SlowWorker {

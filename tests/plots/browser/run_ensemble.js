@@ -1,9 +1,9 @@
 // @ts-check
 /** Places, exits and passages of an ensemble at rising times, and its outcomes; or the starts that a request draws. */
 
-import {Ensemble, Outcomes} from "../../../app/browser/modules/engine/ensemble.js"
-import {Integrator} from "../../../app/browser/modules/engine/integrator.js"
-import {drawStarts} from "../../../app/browser/modules/engine/random_starts.js"
+import {Ensemble, Outcomes} from "../../../plots/browser/modules/engine/ensemble.js"
+import {Integrator} from "../../../plots/browser/modules/engine/integrator.js"
+import {drawStarts} from "../../../plots/browser/modules/engine/random_starts.js"
 import {input, modules} from "./read_input.js"
 
 const {system, requests, scene, energy, states, times} = input

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict"
 import {test} from "node:test"
 
-import {pixelColumns, showsScene} from "../../../app/browser/modules/painting/columns.js"
+import {pixelColumns, showsScene} from "../../../plots/browser/modules/painting/columns.js"
 import {X_PX as slice} from "./x_px.js"
 
 class Image {

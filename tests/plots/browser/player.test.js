@@ -2,7 +2,7 @@
 import assert from "node:assert/strict"
 import {mock, test} from "node:test"
 
-import {EnergyPlayer} from "../../../app/browser/modules/gestures/player.js"
+import {EnergyPlayer} from "../../../plots/browser/modules/gestures/player.js"
 
 /** @type {((now: number) => void) | null} */
 let callback = null

@@ -1,10 +1,10 @@
 // @ts-check
 /** Points of the exits at some energies, the lines that the page draws there, and starts on the exits. */
 
-import {exitLines} from "../../../app/browser/modules/engine/curves.js"
-import {Exits} from "../../../app/browser/modules/engine/exits.js"
-import {Integrator} from "../../../app/browser/modules/engine/integrator.js"
-import {drawStarts} from "../../../app/browser/modules/engine/random_starts.js"
+import {exitLines} from "../../../plots/browser/modules/engine/curves.js"
+import {Exits} from "../../../plots/browser/modules/engine/exits.js"
+import {Integrator} from "../../../plots/browser/modules/engine/integrator.js"
+import {drawStarts} from "../../../plots/browser/modules/engine/random_starts.js"
 import {input, modules} from "./read_input.js"
 
 const {system, energies, positions} = input

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from app.browser.javascript import callback_code, component_code
+from plots.browser.javascript import callback_code, component_code
 
 
 def write_modules(folder: Path) -> Path:

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict"
 import {test} from "node:test"
 
-import {levelLines, SAMPLES} from "../../../app/browser/modules/engine/contours.js"
+import {levelLines, SAMPLES} from "../../../plots/browser/modules/engine/contours.js"
 
 const window = {xLow: -2, xHigh: 2, ordinateLow: -2, ordinateHigh: 2}
 

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict"
 import {test} from "node:test"
 
-import {mapColours} from "../../../app/browser/modules/painting/overlay.js"
+import {mapColours} from "../../../plots/browser/modules/painting/pixel_image.js"
 
 // As the bytes of a canvas: red, green, blue, opacity.
 const [RED, GREEN, BLUE] = [

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.browser.browser_system import make_browser_system
 from engine import CASES, Potential, parse_formula
 from engine.foundations.execution import Execution
-from tests.app.browser.test_agreement import SLICES
+from plots.browser.browser_system import make_browser_system
 from tests.node import needs_node, run_node
+from tests.plots.browser.test_agreement import SLICES
 
 POTENTIALS = {"III": CASES["III"], "a formula with other units": parse_formula("8x² + 4y² − 3x²y")}
 LOW, ENERGY, HIGH = 0.1, 0.35, 1.0

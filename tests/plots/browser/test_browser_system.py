@@ -6,12 +6,12 @@ import threading
 
 import numpy as np
 
-from app.browser.browser_system import make_browser_system, system_key
 from engine import CASES, Plane, Potential, System
 from engine.foundations.execution import Execution
 from engine.slices.default_window import default_window
 from engine.slices.portable_system import make_portable_system
 from engine.systems.outcomes import Centre
+from plots.browser.browser_system import make_browser_system, system_key
 
 
 def test_windows_between_tabulated_energies_are_nearly_default_windows() -> None:

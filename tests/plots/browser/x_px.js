@@ -1,5 +1,5 @@
 // @ts-check
-/** The slice (x, px) of a well whose units are 1. @type {import("../../../app/browser/modules/engine/system.js").Slice} */
+/** The slice (x, px) of a well whose units are 1. @type {import("../../../plots/browser/modules/engine/system.js").Slice} */
 export const X_PX = {
   axes: ["x", "px"],
   units: [1, 1],
