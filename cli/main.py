@@ -28,7 +28,20 @@ FAILED = 1
 INTERRUPTED = 130
 """Exit code after Ctrl-C, as in shells: 128 + SIGINT."""
 
-COMMANDS = ("map", "orbit", "lyapunov", "measures", "curves", "study", "ensemble", "sweep", "reproduce", "potential", "serve")
+COMMANDS = (
+    "map",
+    "live",
+    "orbit",
+    "lyapunov",
+    "measures",
+    "curves",
+    "study",
+    "ensemble",
+    "sweep",
+    "reproduce",
+    "potential",
+    "serve",
+)
 """Names of the modules in `commands`. A module is imported when its command runs."""
 
 

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from engine.foundations.extras import load_pictures
+from engine.foundations.output_lock import output_named_in_errors
 from engine.foundations.result import MapResult, Result
 from engine.foundations.stored_fields import checked_dataset
 from engine.foundations.validation import checked_flag
@@ -234,6 +238,35 @@ class EscapeMap(MapResult):
         }
         attributes = {"result": "EscapeMap", **self.provenance(), "outcomes": write_outcomes(self.outcomes)}
         return pixel_dataset(self.spec, (self.x, self.ordinate), variables, attributes)
+
+    def to_html(self, path: str | os.PathLike[str], **options: Any) -> None:
+        """Write a live figure: one HTML file that needs no server, in which its reader changes the energy and the window.
+
+        Parameters
+        ----------
+        path
+            The file, which is replaced.
+        options
+            ``energies``: lowest and highest energy of the figure; ``starts``: (x, ordinate) of orbits, at most five; ``caption``;
+            ``link``: address of the view in an explorer; ``palette``: ``"paper"`` or ``"safe"``.
+
+        Raises
+        ------
+        TypeError
+            If an option does not exist.
+        ValueError
+            If the map is not complete, an axis of its slice is a parameter, its orbits run backward in time, or an option is not
+            legal.
+
+        Examples
+        --------
+        >>> from escape_explorer import CASES, MapSpec, Plane, compute_map
+        >>> found = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.45))
+        >>> found.to_html("figure.html", energies=(0.2, 1.0))  # doctest: +SKIP
+        """
+        content = load_pictures().to_live_html(self, **options)
+        with output_named_in_errors(Path(path)):
+            Path(path).write_text(content, encoding="utf-8")
 
     def provenance(self) -> dict[str, Any]:
         """Return the provenance of the map in plain values: request, integrator, version, worst energy error, pixels per fate."""

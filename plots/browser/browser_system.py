@@ -62,6 +62,17 @@ def slice_name(plane: Slice) -> str:
     return ";".join(filter(None, write_slice(plane)))
 
 
+def describe_slice(plane: Slice, potential: Potential, section: Section) -> dict[str, object]:
+    """Return a slice in the form of `Slice` in modules/engine/system.js.
+
+    It has the columns of its axes in states if it is on the section. Pixels have no mirror images if these cross the section in
+    another way.
+    """
+    described = plane.to_dict(potential.units)
+    described["sectionColumns"] = section.columns_on(plane)
+    return described if section.is_mirrored else described | {"mirrored": None}
+
+
 def window_in_browser(window: Window) -> dict[str, float]:
     """Return a window in the form of `Window` in modules/engine/starts.js."""
     return dict(zip(WINDOW_EDGES, window.edges, strict=True))

@@ -40,6 +40,7 @@ from plots.pictures.palette import LIGHT, MEASURED, PALETTES, PAPER, Entry, Pale
 from plots.pictures.periodic_marks import STABILITY_COLOURS
 from plots.printed.curve_figures import draw_chart
 from plots.printed.figure_axes import RENDER_LOCK, legend_handles, set_font, set_title, style_axes
+from plots.printed.live_figure import live_figure
 from plots.printed.map_figure import draw_picture
 from plots.printed.orbit_figure import draw_path, draw_quantity
 from plots.printed.potential_figure import draw_equipotentials, enlarge
@@ -73,8 +74,7 @@ class NoPictureError(TypeError):
 
 def plot_result(result: Result, ax: Axes | None = None, *, palette: str = "paper", **options: Any) -> Axes:
     """Draw a result, as described in `engine.foundations.result.Result.plot`."""
-    if palette not in PALETTES:
-        raise ValueError(f"palette={palette!r}: must be one of {', '.join(PALETTES)}")
+    colours = _palette(palette)
     legal_options = list(inspect.signature(_draw.dispatch(type(result))).parameters)[_FIXED_PARAMETERS:]
     if unknown := [name for name in options if name not in legal_options]:
         options_text = f"the picture of {type(result).__name__} has {', '.join(['palette', *legal_options])}"
@@ -85,8 +85,14 @@ def plot_result(result: Result, ax: Axes | None = None, *, palette: str = "paper
         _, ax = pyplot.subplots(figsize=_FIGURE_SIZE, layout="constrained")
     if not isinstance(ax, Axes):
         raise TypeError(f"ax={ax!r}: must be Matplotlib axes or None")
-    _draw(result, ax, PALETTES[palette], **options)
+    _draw(result, ax, colours, **options)
     return ax
+
+
+def _palette(name: str) -> Palette:
+    if name not in PALETTES:
+        raise ValueError(f"palette={name!r}: must be one of {', '.join(PALETTES)}")
+    return PALETTES[name]
 
 
 def to_html(result: Result) -> str:
@@ -99,6 +105,11 @@ def to_html(result: Result) -> str:
         f"<div><strong>{type(result).__name__}</strong>{sentence}<div style='{_SIDE_BY_SIDE}'>"
         f"{_picture_html(result)}<table>{rows}</table></div></div>"
     )
+
+
+def to_live_html(found: EscapeMap, *, palette: str = "paper", **options: Any) -> str:
+    """Return the HTML of a live figure, as described in `engine.maps.result.EscapeMap.to_html`."""
+    return live_figure(found, palette=_palette(palette), **options)
 
 
 def to_holoviews(result: Result) -> Any:

@@ -16,7 +16,6 @@ from playwright.sync_api import expect
 from app.state.presets import PRESETS
 from app.state.view import Analysis
 from app.state.view_state import ViewState
-from app.views.components.texts import typeset
 from app.views.panels.analysis_choice import ANALYSIS_LABELS
 from engine import CASES, EscapeMap, Fate, MapSpec, Orbit, Plane, compute_map, compute_statistics, judge_orbit
 from engine.foundations.execution import DEFAULT_EXECUTION
@@ -25,6 +24,7 @@ from engine.jobs.job import Job, run_job
 from plots.layers.table import LAYERS
 from plots.pictures.image_columns import map_columns
 from plots.pictures.time_scale import fitted_scale
+from plots.texts.typeset import typeset
 from tests.app.state.opened_link import open_link
 from tests.browser.explorer_page import ExplorerPage
 

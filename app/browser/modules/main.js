@@ -7,16 +7,10 @@ import {highlightPixels} from "./painting/legend.js"
 import {Overlay} from "./painting/overlay.js"
 import {EnergyPlayer} from "../../../plots/browser/modules/gestures/player.js"
 import {Pool, workerCount} from "../../../plots/browser/modules/workers/pool.js"
+import {hasVectors} from "../../../plots/browser/modules/workers/vectors.js"
 import {setPresent} from "./gestures/present.js"
 import {Preview} from "./gestures/preview.js"
 import {storeOf} from "./view_store.js"
-
-/** A minimal WebAssembly module with a vector instruction, to test whether the browser supports these. */
-// prettier-ignore
-const SIMD = Uint8Array.of(
-  0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3,
-  2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11,
-)
 
 /**
  * Start the previews, the card and the animation of the energy.
@@ -26,7 +20,7 @@ const SIMD = Uint8Array.of(
  */
 export function start(model, el) {
   highlightPixels()
-  if (!WebAssembly.validate(SIMD)) {
+  if (!hasVectors()) {
     // Without vector instructions, the last map stays until the next map arrives, and the energy cannot be played.
     const endAnimation = () => {
       if (model.command.name === "play") model.send_msg({playing: false})

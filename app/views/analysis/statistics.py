@@ -12,7 +12,6 @@ from app.state.view import Analysis
 from app.state.view_state import ViewState
 from app.views.components.collapsible_section import Build
 from app.views.components.histograms import HistogramView
-from app.views.components.legends import patch
 from app.views.components.texts import TextPane, escape_facts
 from app.views.components.widgets import COUNT_WHOLE, button, copy_button
 from engine import EscapeMap, Fate, compute_statistics
@@ -20,6 +19,7 @@ from engine.foundations.wording import format_share, format_share_range
 from engine.propagation.fates import UNRESOLVED
 from engine.results import EscapeStatistics
 from plots.studies.escape_charts import PROBABILITIES, TIMES, probabilities_chart, times_chart
+from plots.texts.legends import patch
 
 
 class StatisticsView:

@@ -13,11 +13,11 @@ from bokeh.events import Event
 from bokeh.models import ColumnDataSource, MultiLine, Range1d, Scatter, Segment, Span
 from bokeh.plotting import figure
 
-from app.views.components.legends import legend
 from app.views.components.plots import FigurePane, chart_hover, set_range, square_figure
 from app.views.components.texts import TextPane
 from plots.pictures.charts import ONLY_POINTS, Chart, Frame, Limits, Series, Shape
 from plots.pictures.palette import THRESHOLD
+from plots.texts.legends import legend
 
 _POINT_COLUMNS = ("x", "y", "low", "high", "colour", "label", "marker", "size", "filled", "note")
 _LINE_COLUMNS = ("xs", "ys", "colour", "dash", "width", "label")

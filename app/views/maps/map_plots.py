@@ -13,7 +13,6 @@ from bokeh.plotting import figure
 
 from app.state.view import PICTURES, Start
 from app.state.view_state import ViewState
-from app.views.components.legends import picture_legend
 from app.views.components.plots import FigurePane, annotate_picture, changing_models, label_axes, map_figure
 from app.views.components.view_store import ViewStore
 from app.views.maps.comparison import ComparedMap
@@ -35,6 +34,7 @@ from plots.layers.table import PICTURES as PICTURE_ENTRIES
 from plots.pictures.image_columns import NO_LAYER
 from plots.pictures.palette import PALETTES
 from plots.pictures.time_scale import WITHOUT_ESCAPES, TimeScale, fitted_scale
+from plots.texts.legends import picture_legend
 
 MAPS = tuple(name for name in PICTURES if name != "well")
 """Names of the maps of starts: all pictures but the well."""

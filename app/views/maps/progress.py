@@ -12,13 +12,13 @@ import numpy as np
 import panel as pn
 
 from app.state.view_state import ViewState
-from app.views.components.legends import patch
 from app.views.components.texts import TextPane
 from app.views.components.widgets import button, keep_place
 from engine import EscapeMap, Evidence, Fate
 from engine.foundations.wording import format_number, format_share, format_whole
 from plots.layers.table import LAYERS
 from plots.pictures.palette import Palette
+from plots.texts.legends import patch
 
 STOP = "Stop"
 """Label of the button while the map is computed."""

@@ -8,7 +8,6 @@ import numpy as np
 from bokeh.models import ColumnDataSource, ImageRGBA, MultiLine, Range1d, Scatter
 
 from app.state.view_state import ViewState
-from app.views.components.legends import legend_items
 from app.views.components.orbit_lines import in_front, line_columns, line_source, line_style, opacities, orbit_colours
 from app.views.components.plots import FigurePane, LaterGlyphs, SourcedGlyphs, annotate_picture, map_figure, set_range
 from app.views.maps.map_curves import MapCurves
@@ -17,6 +16,7 @@ from engine.slices.axes import highest_energy
 from engine.slices.planes import SPACE
 from plots.pictures.orbit_curves import OrbitCurves, find_trail, find_well_window
 from plots.pictures.palette import LIGHT, MARK_EDGE, Palette
+from plots.texts.legends import legend_items
 
 TITLE = "The well in (x, y)"
 

@@ -18,12 +18,16 @@ from app.views.components.widgets import button
 from app.views.panels.embedding import NOT_ALLOWED
 from app.views.panels.figure_form import FigureForm
 from engine import Result
+from plots.printed.live_figure import live_figure, live_refusal
 from plots.studies.study import Study
 from plots.studies.table import STUDIES
 from plots.texts.exports import file_stem, netcdf_bytes, orbits_csv, python_lines, section_csv, table_csv
 
 File = tuple[str, Callable[[], bytes]]
 """Name of a file, and the function that makes its content. Calling the function may take seconds."""
+
+LIVE = "Live figure (HTML)"
+"""Label of the button that saves a figure which needs no server."""
 
 # Labels of the buttons that save data.
 MAPS, ORBITS, CROSSINGS, SCRIPT = "Maps (NetCDF)", "Orbits (CSV)", "Crossings of the orbits (CSV)", "Python script"
@@ -57,7 +61,7 @@ class Downloads:
         self.figure = FigureForm(state, results, self.saver, self._figure_name, on_copied)
         self.data = {
             label: button(label, partial(self._save, label))
-            for label in (MAPS, ORBITS, CROSSINGS, *map(_table_label, STUDIES.values()), SCRIPT)
+            for label in (LIVE, MAPS, ORBITS, CROSSINGS, *map(_table_label, STUDIES.values()), SCRIPT)
         }
         results.param.watch(lambda *events: self._enable(), ["frame", "orbits", "studies"])
         self._enable()
@@ -97,6 +101,11 @@ def file_choices(results: ShownResults, state: ViewState) -> dict[str, File]:
         # Along a parameter, each orbit belongs to another potential, and the script has no orbits.
         starts = [one.start for one in results.orbits] if state.plane.parameter is None else []
         states = [known for known in map(state.start_state, starts) if known is not None]
+        if not live_refusal(frame.spec):
+            live_starts = [one.start for one in results.orbits]
+            energies = min(state.energies.low, state.energy), max(state.energies.high, state.energy)
+            make = partial(live_figure, frame, energies=energies, starts=live_starts, palette=state.colours)
+            choices[LIVE] = name(".html"), lambda: make().encode()
         choices[MAPS] = name(".nc"), partial(netcdf_bytes, frame, results.analyses)
         study = results.calls.get(state.analysis)
         choices[SCRIPT] = name(".py"), lambda: python_lines(frame.spec, system, states, study).encode()

@@ -17,7 +17,7 @@ from app.views.components.view_store import ViewStore
 from engine import EscapeMap, Window
 from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job, Queue
-from plots.browser.browser_system import BrowserSystem, make_browser_system, slice_name, system_key
+from plots.browser.browser_system import BrowserSystem, describe_slice, make_browser_system, slice_name, system_key
 from plots.browser.javascript import component_code
 from plots.layers.map_images import LAYER_COLUMNS
 from plots.pictures.image_columns import pixel_coding
@@ -113,21 +113,10 @@ def describe_view(state: ViewState) -> dict[str, Any]:
         "system": system_key(state.potential, state.section),
         "plane": slice_name(state.plane),
         # Only the server knows the potentials along a parameter.
-        "slice": _describe_slice(state) if state.plane.parameter is None else None,
+        "slice": describe_slice(state.plane, state.potential, state.section) if state.plane.parameter is None else None,
         "home": state.window is None,
         "resolution": state.resolution,
         "colours": [entry.colour for entry in state.colours.end_entries(outcomes)],
         "labels": [end.label for end in outcomes],
         "coding": {**pixel_coding(outcomes, state.section), "layers": list(LAYER_COLUMNS)},
     }
-
-
-def _describe_slice(state: ViewState) -> dict[str, object]:
-    """Return the slice of a state, with the columns of its axes in states if the slice is on the section.
-
-    Pixels have no mirror images if these have other crossings of the section.
-    """
-    plane, section = state.plane, state.section
-    described = plane.to_dict(state.potential.units)
-    described["sectionColumns"] = section.columns_on(plane)
-    return described if section.is_mirrored else described | {"mirrored": None}

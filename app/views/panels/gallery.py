@@ -12,8 +12,8 @@ from panel.custom import JSComponent
 
 from app.state.presets import GROUPS, PRESETS, Preset
 from app.state.view_state import ViewState
-from app.views.components.texts import typeset
 from plots.layers.table import TITLES
+from plots.texts.typeset import typeset
 
 INVITATION = "Each pixel of the basins is a start, and its colour the exit through which its orbit escapes. Views to begin with:"
 """Title of the invitation: cards on a page without orbits."""

@@ -1,10 +1,13 @@
-"""The code of a component contains each module that it imports, directly or not, once and before its use."""
+"""A single text contains each module that a module imports, directly or not, once and before its use."""
 
 from __future__ import annotations
 
+import subprocess
 from pathlib import Path
 
-from plots.browser.javascript import callback_code, component_code
+from plots.browser.javascript import callback_code, component_code, script_code
+from tests.node import needs_node
+from tests.waiting import SECONDS
 
 
 def write_modules(folder: Path) -> Path:
@@ -32,3 +35,17 @@ def test_a_callback_contains_each_module_once_and_returns_its_call(tmp_path: Pat
         "const top = middle + base",
         "return top",
     ]
+
+
+@needs_node
+def test_the_modules_of_a_script_keep_their_own_names(tmp_path: Path) -> None:
+    (tmp_path / "one.js").write_text("/** A word. */\nconst word = 1\nexport function read() {\n  return word\n}\n")
+    (tmp_path / "other.js").write_text("// A word.\nconst word = 2\nexport const read = () => word\n")
+    top = tmp_path / "top.js"
+    top.write_text(
+        'import {read} from "./one.js"\nimport {read as readOther} from "./other.js"\nconsole.log(read(), readOther())\n'
+    )
+    script = script_code(top)
+    printed = subprocess.run(["node", "-e", script], capture_output=True, text=True, timeout=SECONDS, check=True).stdout
+    assert printed == "1 2\n"
+    assert "A word" not in script

@@ -9,7 +9,7 @@ import {Integrator} from "../../../../plots/browser/modules/engine/integrator.js
 import {findPath} from "../../../../plots/browser/modules/engine/path.js"
 import {windowAt} from "../../../../plots/browser/modules/engine/starts.js"
 import {cover} from "../../../../plots/browser/modules/painting/canvas.js"
-import {drawOrbit} from "../../../../plots/browser/modules/painting/orbit_drawing.js"
+import {describeOutcome, drawOrbit, drawWell, writeText} from "../../../../plots/browser/modules/painting/orbit_drawing.js"
 import {mapPictures, wellPicture} from "../painting/pictures.js"
 
 /** Longest time for which an orbit is followed, in units of the well. */
@@ -189,7 +189,12 @@ export class Card {
     const style = getComputedStyle(this.#canvas)
     const [ink, paper] = ["--ui-ink", "--ui-page"].map(name => style.getPropertyValue(name))
     const limit = this.#limits.trace(integrator, {slice: system.space, window, energy})
-    const text = drawOrbit(context, box, integrator, {window, limit, path, ink, paper, ...this.#view()})
+    const {colours, labels} = this.#view()
+    const well = {window, energy, limit, colours, ink}
+    drawWell(context, box, integrator, well)
+    drawOrbit(context, box, well, path, system.units)
+    const text = describeOutcome(path, system.units.time, labels)
+    writeText(context, text, box, ink, paper)
     this.#canvas.setAttribute("aria-label", text)
   }
 }

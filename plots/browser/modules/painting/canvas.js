@@ -2,15 +2,27 @@
 /** Canvases that cover boxes on the screen, and what is drawn on them. */
 
 /**
+ * Give a canvas as many pixels as a box of the page has on the screen, and return its context, whose unit is a pixel of the page.
+ *
+ * @param {HTMLCanvasElement} canvas
+ * @param {{width: number, height: number}} box
+ */
+export function contextFor(canvas, box) {
+  const ratio = window.devicePixelRatio
+  const [width, height] = [Math.round(box.width * ratio), Math.round(box.height * ratio)]
+  if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, {width, height})
+  const context = canvas.getContext("2d")
+  context?.setTransform(ratio, 0, 0, ratio, 0, 0)
+  return context
+}
+
+/**
  * Make a canvas cover a box on the screen, and return its context, whose unit is a pixel of the page.
  *
  * @param {HTMLCanvasElement} canvas
  * @param {DOMRect} box
  */
 export function cover(canvas, box) {
-  const ratio = window.devicePixelRatio
-  const [width, height] = [Math.round(box.width * ratio), Math.round(box.height * ratio)]
-  if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, {width, height})
   Object.assign(canvas.style, {
     display: "block",
     left: `${box.left}px`,
@@ -18,9 +30,7 @@ export function cover(canvas, box) {
     width: `${box.width}px`,
     height: `${box.height}px`,
   })
-  const context = canvas.getContext("2d")
-  context?.setTransform(ratio, 0, 0, ratio, 0, 0)
-  return context
+  return contextFor(canvas, box)
 }
 
 /**

@@ -13,42 +13,46 @@ const PADDING = 6
 const TEXT_HEIGHT = 22
 
 /**
- * What is drawn.
+ * What the lines of a well depend on.
  *
- * @typedef {object} Drawing
- * @property {import("../engine/starts.js").Window} window  of the well
+ * @typedef {object} Well
+ * @property {import("../engine/starts.js").Window} window
+ * @property {number} energy  in units of the page
  * @property {{xs: number[], ys: number[]}[]} limit  limiting curve of the energy
- * @property {import("../engine/path.js").Path} path
  * @property {string[]} colours  of the outcomes, exits first
- * @property {string[]} labels  of the outcomes
  * @property {string} ink  colour of lines and text
- * @property {string} paper  colour behind the text
  */
 
 /**
- * Draw an orbit in the well, with the limiting curve and the exits, and its outcome as text. Return this text.
+ * Draw the limiting curve and the exits of a well.
  *
- * @param {CanvasRenderingContext2D} context  of an empty canvas
+ * @param {CanvasRenderingContext2D} context
  * @param {{width: number, height: number}} box
  * @param {import("../engine/integrator.js").Integrator} integrator
- * @param {Drawing} drawing
+ * @param {Well} well
  */
-export function drawOrbit(context, box, integrator, {window, limit, path, colours, labels, ink, paper}) {
-  const {system} = integrator
-  const energy = path.energy * system.units.energy
-  const draw = strokeLine.bind(null, context, window, box)
-  for (const line of limit) draw(line, ink, 1.5)
-  for (const {channel, xs, ys} of exitLines(integrator, energy)) draw({xs, ys}, colours[channel - 1], 3)
-  const {xs, ys} = toPageUnits(path, system.units)
-  draw({xs, ys}, path.channel > 0 ? colours[path.channel - 1] : ink, 1)
+export function drawWell(context, box, integrator, {window, energy, limit, colours, ink}) {
+  for (const line of limit) strokeLine(context, window, box, line, ink, 1.5)
+  for (const exit of exitLines(integrator, energy)) strokeLine(context, window, box, exit, colours[exit.channel - 1], 3)
+}
+
+/**
+ * Draw an orbit in a well, with a point at its start.
+ *
+ * @param {CanvasRenderingContext2D} context
+ * @param {{width: number, height: number}} box
+ * @param {Well} well
+ * @param {Pick<import("../engine/path.js").Path, "x" | "y" | "channel">} path
+ * @param {{length: number}} units  units of the well, in units of the page
+ */
+export function drawOrbit(context, box, {window, colours, ink}, path, units) {
+  const {xs, ys} = toPageUnits(path, units)
+  strokeLine(context, window, box, {xs, ys}, path.channel > 0 ? colours[path.channel - 1] : ink, 1)
   context.fillStyle = ink
   context.beginPath()
-  const scale = box.width / (window.xHigh - window.xLow)
-  context.arc((xs[0] - window.xLow) * scale, (window.ordinateHigh - ys[0]) * scale, START_RADIUS, 0, 2 * Math.PI)
+  const [scaleX, scaleY] = [box.width / (window.xHigh - window.xLow), box.height / (window.ordinateHigh - window.ordinateLow)]
+  context.arc((xs[0] - window.xLow) * scaleX, (window.ordinateHigh - ys[0]) * scaleY, START_RADIUS, 0, 2 * Math.PI)
   context.fill()
-  const text = describeOutcome(path, system.units.time, labels)
-  writeText(context, text, box, ink, paper)
-  return text
 }
 
 /**
@@ -60,7 +64,7 @@ export function drawOrbit(context, box, integrator, {window, limit, path, colour
  * @param {string} ink  colour of the text
  * @param {string} paper  colour behind the text
  */
-function writeText(context, text, box, ink, paper) {
+export function writeText(context, text, box, ink, paper) {
   context.font = "12px system-ui, sans-serif"
   context.fillStyle = paper
   context.fillRect(0, box.height - TEXT_HEIGHT, context.measureText(text).width + 2 * PADDING, TEXT_HEIGHT)

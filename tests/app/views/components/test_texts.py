@@ -8,7 +8,7 @@ from bokeh.document import Document
 from bokeh.models import ImportedStyleSheet
 from panel.io.resources import LOCAL_DIST
 
-from app.views.components.texts import StatusPane, TextPane, breakable, typeset
+from app.views.components.texts import StatusPane, TextPane, breakable
 
 
 @pytest.mark.parametrize("kind", [TextPane, StatusPane])
@@ -27,21 +27,6 @@ def test_a_new_text_changes_no_stylesheet(kind: type[TextPane], is_on_the_page: 
     pane.object = "after"
     assert model.text == "after"
     assert [sheet.url for sheet in model.stylesheets if isinstance(sheet, ImportedStyleSheet)] == before
-
-
-@pytest.mark.parametrize(
-    ("text", "whole"),
-    [
-        ("Escaped at t = 3.6", "Escaped at t~=~3.6"),
-        ("error ≤ 1.9 × 10⁻¹²", "error ≤~1.9~×~10⁻¹²"),
-        ("97.5 % of 1 034 275 starts", "97.5_% of 1_034_275 starts"),
-        ("x = y, exit 1 at 20 times", "x = y, exit 1 at 20 times"),
-        ("e^6.51, like t^1.01, x^2", "e<sup>6.51</sup>, like t<sup>1.01</sup>, x^2"),
-        ("<path d='M1 200'>1 200</path>", "<path d='M1 200'>1_200</path>"),
-    ],
-)
-def test_lines_do_not_break_inside_a_number(text: str, whole: str) -> None:
-    assert typeset(text) == whole.replace("~", "\N{NO-BREAK SPACE}").replace("_", "\N{NARROW NO-BREAK SPACE}")
 
 
 def test_lines_of_a_formula_break_before_operators_outside_brackets() -> None:

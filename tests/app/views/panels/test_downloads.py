@@ -16,7 +16,7 @@ from app.job_clients.orbit_requests import StartOrbit
 from app.job_clients.shown_results import ShownResults
 from app.runtime.process_state import ProcessState
 from app.state.view_state import ViewState
-from app.views.panels.downloads import CROSSINGS, MAPS, ORBITS, SCRIPT, Downloads, file_choices
+from app.views.panels.downloads import CROSSINGS, LIVE, MAPS, ORBITS, SCRIPT, Downloads, file_choices
 from engine import (
     CASES,
     EscapeMap,
@@ -82,7 +82,7 @@ def test_only_files_that_the_results_allow_can_be_saved(downloads_view: Download
     def enabled() -> set[str]:
         return {label for label, save in downloads_view.data.items() if not save.disabled}
 
-    assert enabled() == {MAPS, ORBITS, CROSSINGS, SCRIPT}
+    assert enabled() == {LIVE, MAPS, ORBITS, CROSSINGS, SCRIPT}
     results.frame = replace(results.frame, complete=False)
     assert enabled() == {ORBITS, CROSSINGS}
     curves = compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.2, 0.3), (12, 12), t_max=10.0))
@@ -97,6 +97,15 @@ def test_the_script_contains_the_study_whose_tab_is_shown(results: ShownResults,
         _, make = file_choices(results, ViewState(system=System("I"), energy=0.19, analysis=analysis))[SCRIPT]
         scripts.append(make().decode())
     assert ["study = compute_returns(" in script for script in scripts] == [True, False, False]
+
+
+def test_a_live_figure_has_the_energies_and_orbits_of_the_view(results: ShownResults) -> None:
+    state = ViewState(system=System("I"), energy=0.19)
+    name, make = file_choices(results, state)[LIVE]
+    page = make().decode()
+    assert name == "escapes-I-x_px-h0.19-t100.html"
+    assert f'"low":{state.energies.low},"high":{state.energies.high}' in page
+    assert f'"starts":{[list(one.start) for one in results.orbits]}'.replace(" ", "") in page
 
 
 def test_a_file_holds_what_is_shown_at_the_moment_of_the_click(results: ShownResults, escape_map: EscapeMap) -> None:

@@ -6,10 +6,10 @@ from collections.abc import Iterable, Sequence
 from html import escape
 from itertools import groupby
 
-from app.views.components.texts import typeset
 from engine.foundations.wording import format_number, format_whole
 from plots.layers.picture import ColourScale, ColourTable, Legend
 from plots.pictures.palette import Entry, Mark
+from plots.texts.typeset import typeset
 
 # Number of intervals of a drawn colour scale. The browser interpolates the colours within each interval.
 _SCALE_STEPS = 12
@@ -54,6 +54,12 @@ def picture_legend(content: Legend) -> str:
     scale = _scale(content.scale) if content.scale is not None else ""
     sentence = f" <span>{typeset(escape(content.sentence))}</span>" if content.sentence else ""
     return f"{table}{entries}{scale}{sentence}{chips(content.over)}{chips(content.others if content.is_short else [])}"
+
+
+def figure_legend(content: Legend) -> str:
+    """Return HTML of the legend of a picture with room for all labels."""
+    scale = _scale(content.scale) if content.scale is not None else ""
+    return f"{legend_items([*content.entries, *content.over, *content.others])}{scale}"
 
 
 def _background(entry: Entry) -> str:

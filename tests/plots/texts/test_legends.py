@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from app.views.components.legends import picture_legend
 from engine import CASES, Fate, MapSpec, Plane, Potential, parse_formula
 from engine.systems.outcomes import Centre
 from plots.layers.origins import passage_colour
@@ -14,6 +13,7 @@ from plots.layers.table import map_legend
 from plots.layers.trust import TONES
 from plots.pictures.palette import PAPER
 from plots.pictures.time_scale import TimeScale
+from plots.texts.legends import picture_legend
 from tests.results import result_of
 
 PATCH = re.compile(r"--colour:(#[0-9a-f]+)'>([^<]*)")

@@ -1,0 +1,106 @@
+"""A live figure is one file with the map, the engine and the words of the explorer, and it allows no request."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import json
+import re
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from engine import CASES, POTENTIALS, EscapeMap, MapSpec, Plane, System, compute_map
+from engine.slices.slice_text import read_slice
+from plots.layers.map_images import picture_pixels
+from plots.pictures.palette import PAPER
+from plots.printed.live_figure import LIVE_PICTURES, live_figure, live_refusal
+
+
+@pytest.fixture(scope="module")
+def found() -> EscapeMap:
+    return compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.45, (40, 30), t_max=200.0))
+
+
+@pytest.fixture(scope="module")
+def page(found: EscapeMap) -> str:
+    return live_figure(
+        found, energies=(0.3, 0.6), starts=[(0.1, 0.05)], caption="x < 1 & y > 2", link="https://explorer.example/?a=1&b=2"
+    )
+
+
+def data_of(page: str) -> dict[str, Any]:
+    [text] = re.findall(r'<script id="data" type="application/json">(.*?)</script>', page, re.DOTALL)
+    data: dict[str, Any] = json.loads(text)
+    return data
+
+
+def test_the_pictures_are_those_of_the_map(found: EscapeMap, page: str) -> None:
+    pictures = data_of(page)["pictures"]
+    assert [picture["name"] for picture in pictures] == list(LIVE_PICTURES)
+    for picture in pictures:
+        content = base64.b64decode(picture["image"].removeprefix("data:image/png;base64,"))
+        pixels = np.asarray(Image.open(BytesIO(content)).convert("RGBA"))
+        np.testing.assert_array_equal(pixels, picture_pixels(found, picture["name"], PAPER))
+
+
+def test_the_view_is_that_of_the_map(found: EscapeMap, page: str) -> None:
+    data = data_of(page)
+    window = found.spec.find_window()
+    assert list(data["window"].values()) == list(window.edges)
+    assert (data["energy"], data["low"], data["high"]) == (0.45, 0.3, 0.6)
+    assert data["starts"] == [[0.1, 0.05]]
+    assert data["labels"] == [outcome.label for outcome in found.outcomes]
+
+
+def test_the_policy_allows_the_script_of_the_file_and_no_request(page: str) -> None:
+    [script] = re.findall(r"<script>(.*?)</script>", page, re.DOTALL)
+    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    [policy] = re.findall(r'http-equiv="Content-Security-Policy" content="([^"]*)"', page)
+    assert f"'sha256-{digest}'" in policy
+    assert policy.startswith("default-src 'none';")
+    assert "http" not in policy
+
+
+def test_the_file_refers_to_nothing_but_the_link(page: str) -> None:
+    assert set(re.findall(r"https?://[^\"'\s<]+", page)) <= {
+        "https://explorer.example/?a=1&amp;b=2",
+        "http://www.w3.org/2000/svg",
+    }
+    assert "x &lt; 1 &amp; y &gt; 2" in page
+
+
+def test_a_live_figure_has_at_most_400_kilobytes() -> None:
+    found = compute_map(MapSpec(POTENTIALS["C5"], Plane.X_PX, 0.5, (224, 224), t_max=100.0))
+    assert len(live_figure(found).encode()) < 400_000
+
+
+def test_a_map_writes_its_live_figure(found: EscapeMap, tmp_path: Path) -> None:
+    found.to_html(tmp_path / "figure.html", energies=(0.3, 0.6), palette="safe")
+    assert data_of((tmp_path / "figure.html").read_text())["high"] == 0.6
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"energies": (0.5, 0.6)}, "energies="),
+        ({"energies": (0.6, 0.3)}, "energies="),
+        ({"energies": (0.3, np.inf)}, "energies"),
+        ({"starts": [(0.0, 0.0)] * 6}, "starts: there are 6; must be at most 5"),
+        ({"palette": "blue"}, "palette="),
+    ],
+)
+def test_illegal_options_are_refused(found: EscapeMap, tmp_path: Path, options: dict[str, Any], message: str) -> None:
+    with pytest.raises(ValueError, match=re.escape(message)):
+        found.to_html(tmp_path / "figure.html", **options)
+    assert not (tmp_path / "figure.html").exists()
+
+
+def test_a_slice_along_a_parameter_has_no_live_figure() -> None:
+    plane = read_slice("x,epsilon=0.5:2", "", System("I"))
+    assert "another system" in live_refusal(MapSpec(CASES["I"], plane, 0.2))
+    assert live_refusal(MapSpec(CASES["I"], Plane.X_PX, 0.2)) == ""
