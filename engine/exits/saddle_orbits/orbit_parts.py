@@ -92,14 +92,21 @@ def floquet_multipliers(matrix: np.ndarray) -> np.ndarray:
 
 def monodromy_matrix(potential: Potential, start: np.ndarray, period: float) -> np.ndarray:
     """Return the monodromy matrix, (4, 4), of an orbit that begins at a state (4,), in units of the well."""
-    kernels = potential.well.kernels
-    steps = trace_steps(kernels, start, period, len(potential.outcomes))
-    states, durations = _shortened_steps(kernels, steps[:, :4], np.diff(steps[:, 4], append=period))
-    matrix = np.eye(4)
-    for state, duration in zip(states, durations, strict=True):
-        # `tangent` changes the rows of the matrix in place: its columns are four deviation vectors along the same orbit.
-        kernels.tangent(4, np.full(4, duration), *np.repeat(state, 4).reshape(4, 4), *matrix)
+    matrix: np.ndarray = transition_matrices_of(potential, start[None], np.array([period]))[0]
     return matrix
+
+
+def transition_matrices_of(potential: Potential, starts: np.ndarray, durations: np.ndarray) -> np.ndarray:
+    """Return the transition matrices, (n, 4, 4), of orbits from n starts (n, 4) after times (n,), in units of the well."""
+    kernels, outcomes = potential.well.kernels, len(potential.outcomes)
+    steps = [trace_steps(kernels, start, end, outcomes) for start, end in zip(starts, durations.tolist(), strict=True)]
+    sizes = [np.diff(each[:, 4], append=end) for each, end in zip(steps, durations.tolist(), strict=True)]
+    states, step_durations = _shortened_steps(kernels, np.concatenate(steps)[:, :4], np.concatenate(sizes))
+    matrices = np.moveaxis(transition_matrices(kernels, states.T, step_durations), -1, 0)
+    # The steps of all orbits follow each other; halved steps end where the whole one did.
+    middles = np.cumsum(step_durations) - 0.5 * step_durations
+    stops = np.searchsorted(middles, np.cumsum(durations[:-1]))
+    return np.array([matrix_product(part) for part in np.split(matrices, stops)])
 
 
 def monodromy_of_brake_orbit(potential: Potential, start: np.ndarray, period: float) -> np.ndarray:
