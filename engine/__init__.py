@@ -14,7 +14,7 @@ programs of this repository, and may change with any version.
   `compute_regularity`, `Regularity`, `compute_trust`, `Trust`, `compute_origin_fates`, `find_stable_manifolds`,
   `compute_lagrangian_descriptor`, `TimeDirection`
 - periodic orbits: `find_periodic_orbit`, `find_periodic_orbits`, `PeriodicOrbit`, `Stability`, `NoPeriodicOrbitError`,
-  `continue_family`, `OrbitFamily`, `SpecialKind`
+  `continue_family`, `OrbitFamily`, `SpecialKind`, `find_symmetric_families`
 - measures: `MEASURES`, `Measure`; of basins and statistics `compute_basin_entropy`, `compute_wada_test`,
   `compute_uncertainty_exponent`, `compute_statistics`, `compute_islands`, `compute_chaotic_share`, `compute_exit_matching`,
   `fit_decay_laws`
@@ -59,6 +59,7 @@ from engine.periodic.periodic_orbit import PeriodicOrbit as PeriodicOrbit
 from engine.periodic.periodic_orbit import Stability as Stability
 from engine.periodic.search import find_periodic_orbits as find_periodic_orbits
 from engine.periodic.special_points import SpecialKind as SpecialKind
+from engine.periodic.symmetric.search import find_symmetric_families as find_symmetric_families
 from engine.propagation.fates import Evidence as Evidence
 from engine.propagation.fates import Fate as Fate
 from engine.propagation.fates import Regularity as Regularity

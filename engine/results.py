@@ -19,6 +19,7 @@ from engine.measures.basins.wada import WadaTest as WadaTest
 from engine.measures.flux import EscapeFlux as EscapeFlux
 from engine.periodic.family import SpecialPoint as SpecialPoint
 from engine.periodic.periodic_orbits import PeriodicOrbits as PeriodicOrbits
+from engine.periodic.symmetric.symmetric_families import SymmetricFamilies as SymmetricFamilies
 from engine.propagation.classification import Outcomes as Outcomes
 from engine.sweeps.sweep import Sweep as Sweep
 from engine.systems.review.potential_review import PotentialReview as PotentialReview

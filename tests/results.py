@@ -34,6 +34,7 @@ from engine import (
     find_periodic_orbits,
     find_returns,
     find_stable_manifolds,
+    find_symmetric_families,
     fit_decay_laws,
     integrate_orbit,
     judge_orbit,
@@ -76,6 +77,7 @@ _MAKERS: dict[str, Callable[[], Result | None]] = {
     "periodic orbit": lambda: find_periodic_orbit(POTENTIAL, (0.0, 0.0, 0.1, 0.8), returns=2),
     "periodic orbits": lambda: find_periodic_orbits(replace(SPEC, resolution=(8, 8)), returns=1),
     "family": lambda: continue_family(find_periodic_orbit(POTENTIAL, (0.0, 0.0, 0.0, 0.8), returns=1), 0.4),
+    "symmetric families": lambda: find_symmetric_families(MapSpec(POTENTIAL, Plane.X_H, (0.2, 0.4), (16, 16), t_max=50.0)),
     "sweep": lambda: compute_sweep(SweepSpec(POTENTIAL, Plane.X_PX, (0.3, 0.36), (20, 20), t_max=100.0, measures="shares")),
 }
 

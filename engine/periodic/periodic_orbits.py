@@ -16,8 +16,40 @@ from engine.periodic.periodic_orbit import DIGITS, STATE_COLUMNS, PeriodicOrbit,
 from engine.slices.sections.section import Section
 
 
+class PointsOfOrbits(Result):
+    """Base of tables with a row for each point of a periodic orbit on a slice."""
+
+    spec: MapSpec
+    x: np.ndarray
+    y: np.ndarray
+    px: np.ndarray
+    py: np.ndarray
+    stability_index: np.ndarray
+    row_dimension: ClassVar = "point"
+    held_as: ClassVar = {"spec": "terms"}
+
+    @property
+    def section(self) -> Section:
+        """The surface of section."""
+        return self.spec.section
+
+    @property
+    def states(self) -> np.ndarray:
+        """(points, 4) x, y, px, py of all points."""
+        return np.column_stack([getattr(self, name) for name in STATE_COLUMNS])
+
+    @property
+    def stability(self) -> np.ndarray:
+        """(points,) the `Stability` of the orbit of each point."""
+        return np.array([Stability.of(index) for index in self.stability_index], object)
+
+    def provenance(self) -> dict[str, Any]:
+        """Return the potential, the request, the integrator and the version."""
+        return self.spec.provenance()
+
+
 @dataclass(frozen=True, eq=False, repr=False)
-class PeriodicOrbits(Result):
+class PeriodicOrbits(PointsOfOrbits):
     """The periodic orbits of one energy with points in a window of a section, as returned by `find_periodic_orbits`.
 
     Its columns have a row for each return of each orbit. Iteration yields the orbits, each as a `PeriodicOrbit`.
@@ -55,18 +87,11 @@ class PeriodicOrbits(Result):
     action: np.ndarray
     image_of: np.ndarray
     complete: bool = True
-    row_dimension: ClassVar = "point"
-    held_as: ClassVar = {"spec": "terms"}
 
     @property
     def energy(self) -> float:
         """Energy h of the orbits."""
         return energy_of(self.spec)
-
-    @property
-    def section(self) -> Section:
-        """The surface of section."""
-        return self.spec.section
 
     def __len__(self) -> int:
         return int(self.orbit.max(initial=0))
@@ -93,16 +118,6 @@ class PeriodicOrbits(Result):
         """(points,) number of returns of the orbit of each point."""
         return np.bincount(self.orbit)[self.orbit]
 
-    @property
-    def stability(self) -> np.ndarray:
-        """(points,) the `Stability` of the orbit of each point."""
-        return np.array([Stability.of(index) for index in self.stability_index], object)
-
-    @property
-    def states(self) -> np.ndarray:
-        """(points, 4) x, y, px, py at all returns."""
-        return np.column_stack([getattr(self, name) for name in STATE_COLUMNS])
-
     def nearest(self, x: float, ordinate: float) -> PeriodicOrbit | None:
         """Return the orbit with the return nearest to a place on the section; None if there is no orbit."""
         point = self.nearest_point(x, ordinate)
@@ -122,10 +137,6 @@ class PeriodicOrbits(Result):
         numbers = f"{format_count(len(self), 'periodic orbit')} with up to {format_count(self.most_returns, 'return')}"
         place = f"to {self.section.place} at h = {format_number(self.energy, DIGITS)}"
         return f"{numbers} {place}: {stable} stable, {len(self) - stable} unstable{'' if self.complete else ', so far'}."
-
-    def provenance(self) -> dict[str, Any]:
-        """Return the potential, the request, the integrator and the version."""
-        return self.spec.provenance()
 
 
 def energy_of(spec: MapSpec) -> float:
