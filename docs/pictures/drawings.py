@@ -40,6 +40,7 @@ from engine import (
     continue_family,
     find_periodic_orbit,
     find_periodic_orbits,
+    find_symmetric_families,
     fit_decay_laws,
     integrate_orbit,
     sample_starts,
@@ -184,6 +185,19 @@ def periodic() -> Figure:
     return figure
 
 
+def families() -> Figure:
+    """Draw families of periodic orbits over the basins of case III and of Hénon and Heiles on slices along the energy."""
+    figure, panels = new_panels(2, 11.0)
+    y_h = Slice(Coordinate.Y, Coordinate.H, Coordinate.PX)
+    paper = MapSpec(CASES["III"], Plane.X_H, (0.05, 0.6), (SIDE, SIDE), t_max=1e3)
+    henon_heiles = MapSpec(POTENTIALS["HH"], y_h, (0.03, 0.25), (SIDE, SIDE), t_max=1e3, section="x = 0")
+    for axes, spec in zip(panels, (paper, henon_heiles), strict=True):
+        draw_picture(axes, compute_map(spec), "basins", PAPER)
+        draw_strokes(axes, periodic_strokes(find_symmetric_families(spec, 3)), spec.find_window(), PAPER)
+        set_title(axes, f"{spec.potential.name} on {spec.plane.title}")
+    return figure
+
+
 def slices() -> Figure:
     """Draw basins on a slice of launch angle and energy, and on a slice with a parameter as an axis."""
     figure, panels = new_panels(2, 11.5)
@@ -260,7 +274,8 @@ def origins() -> Figure:
 
 DRAWINGS: tuple[Callable[[], Figure], ...] = (
     well, maps, blob, tubes, energies, cases, potentials, exits, sali, trust, basin_entropy, wada, uncertainty_exponent,
-    escape_laws, slices, statistics, curves, flux, evidence, periodic, origins, earth_moon, copenhagen, star_cluster, four_hills,
+    escape_laws, slices, statistics, curves, flux, evidence, periodic, families, origins, earth_moon, copenhagen, star_cluster,
+    four_hills,
 )  # fmt: skip
 
 PICTURES = {f"drawings/{draw.__name__.replace('_', '-')}": draw for draw in DRAWINGS}

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
-from types import MappingProxyType
+from types import MappingProxyType, UnionType
 from typing import Any
 
 import numpy as np
@@ -202,7 +202,7 @@ class Layer[Found: Result]:
     stage
         Text of the progress bar of the command line.
     result
-        Class of the result. Its method ``describe()`` returns a sentence, even for an incomplete result.
+        Class of the result, or a union of classes. Its method ``describe()`` returns a sentence, even for an incomplete result.
     job
         Returns the job that computes the result of a map, or raises ValueError if a setting is out of range. The settings contain
         the number of `count` under the name of the layer.
@@ -236,7 +236,7 @@ class Layer[Found: Result]:
     title: str
     help: str
     stage: str
-    result: type[Found]
+    result: type[Found] | UnionType
     job: Callable[[MapSpec, Settings], Job[Found]]
     refusal: Callable[[MapSpec], str] = lambda spec: ""
     count: Count | None = None

@@ -175,7 +175,7 @@ def _picture_html(result: Result) -> str:
 def _draw(result: Result, axes: Axes, palette: Palette) -> None:
     """Draw the result of a layer, or a result that has charts or columns. Functions for other results are registered below."""
     for layer in LAYERS.values():
-        if layer.result is type(result):
+        if isinstance(result, layer.result):
             _draw_layer(layer, result, axes, palette)
             return
     if charts := _find_charts(result, palette):

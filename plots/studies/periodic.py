@@ -22,7 +22,8 @@ FRAME = Frame(
     ("", ""),
     "Where periodic orbits return to the surface of section. A ring is a stable orbit, with an island of regular orbits around "
     "it. A cross is an unstable one, near which orbits are chaotic or escape. T is the period, and a the stability "
-    "index: an orbit is stable if a is between −1 and 1.",
+    'index: an orbit is stable if a is between −1 and 1. On maps along h, the layer "Periodic orbits" draws the families of '
+    "all energies.",
     "@note<br>Click to follow the orbit from (@x{number}, @y{number})",
     described=Shape.RINGS,
     is_square=True,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 from operator import truediv
@@ -31,7 +31,13 @@ _COLUMNS = ("curve", "returns", "abscissa", "ordinate", *STATE_COLUMNS, "period"
 
 @shows_progress("families")
 @checks_types(spec=MapSpec, execution=Execution)
-def find_symmetric_families(spec: MapSpec, returns: int = 1, *, execution: Execution = DEFAULT_EXECUTION) -> SymmetricFamilies:
+def find_symmetric_families(
+    spec: MapSpec,
+    returns: int = 1,
+    *,
+    execution: Execution = DEFAULT_EXECUTION,
+    on_frame: Callable[[SymmetricFamilies], None] | None = None,
+) -> SymmetricFamilies:
     """Find the families of symmetric periodic orbits on a slice along the energy, up to a number of returns.
 
     A symmetry with reversed time must leave all starts of the slice unchanged, for instance y → −y for starts with y = 0 and
@@ -47,6 +53,8 @@ def find_symmetric_families(spec: MapSpec, returns: int = 1, *, execution: Execu
         Largest number of returns of an orbit in a period, 1 to 100. To a section crossed in both directions it is even.
     execution
         How the computation runs. When it is cancelled, families that are not found yet are missing.
+    on_frame
+        Called with the families found so far, after each number of returns but the last.
 
     Returns
     -------
@@ -80,7 +88,11 @@ def find_symmetric_families(spec: MapSpec, returns: int = 1, *, execution: Execu
     search, curves = _Search(grid, reversal, execution.part(1, 2)), list[_Curve]()
     for n in range(1, most + 1):
         curves += [curve._replace(returns=factor * n) for curve in search.curves(n)]
+        if execution.is_cancelled:
+            break
         execution.part(1, 2).report(partial(truediv, n, most))
+        if on_frame is not None and n < most:
+            on_frame(_families(spec, returns, curves, complete=False))
     return _families(spec, returns, curves, complete=not execution.is_cancelled)
 
 

@@ -168,12 +168,19 @@ def test_the_direction_of_time_and_of_crossings_does_not_matter() -> None:
         np.testing.assert_array_equal(find_symmetric_families(other, 1).points, wanted.points)
 
 
-def test_a_cancelled_search_is_not_complete() -> None:
+def test_a_cancelled_search_has_the_families_found_before() -> None:
+    frames: list[SymmetricFamilies] = []
     cancel = threading.Event()
-    cancel.set()
-    found = find_symmetric_families(SPECS["III"], 1, execution=Execution(cancel=cancel))
+
+    def keep(frame: SymmetricFamilies) -> None:
+        frames.append(frame)
+        cancel.set()
+
+    found = find_symmetric_families(SPECS["III"], 3, execution=Execution(cancel=cancel), on_frame=keep)
+    assert [frame.complete for frame in frames] == [False]
     assert not found.complete
-    assert len(found) == 0
+    whole = families("III")
+    np.testing.assert_array_equal(found.points, whole.points[whole.returns == 1])
 
 
 @pytest.mark.parametrize(
