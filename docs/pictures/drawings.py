@@ -186,14 +186,16 @@ def periodic() -> Figure:
 
 
 def families() -> Figure:
-    """Draw families of periodic orbits over the basins of case III and of Hénon and Heiles on slices along the energy."""
-    figure, panels = new_panels(2, 11.0)
+    """Draw families of periodic orbits of case III and of Hénon and Heiles on slices along the energy."""
+    figure, panels = new_panels(2, 8.5)
     y_h = Slice(Coordinate.Y, Coordinate.H, Coordinate.PX)
     paper = MapSpec(CASES["III"], Plane.X_H, (0.05, 0.6), (SIDE, SIDE), t_max=1e3)
     henon_heiles = MapSpec(POTENTIALS["HH"], y_h, (0.03, 0.25), (SIDE, SIDE), t_max=1e3, section="x = 0")
     for axes, spec in zip(panels, (paper, henon_heiles), strict=True):
-        draw_picture(axes, compute_map(spec), "basins", PAPER)
-        draw_strokes(axes, periodic_strokes(find_symmetric_families(spec, 3)), spec.find_window(), PAPER)
+        window = spec.find_window()
+        draw_limits(axes, spec.potential, spec.plane, spec.energy, window)
+        draw_strokes(axes, periodic_strokes(find_symmetric_families(spec, 3)), window, PAPER)
+        show_window(axes, window, *spec.plane.axis_symbols)
         set_title(axes, f"{spec.potential.name} on {spec.plane.title}")
     return figure
 

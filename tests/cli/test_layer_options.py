@@ -19,6 +19,7 @@ AROUND_BODIES = MapSpec(POTENTIALS["Copenhagen"], Plane.X_PX, -1.6)
         (AROUND_BODIES, {"judge": True}, "does not tell regular from chaotic"),
         (AROUND_BODIES, {"manifolds": 2}, "do not rotate"),
         (MapSpec(CASES["I"], Plane.X_Y, 0.3), {"manifolds": 2}, "is not such a slice"),
+        (MapSpec(POTENTIALS["HH"], Plane.X_H, (0.1, 0.3)), {"periodic": 2}, "is not such a slice"),
     ],
 )
 def test_a_layer_that_a_map_cannot_have_is_refused(spec: MapSpec, values: dict, sentence: str) -> None:

@@ -25,6 +25,7 @@ from engine import (
     compute_regularity,
     compute_trust,
     find_stable_manifolds,
+    find_symmetric_families,
 )
 from plots.pictures.palette import COLOUR_BLIND_SAFE
 from plots.printed.figure_files import map_figure_bytes
@@ -84,6 +85,19 @@ def test_netcdf_contains_the_follow_up_analyses(run: Run, tmp_path: Path) -> Non
     np.testing.assert_array_equal(found["character"], compute_regularity(frame).character)
     np.testing.assert_array_equal(found["trust"], compute_trust(frame).trust)
     np.testing.assert_array_equal(found["origin"], compute_origin_fates(BOUNDED_SPEC).origin)
+
+
+def test_along_h_the_layer_of_periodic_orbits_writes_their_families(run: Run, tmp_path: Path) -> None:
+    arguments = ("map", "III", "--plane", "x_h", "--energies", 0.1, 0.3, "--resolution", 5, "--t-max", 50, "--periodic", 1)
+    code, printed, _ = run(*arguments, "--format", "nc", "--output", tmp_path / "map")
+    assert code == 0
+    with (tmp_path / "map-periodic.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    found = find_symmetric_families(MapSpec(CASES["III"], Plane.X_H, (0.1, 0.3), t_max=50.0), 1)
+    assert len(found) >= 3
+    for column in ("curve", "returns", "abscissa", "ordinate", "period", "stability_index"):
+        assert [float(row[column]) for row in rows] == getattr(found, column).tolist()
+    assert found.describe() in " ".join(printed.split())
 
 
 def test_manifolds_csv_has_full_precision(run: Run, tmp_path: Path) -> None:
