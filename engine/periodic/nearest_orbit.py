@@ -9,7 +9,7 @@ import numpy as np
 from engine.exits.exit_rows import absent_exits
 from engine.foundations.validation import checked_count, checked_state, checks_types
 from engine.foundations.wording import format_count
-from engine.integrator.kernels.dense_output import advance_states
+from engine.integrator.kernels.dense_output import advance_states, trace_steps
 from engine.periodic.closed_orbits import primitive_returns, with_all_returns
 from engine.periodic.periodic_orbit import PeriodicOrbit
 from engine.periodic.shooting import Trial, close_orbit, crosses_section, divided
@@ -21,7 +21,7 @@ from engine.systems.potential import Potential
 MOST_RETURNS = 100
 """Largest number of returns of a periodic orbit."""
 
-# Time before the start at which its orbit begins, in units of the well.
+# Longest time before the start at which its orbit begins, in units of the well.
 _BEFORE = 1e-3
 # Largest number of returns of the orbits among which the nearest is chosen.
 _CHOSEN_RETURNS = 6
@@ -112,11 +112,13 @@ def close_near(potential: Potential, section: Section, start: np.ndarray, return
 def _returns_of(potential: Potential, section: Section, start: np.ndarray, count: int, t_max: float) -> np.ndarray:
     """Return the first points of an orbit on a section, (n, 5), in units of the well, with the start if it is on the section."""
     units, well = potential.units, potential.in_well_units
-    # The kernel does not count a start on the section, so the orbit begins shortly before.
-    before = advance_states(well.well.kernels, start[None] / units.state, np.array([-_BEFORE]))[0]
-    numbers = section.in_well_units(units).numbers
+    kernels, state, numbers = well.well.kernels, start / units.state, section.in_well_units(units).numbers
+    # The kernel does not count a start on the section, so the orbit begins shortly before, at most a step of the integrator.
+    times = trace_steps(kernels, state, _BEFORE, len(well.outcomes))[1:2, 4]
+    before = float(times[0]) if times.size else _BEFORE
+    earlier = advance_states(kernels, state[None], np.array([-before]))[0]
     # An orbit may leave through an exit over a saddle and return, but it ends at a body or an escape radius.
-    return find_passages_of_orbit(well, before, count, t_max / units.time + _BEFORE, numbers, absent_exits(well))
+    return find_passages_of_orbit(well, earlier, count, t_max / units.time + before, numbers, absent_exits(well))
 
 
 def first_point(potential: Potential, section: Section, start: np.ndarray, t_max: float) -> np.ndarray | None:

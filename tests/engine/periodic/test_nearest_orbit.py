@@ -176,11 +176,18 @@ def test_a_message_says_why_no_orbit_is_found() -> None:
         find_periodic_orbit(III, [0.0, 0.0, 0.9, 0.9], 1, t_max=50.0)
 
 
-def test_an_orbit_that_collides_has_no_returns() -> None:
+def test_an_orbit_may_start_so_near_to_a_body_that_a_step_takes_less_than_a_thousandth() -> None:
+    start = (0.5022683168764797, 0.0, 0.0, 20.975474325478434)
+    orbit = find_periodic_orbit(POTENTIALS["Copenhagen"], start, 1, t_max=20.0)
+    np.testing.assert_allclose(orbit.state, start, rtol=1e-8, atol=1e-12)
+    assert orbit.period == pytest.approx(7.640735009, abs=1e-8)
+
+
+def test_an_orbit_that_collides_has_no_further_returns() -> None:
     # Within a body the steps would shrink for ever.
     start = [-0.4924421090451381, 0.0, -10.519685765771072, -4.347225551183829]
-    with pytest.raises(NoPeriodicOrbitError, match="does not return 1 time to y = 0"):
-        find_periodic_orbit(POTENTIALS["Copenhagen"], start, 1)
+    with pytest.raises(NoPeriodicOrbitError, match="does not return 4 times to y = 0"):
+        find_periodic_orbit(POTENTIALS["Copenhagen"], start, 4)
 
 
 @pytest.mark.parametrize(
