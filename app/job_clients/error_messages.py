@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import re
 
+from engine import NoPeriodicOrbitError
 from engine.foundations.wording import format_number
 
 log = logging.getLogger(__name__)
@@ -22,8 +23,8 @@ ZOOM_ENDS = "Double precision ends here: pixels cannot be closer together."
 
 
 def error_sentence(error: Exception) -> str:
-    """Return the message of a `ValueError`, which is meant for users. Log any other error, and return a reference to the log."""
-    if isinstance(error, ValueError):
+    """Return the message of an error that is meant for users. Log any other error, and return a reference to the log."""
+    if isinstance(error, ValueError | NoPeriodicOrbitError):
         return _ENERGY.sub(_explain, str(error))
     log.error("a job failed", exc_info=error)
     return "This could not be computed; the server's log says why."

@@ -12,7 +12,7 @@ from app.job_clients.latest_request import Locked
 from app.job_clients.requested_results import RequestedResults
 from app.state.view import Start
 from app.state.view_state import ViewState
-from engine import Fate, Orbit, judge_orbit
+from engine import Fate, Orbit, PeriodicOrbit, judge_orbit
 from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job, Queue
 from engine.propagation.fates import describe_fate
@@ -34,12 +34,15 @@ class StartOrbit:
         Why the start has no orbit; empty for other starts.
     digits
         Birkhoff digits of a bounded orbit; None until they are computed, and for other orbits.
+    periodic
+        The periodic orbit that starts there; None if none is known.
     """
 
     start: Start
     curves: OrbitCurves | None = None
     problem: str = ""
     digits: BirkhoffDigits | None = None
+    periodic: PeriodicOrbit | None = None
 
     @property
     def orbit(self) -> Orbit | None:
@@ -52,8 +55,16 @@ class StartOrbit:
         return judge_orbit(self.orbit, self.digits) if self.orbit is not None else None
 
     def headline(self) -> str:
-        """Return the verdict in a few words, the problem, or "Integrating …"."""
+        """Return the description of a periodic orbit, or the verdict in a few words, the problem, or "Integrating …"."""
+        if self.periodic is not None:
+            return self.periodic.describe()
         return self.verdict.headline() if self.verdict is not None else self.problem or "Integrating …"
+
+    def summarize(self) -> str:
+        """Return what is known in a few words, for lists: "none" for a problem, "…" without an orbit."""
+        if self.periodic is not None:
+            return f"periodic, {self.periodic.stability}"
+        return self.verdict.summarize() if self.verdict is not None else "none" if self.problem else "…"
 
     def describe(self) -> str:
         """Return the whole verdict, the problem, or "Integrating …"."""
@@ -88,12 +99,20 @@ class OrbitRequests:
         self._state, self._show, self._notify = state, show, notify
         self._orbits = RequestedResults(jobs, _curves_or_sentence, lambda arrived: self._update(), latest)
         self._digits = RequestedResults(jobs, _digits_or_sentence, self._take_digits, latest)
+        self._periodic: dict[tuple[Any, ...], PeriodicOrbit] = {}
         self._shown_orbits: tuple[StartOrbit, ...] = ()
         state.param.watch(lambda *events: self.follow(), ["starts", "system", "plane", "section", "energy", "t_max"])
 
     def follow(self) -> None:
         """Request the orbits of new starts, and cancel the requests of removed starts."""
         self._orbits.follow([job for job in map(self._state.orbit_job, self._state.starts) if job is not None])
+        self._update()
+
+    def name_periodic(self, start: Start, orbit: PeriodicOrbit) -> None:
+        """Show a start in the view as that of a periodic orbit, for as long as its system and its energy stay the same."""
+        job = self._state.orbit_job(start)
+        assert job is not None
+        self._periodic[_potential_and_state(job)] = orbit
         self._update()
 
     def _take_digits(self, arrived: Mapping[Job[Any], BirkhoffDigits | str]) -> None:
@@ -123,7 +142,13 @@ class OrbitRequests:
         if isinstance(curves, str):
             return StartOrbit(start, problem=curves)
         digits = self._digits.found.get(_digits_job(job))
-        return StartOrbit(start, curves, digits=None if isinstance(digits, str) else digits)
+        periodic = self._periodic.get(_potential_and_state(job))
+        return StartOrbit(start, curves, digits=None if isinstance(digits, str) else digits, periodic=periodic)
+
+
+def _potential_and_state(job: Job[Orbit]) -> tuple[Any, ...]:
+    """Return the arguments that the orbit of a job has in common with those for another t_max or section."""
+    return job.arguments[:2]
 
 
 def _is_bounded(result: OrbitCurves | str) -> bool:

@@ -8,10 +8,11 @@ from typing import Any
 
 from app.job_clients.latest_request import Locked
 from app.job_clients.shown_results import ShownResults
-from app.state.view_state import ViewState
+from app.state.view_state import STARTS_FULL, ViewState
 from app.views.components.notice import Notice
 from engine import System
 from engine.jobs.client import JobSubmitter
+from plots.studies.study import Changes
 
 
 @dataclass(frozen=True)
@@ -44,6 +45,20 @@ class SessionContext:
     latest: Locked
     copy: Callable[[str], None]
     open_view: Callable[[System, dict[str, Any]], None]
+
+    def change(self, changes: Changes) -> None:
+        """Change the view as a study says."""
+        changes = dict(changes)
+        system, start = changes.pop("system", None), changes.pop("start", None)
+        if changes.get("plane", self.state.plane) != self.state.plane:
+            # Window and starts belong to the other slice.
+            changes = {"window": None, "starts": (), "chosen": 0, **changes}
+        if system is not None:
+            self.open_view(system, changes)
+            return
+        self.state.param.update(**changes)
+        if start is not None and not self.state.add_start(start):
+            self.notice.show(STARTS_FULL)
 
 
 class History:

@@ -70,10 +70,10 @@ class Explorer:
             # The process that reviews the formula starts while the page is made and loaded.
             process_state().limited.start()
         self.state, self.results, self.notice = self.links.state, ShownResults(), Notice()
-        context = SessionContext(
+        self._context = SessionContext(
             self.state, self.results, self._client, self.notice, callbacks.every, callbacks.latest, self._copy, self._open_view
         )
-        self._make_presenters(context)
+        self._make_presenters(self._context)
         self._make_views()
         self.state.follow(self.analysis.show, "analysis")
         self.links.connect(self.potential, self.browser, self.maps.progress, self.notice)
@@ -118,7 +118,7 @@ class Explorer:
                 Analysis.STATISTICS: self.statistics.parts(),
                 Analysis.MEASURES: self.analyses.measures.parts(),
                 **{name: [self.studies[each].view.build for each in names] for name, names in studies_by_tab().items()},
-                SECTION_STUDY.name: [section.view.build, lambda: [LiveSection(state, results, locked, section.change)]],
+                SECTION_STUDY.name: [section.view.build, lambda: [LiveSection(state, results, locked, self._context.change)]],
                 Analysis.WATCH: [self._build_watch],
             },
             "analysis",

@@ -12,7 +12,7 @@ import panel as pn
 from param.parameterized import Event
 
 from app.browser.components.orbit_components import OrbitPlayer
-from app.job_clients.chosen_orbit_requests import DivergentStartRequests, SeparationRequests
+from app.job_clients.chosen_orbit_requests import DivergentStartRequests, PeriodicOrbitRequests, SeparationRequests
 from app.job_clients.orbit_requests import OrbitRequests, StartOrbit
 from app.session.context import SessionContext
 from app.state.view import Start
@@ -70,6 +70,7 @@ class OrbitPresenter:
         actions = OrbitActions(
             add=locked(add_start),
             find_divergent_start=lambda: self._divergent_start_requests.search(),
+            find_periodic_orbit=lambda: self._periodic_orbit_requests.search(),
             open_section=self._open_section,
             show_all_times=lambda: self._set_interval(None),
             copy=context.copy,
@@ -82,6 +83,9 @@ class OrbitPresenter:
         self.inspector = Inspector(self.controls, self.player, self.plots, self._separation_plot, latest)
         self._orbit_requests = OrbitRequests(state, jobs, self._show, self.controls.say, latest)
         self._divergent_start_requests = DivergentStartRequests(state, jobs, self.controls.say, locked)
+        self._periodic_orbit_requests = PeriodicOrbitRequests(
+            state, jobs, self.controls.say, locked, context.change, self._orbit_requests.name_periodic
+        )
         self._separation_requests = SeparationRequests(state, jobs, self._separation_plot.show, self.controls.say, locked)
         state.param.watch(self._update_message, ["starts", "chosen", "system", "plane", "section", "energy", "t_max"])
         state.param.watch(lambda *events: self._show(self._orbits), ["chosen", "palette"])

@@ -6,10 +6,9 @@ from typing import Any, NamedTuple
 
 from app.job_clients.latest_request import LatestRequest
 from app.session.context import SessionContext
-from app.state.view_state import STARTS_FULL
 from app.views.analysis.study_view import StudyView
 from engine.jobs.job import Job
-from plots.studies.study import Changes, Study, Subject
+from plots.studies.study import Study, Subject
 
 
 class _Run(NamedTuple):
@@ -32,7 +31,7 @@ class StudyPresenter:
 
     def __init__(self, study: Study[Any], context: SessionContext) -> None:
         self._study, self._state, self._results = study, context.state, context.results
-        self._open_view, self._notice = context.open_view, context.notice
+        self._change = context.change
         self._run: _Run | None = None
         self._call: Job[Any] | None = None
         # The run whose result is shown. It differs from `_run` until the first result of a new run arrives.
@@ -104,18 +103,4 @@ class StudyPresenter:
         """Change the view as the study says for a click at a place of a chart."""
         if self.view.shown is None or self._shown_run is None:
             return
-        self.change(self._study.changes(*self._shown_run, self.view.shown, x, y))
-
-    def change(self, changes: Changes) -> None:
-        """Change the view."""
-        changes = dict(changes)
-        system, start = changes.pop("system", None), changes.pop("start", None)
-        if changes.get("plane", self._state.plane) != self._state.plane:
-            # Window and starts belong to the other slice.
-            changes = {"window": None, "starts": (), "chosen": 0, **changes}
-        if system is not None:
-            self._open_view(system, changes)
-            return
-        self._state.param.update(**changes)
-        if start is not None and not self._state.add_start(start):
-            self._notice.show(STARTS_FULL)
+        self._change(self._study.changes(*self._shown_run, self.view.shown, x, y))

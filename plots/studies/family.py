@@ -7,7 +7,7 @@ from itertools import groupby
 
 import numpy as np
 
-from engine import OrbitFamily, SpecialKind, Stability, continue_family, find_periodic_orbit
+from engine import OrbitFamily, PeriodicOrbit, SpecialKind, Stability, continue_family, find_periodic_orbit
 from engine.foundations.wording import format_number
 from engine.jobs.job import Job, Queue
 from engine.results import SpecialPoint
@@ -47,13 +47,16 @@ _PERIOD = _frame("period", "Period T", "T", "The time after which an orbit repea
 _ACTION = _frame("action", "Action J", "J", "The integral of the momentum along the orbit; its slope is T.")
 
 
-def _job(subject: Subject, axis: str) -> Job[OrbitFamily]:
+def nearest_orbit_job(subject: Subject) -> Job[PeriodicOrbit]:
+    """Return the job that finds the periodic orbit nearest to the chosen orbit; ValueError without one."""
     if subject.state is None:
-        raise ValueError("Choose an orbit first: the family of the periodic orbit nearest to it is followed.")
-    near = Job(
-        find_periodic_orbit, (subject.potential, subject.state), (("t_max", subject.t_max), ("section", subject.section)),
-        Queue.LONG_CALL,
-    )  # fmt: skip
+        raise ValueError("Choose an orbit first: the periodic orbit nearest to it is searched for.")
+    options = ("t_max", subject.t_max), ("section", subject.section)
+    return Job(find_periodic_orbit, (subject.potential, subject.state), options, Queue.LONG_CALL)
+
+
+def _job(subject: Subject, axis: str) -> Job[OrbitFamily]:
+    near = nearest_orbit_job(subject)
     energy = float(subject.potential.energy(np.array(subject.state)))
     bounds = min(subject.energies.low, energy), max(subject.energies.high, energy)
     return Job(continue_family, (near, bounds), queue=Queue.LONG_CALL)

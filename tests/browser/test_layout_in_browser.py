@@ -56,7 +56,16 @@ _ELEMENTS = """() => {
 _LEGEND = """foot => [...foot.querySelectorAll(".patch")]
     .map(patch => [patch.textContent.trim(), patch.getAttribute("style").replace("--colour:", "")])"""
 # Labels of buttons that have no use when the page opens.
-_IDLE = ("Whole plane", "Stop", "Continue", "Clear all", "Remove", "Find divergent start", "Count the whole view")
+_IDLE = (
+    "Whole plane",
+    "Stop",
+    "Continue",
+    "Clear all",
+    "Remove",
+    "Find divergent start",
+    "Nearest periodic orbit",
+    "Count the whole view",
+)
 
 
 def figures(explorer: ExplorerPage) -> dict[str, list[float]]:

@@ -142,3 +142,11 @@ def test_an_interval_drawn_over_a_history_is_shown_by_path_curves_and_player(exp
     assert begin <= times[0] < times[-1] <= end
     explorer.press("Whole orbit")
     explorer.page.wait_for_function("end => Bokeh.documents[0].get_model_by_name('r2').x_range.end == end", arg=whole[1])
+
+
+def test_the_nearest_periodic_orbit_is_added_and_described(open_explorer: Callable[..., ExplorerPage]) -> None:
+    explorer = open_explorer(link=QUICK.replace("h=0.19", "h=0.14&orbits=-0.3,0.02"))
+    explorer.press("Nearest periodic orbit")
+    expect(explorer.text("Periodic orbit, stable, T = 6.22505, a = 0.58323, 1 return to y = 0.")).to_be_visible()
+    expect(explorer.page.get_by_role("radio", name=re.compile("^2: .*: periodic, stable"))).to_be_checked()
+    expect(explorer.text("Searching for the nearest periodic orbit")).to_have_count(0)

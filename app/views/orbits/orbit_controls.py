@@ -38,6 +38,7 @@ class OrbitActions:
 
     add: Callable[[float, float], None]
     find_divergent_start: Callable[[], None]
+    find_periodic_orbit: Callable[[], None]
     open_section: Callable[[], None]
     show_all_times: Callable[[], None]
     copy: Callable[[str], None]
@@ -55,6 +56,7 @@ class OrbitControls:
         self.button = button("Integrate", self._submit, kind="primary", align="end")
         self.list = OrbitList(self._choose, visible=False)
         self.divergent_start = button("Find divergent start", actions.find_divergent_start, margin=0)
+        self.periodic_orbit = button("Nearest periodic orbit", actions.find_periodic_orbit, margin=0)
         self.remove = button("Remove", lambda: state.remove_start(state.chosen), margin=0)
         self.clear = button("Clear all", lambda: state.param.update(starts=(), chosen=0), margin=0)
         self.open_section = button("", actions.open_section, margin=0)
@@ -81,7 +83,7 @@ class OrbitControls:
     def head(self, player: pn.viewable.Viewable) -> pn.viewable.Viewable:
         """Return the list of the orbits, the verdict on the chosen orbit, buttons, and the player."""
         orbits = flex_row(self.list, self.clear, justify="space-between", align="center")
-        buttons = flex_row(self.divergent_start, self.remove, self.open_section, gap="6px")
+        buttons = flex_row(self.divergent_start, self.periodic_orbit, self.remove, self.open_section, gap="6px")
         orbits.margin = buttons.margin = (5, 10)
         return pn.Column(
             orbits, self.text, buttons, player,
@@ -99,6 +101,8 @@ class OrbitControls:
     def _follow_plane(self, plane: Slice, section: Section) -> None:
         """Label the boxes with the axes of the plane."""
         self.x.label, self.ordinate.label = plane.axis_symbols
+        # Along a parameter, starts belong to other potentials.
+        self.periodic_orbit.visible = plane.parameter is None
         energy_or_parameter = [axis for axis in plane.axes if axis is Coordinate.H or axis is plane.parameter]
         self.open_section.visible = bool(energy_or_parameter)
         if energy_or_parameter:
@@ -189,17 +193,11 @@ def _list_label(orbits: Sequence[StartOrbit], index: int) -> str:
         if text == f"{format_number(earlier_x)}, {format_number(earlier_ordinate)}":
             difference = f"({format_number(x - earlier_x, 2)}, {format_number(ordinate - earlier_ordinate, 2)})"
             text = f"orbit {earlier_index + 1} + {difference}"
-    return f"{index + 1}: {text}: {_short_outcome(orbits[index])}"
+    return f"{index + 1}: {text}: {orbits[index].summarize()}"
 
 
 def _value(value: float) -> str:
     return format_number(value, 3) if math.isfinite(value) else ""
-
-
-def _short_outcome(orbit: StartOrbit) -> str:
-    if orbit.verdict is not None:
-        return orbit.verdict.summarize()
-    return "none" if orbit.problem else "…"
 
 
 def _value_table(orbit: Orbit | None) -> str:

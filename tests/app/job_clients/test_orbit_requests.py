@@ -8,13 +8,14 @@ from collections.abc import Callable, Iterator
 import numpy as np
 import pytest
 
-from app.job_clients.chosen_orbit_requests import DivergentStartRequests, SeparationRequests
+from app.job_clients.chosen_orbit_requests import DivergentStartRequests, PeriodicOrbitRequests, SeparationRequests
 from app.job_clients.orbit_requests import OrbitRequests, StartOrbit
 from app.state.view_state import ViewState
-from engine import System, integrate_orbit
+from engine import Plane, System, find_periodic_orbit, integrate_orbit, read_section
 from engine.jobs.client import JobClient
 from engine.jobs.manager import Jobs
 from engine.results import Separation
+from tests.app.session.session_lock import context_of
 from tests.engine.jobs.inbox import wait_until_idle
 from tests.waiting import SECONDS
 
@@ -213,3 +214,72 @@ def test_the_request_for_the_digits_of_a_removed_start_is_cancelled(session: Ses
     recorder.wait_for(lambda: recorder.all_computed(1))
     state.remove_start(0)
     assert jobs.in_flight == 0
+
+
+def begin_periodic_search(session: Session) -> PeriodicOrbitRequests:
+    state, requests, recorder, jobs = session
+    state.param.update(energy=0.14)
+    change = context_of(state, jobs, recorder.changed).change
+    return PeriodicOrbitRequests(state, jobs, recorder.notify, unlocked, change, requests.name_periodic)
+
+
+def test_the_nearest_periodic_orbit_is_added_and_named_while_its_energy_stays(session: Session) -> None:
+    state, _, recorder, _ = session
+    search = begin_periodic_search(session)
+    state.add_start((-0.3, 0.02))
+    search.search()
+    recorder.wait_for(lambda: recorder.all_computed(2) and recorder.orbits[1].periodic is not None)
+    expected = find_periodic_orbit(state.potential, state.start_state((-0.3, 0.02)), t_max=1e3)
+    assert state.chosen == 1
+    assert state.starts[1] == pytest.approx(tuple(expected.points[0]), abs=1e-9)
+    assert recorder.orbits[1].headline() == expected.describe()
+    assert recorder.orbits[1].summarize() == "periodic, stable"
+    assert recorder.orbits[0].periodic is None
+    state.energy = 0.15
+    assert [one.periodic for one in recorder.orbits] == [None, None]
+    state.param.update(energy=0.14, t_max=1e2)
+    assert recorder.orbits[1].headline() == expected.describe()
+
+
+def test_a_start_on_a_periodic_orbit_is_kept(session: Session) -> None:
+    state, _, recorder, _ = session
+    search = begin_periodic_search(session)
+    state.add_start((-0.3, 0.02))
+    search.search()
+    recorder.wait_for(lambda: recorder.all_computed(2) and recorder.orbits[1].periodic is not None)
+    moved = state.starts[1][0] + 1e-12, state.starts[1][1]
+    state.param.update(starts=(moved,), chosen=0)
+    search.search()
+    recorder.wait_for(lambda: recorder.all_computed(1) and recorder.orbits[0].periodic is not None)
+    assert state.starts == (moved,)
+
+
+def test_a_periodic_orbit_is_shown_on_the_slice_of_its_section(session: Session) -> None:
+    state, _, recorder, _ = session
+    search = begin_periodic_search(session)
+    state.plane = Plane.X_Y
+    state.add_start((-0.3, 0.0))
+    search.search()
+    recorder.wait_for(lambda: recorder.all_computed(1) and recorder.orbits[0].periodic is not None)
+    assert state.plane == Plane.X_PX
+    assert state.energy == 0.14
+
+
+def test_a_periodic_orbit_that_no_slice_shows_is_described(session: Session) -> None:
+    state, _, recorder, _ = session
+    search = begin_periodic_search(session)
+    state.section = read_section("y + px = 0")
+    state.add_start((-0.3, 0.02))
+    search.search()
+    recorder.wait_for(lambda: "no slice contains its start" in recorder.messages[-1])
+    assert recorder.messages[-1].startswith("Periodic orbit, ")
+    assert len(state.starts) == 1
+
+
+def test_a_search_without_periodic_orbit_says_why(session: Session) -> None:
+    state, _, recorder, _ = session
+    search = begin_periodic_search(session)
+    state.energy = 0.3
+    state.add_start((0.26, 0.39))
+    search.search()
+    recorder.wait_for(lambda: "no periodic orbit: the orbit of the start does not return" in recorder.messages[-1])

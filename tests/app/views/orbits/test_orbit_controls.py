@@ -6,6 +6,7 @@ from dataclasses import fields
 
 from app.state.view_state import ViewState
 from app.views.orbits.orbit_controls import OrbitActions, OrbitControls
+from engine import Coordinate, ParameterAxis, Slice
 from engine.trajectories.chaos_indicators import IndicatorVerdict, Verdict
 
 
@@ -18,3 +19,11 @@ def test_indicators_with_the_same_verdict_share_its_sentence() -> None:
     assert table.count("no verdict") == 1
     assert table.count("<tr>") == table.count("</tr>") == 3
     assert table.index("SALI") < table.index("<td rowspan=2>") < table.index("digits")
+
+
+def test_the_nearest_periodic_orbit_is_offered_where_the_starts_have_one_potential() -> None:
+    state = ViewState()
+    controls = OrbitControls(state, OrbitActions(**{field.name: lambda *_: None for field in fields(OrbitActions)}))
+    assert controls.periodic_orbit.visible
+    state.plane = Slice(Coordinate.X, ParameterAxis("epsilon", 0.5, 2.0, state.system))
+    assert not controls.periodic_orbit.visible
