@@ -14,7 +14,7 @@ programs of this repository, and may change with any version.
   `compute_regularity`, `Regularity`, `compute_trust`, `Trust`, `compute_origin_fates`, `find_stable_manifolds`,
   `compute_lagrangian_descriptor`, `TimeDirection`
 - periodic orbits: `find_periodic_orbit`, `find_periodic_orbits`, `PeriodicOrbit`, `Stability`, `NoPeriodicOrbitError`,
-  `continue_family`, `OrbitFamily`, `SpecialKind`, `find_symmetric_families`
+  `continue_family`, `OrbitFamily`, `SpecialKind`, `find_symmetric_families`, `read_jpl_table`, `write_jpl_table`
 - measures: `MEASURES`, `Measure`; of basins and statistics `compute_basin_entropy`, `compute_wada_test`,
   `compute_uncertainty_exponent`, `compute_statistics`, `compute_islands`, `compute_chaotic_share`, `compute_exit_matching`,
   `fit_decay_laws`
@@ -53,6 +53,8 @@ from engine.measures.uncertain_pairs import compute_uncertainty_exponent as comp
 from engine.opened_results import open_result as open_result
 from engine.periodic.continuation import continue_family as continue_family
 from engine.periodic.family import OrbitFamily as OrbitFamily
+from engine.periodic.jpl_table import read_jpl_table as read_jpl_table
+from engine.periodic.jpl_table import write_jpl_table as write_jpl_table
 from engine.periodic.nearest_orbit import NoPeriodicOrbitError as NoPeriodicOrbitError
 from engine.periodic.nearest_orbit import find_periodic_orbit as find_periodic_orbit
 from engine.periodic.periodic_orbit import PeriodicOrbit as PeriodicOrbit

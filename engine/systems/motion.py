@@ -111,23 +111,32 @@ class Motion(Result):
         return 0.5 * self.mass * (self._squared_speed_of_origin - checked_finite("constant", constant))
 
     @property
-    def _squared_speed_of_origin(self) -> float:
-        """The square of the speed Ω d with which the origin moves around the axis of the frame.
+    def rotation_axis(self) -> np.ndarray:
+        """(2,) x and y of the axis of a rotating frame: the barycentre in the three-body problem, in the coordinates of any body.
 
-        The terms a x + b y in Φ = … + a x + b y − ½ m Ω² (x² + y²) are part of the centrifugal term for an axis at (a, b)/mΩ²,
-        as in the three-body problem in the coordinates of one body. If there are other quadratic terms, the axis is at the
-        origin.
+        The terms a x + b y in Φ = … + a x + b y − ½ m Ω² (x² + y²) are part of the centrifugal term for an axis at (a, b)/mΩ². If
+        there are other quadratic terms, the axis is at the origin.
+
+        Raises
+        ------
+        ValueError
+            If the frame does not rotate.
         """
         if not self.rotation:
-            raise ValueError(f"potential={self.name}: its frame must rotate for a Jacobi constant")
+            raise ValueError(f"potential={self.name}: its frame must rotate")
         definition: Any = self.form.definition
         terms: dict[Expression, float] = dict(definition.terms) if isinstance(definition, Sum) else {}
-        divisor = (self.mass * self.rotation) ** 2
-        is_centrifugal = all(math.isclose(terms.get(square, 0.0), -0.5 * self.mass * self.rotation**2) for square in _SQUARES)
+        divisor = self.mass * self.rotation**2
+        is_centrifugal = all(math.isclose(terms.get(square, 0.0), -0.5 * divisor) for square in _SQUARES)
         # The square of a very small rate underflows to 0.
         if not is_centrifugal or _PRODUCT in terms or not divisor:
-            return 0.0
-        return (terms.get(X, 0.0) ** 2 + terms.get(Y, 0.0) ** 2) / divisor
+            return np.zeros(2)
+        return np.array([terms.get(X, 0.0), terms.get(Y, 0.0)]) / divisor
+
+    @property
+    def _squared_speed_of_origin(self) -> float:
+        """The square of the speed Ω d with which the origin moves around the axis of the frame."""
+        return float(np.sum(np.square(self.rotation * self.rotation_axis)))
 
     def in_rotating_frame(self, rotation: float) -> Self:
         """Return the potential in a frame that rotates about the origin at the rate Ω: Φ = V − ½ m Ω² (x² + y²).

@@ -94,7 +94,7 @@ def test_jacobi_constant_stands_for_the_energy_of_a_rotating_frame(run: Run) -> 
     ("words", "problem"),
     [
         (("Hill", "--energy", -2, "--jacobi", 4), "jacobi=4.0: give either --energy H or --jacobi C"),
-        (("I", "--jacobi", 3), "potential=I: its frame must rotate for a Jacobi constant"),
+        (("I", "--jacobi", 3), "potential=I: its frame must rotate"),
         (("I",), "energy: give --energy H, or --jacobi C in a rotating frame"),
     ],
 )

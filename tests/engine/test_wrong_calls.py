@@ -256,7 +256,7 @@ WRONG_CALLS = (
     ('parse_formula("−1/r; centre (0, 0) 0")', "formula, character 20: centre radius=0.0: must be from 1e-06 to 1e+06"),
     ('parse_formula("−1/r; centre (1e10, 0) 1")', "formula, character 23: centre x=10000000000.0: must be a finite number"),
     ('parse_formula("−1/r; centre (x, 0) 1")', "formula, character 15: a place, a radius or a mass must be a number, without"),
-    ("POTENTIALS['HH'].jacobi_energy(float('nan'))", "potential=HH: its frame must rotate for a Jacobi constant"),
+    ("POTENTIALS['HH'].jacobi_energy(float('nan'))", "potential=HH: its frame must rotate"),
     ("POTENTIALS['Hill'].jacobi_energy(float('nan'))", "constant=nan: must be"),
     ("POTENTIALS['Hill'].jacobi_constant([1.0, np.inf])", "energy="),
     ("compute_wada_test(m, valid=[])", "valid=[]: must be None for a map, of which the interior pixels count"),
@@ -288,7 +288,7 @@ WRONG_CALLS = (
     ("sample_starts(III, 0.45, 10, plane=Plane.X_Y, window=(5.0, 6.0, 5.0, 6.0))", "window=…: nothing of it is inside at"),
     ('sample_starts(III, float("nan"), 10)', "energy=nan: must be a finite number, at most 1e+09 in magnitude"),
     ('III.save(tmp / "result.csv")', "path=…: must end in .nc"),
-    ("III.jacobi_constant(0.2)", "potential=III: its frame must rotate for a Jacobi constant"),
+    ("III.jacobi_constant(0.2)", "potential=III: its frame must rotate"),
     (
         'parse_formula("x + y²; well (0, 0)")',
         "formula, character 9: potential=x + y²: V must have a minimum to which its axes can be moved",
