@@ -17,7 +17,6 @@ from app.state.system_review import review_catalogue_entry
 from app.state.view import View
 from engine import (
     EscapeMap,
-    Window,
     compute_map,
     find_lyapunov_orbits,
     integrate_orbit,
@@ -27,11 +26,11 @@ from engine.foundations.execution import DEFAULT_EXECUTION
 from engine.jobs.job import run_job
 from engine.maps.map_jobs import map_job
 from engine.slices.limiting_curves import trace_equipotentials
-from plots.layers.layer import Analyses, Stroke
+from plots.layers.layer import Analyses
 from plots.layers.map_images import picture_pixels
 from plots.layers.table import LAYERS
 from plots.pictures.palette import LIGHT, PAPER, PATCH_EDGE
-from plots.printed.window_axes import draw_curve, draw_pixels
+from plots.printed.window_axes import draw_curve, draw_pixels, draw_strokes
 
 STATIC = Path(__file__).parents[2] / "app" / "static"
 PICTURES = {f"gallery/{preset.key}": preset for preset in PRESETS}
@@ -55,20 +54,20 @@ def _draw_thumbnail(preset: Preset) -> Image.Image:
     frame = compute_map(replace(preset.view.map_spec(review_catalogue_entry(preset.view.system.case)), resolution=(SIDE, SIDE)))
     analyses = _analyse(frame, preset.view)
     pixels = picture_pixels(frame, preset.picture, PAPER, analyses)
-    if preset.picture != "curves":
+    strokes = [
+        stroke
+        for name, result in analyses.items()
+        if (over := LAYERS[name].over) is not None and over.strokes is not None and preset.picture in over.pictures
+        for stroke in over.strokes(result)
+    ]
+    if preset.picture != "curves" and not strokes:
         return Image.fromarray(pixels)
     figure = Figure(figsize=(SIDE / _DPI, SIDE / _DPI), dpi=_DPI, facecolor="none")
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set_axis_off()
     draw_pixels(axes, pixels, frame.spec.find_window(), frame.spec.find_window())
-    strokes = [
-        stroke
-        for name, result in analyses.items()
-        if (over := LAYERS[name].over) is not None and over.strokes is not None
-        for stroke in over.strokes(result)
-    ]
     if strokes:
-        _draw_strokes(axes, strokes, frame.spec.find_window())
+        draw_strokes(axes, strokes, frame.spec.find_window(), PAPER)
     else:
         _draw_curves(axes, frame, preset.view)
     axes.set(xlim=(0.0, 1.0), ylim=(0.0, 1.0))
@@ -81,11 +80,6 @@ def _analyse(frame: EscapeMap, view: View) -> Analyses:
     known = {map_job(frame.spec): frame}
     layers = (layer for name, layer in LAYERS.items() if name in view.layers)
     return {layer.name: run_job(layer.job(frame.spec, view.settings), DEFAULT_EXECUTION, known) for layer in layers}
-
-
-def _draw_strokes(axes: Axes, strokes: Sequence[Stroke], window: Window) -> None:
-    for stroke in strokes:
-        draw_curve(axes, stroke.lines, window, colors=stroke.colour(PAPER), linewidths=0.4 * stroke.width)
 
 
 def _draw_curves(axes: Axes, frame: EscapeMap, view: View) -> None:

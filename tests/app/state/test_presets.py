@@ -26,10 +26,15 @@ from engine import (
     Fate,
     MapSpec,
     Orbit,
+    PeriodicOrbit,
     Plane,
+    SpecialKind,
+    Stability,
     classify_orbits,
     compute_flux,
     compute_map,
+    continue_family,
+    find_periodic_orbit,
     integrate_orbit,
     sample_starts,
     start_states,
@@ -105,6 +110,7 @@ def test_a_preset_is_a_valid_view_with_a_link_and_a_small_picture(preset: Preset
 
 def test_examples_show_the_analyses_that_they_explain() -> None:
     shown = {"threads": "manifolds", "passages": "origins", "doubt": "trust", "owl": "judge"}
+    shown |= dict.fromkeys(("divided", "doubled", "direct"), "periodic")
     assert {key: key for key, layer in shown.items() if layer in view_of(key).layers} == {key: key for key in shown}
 
 
@@ -149,6 +155,9 @@ FATES = {
     "cluster": [1, 2, 0],
     "bar": [1, 2, 0],
     "spindle": [1, 1, 0],
+    "divided": [0, 0, 1],
+    "doubled": [0, 0, 1],
+    "direct": [1, 0, 0],
 }
 
 
@@ -186,6 +195,47 @@ def test_the_sticky_orbit_looks_regular_and_escapes_late() -> None:
     early = orbit.t < 20_000
     assert orbit.sali[early].min() > 1e-4
     assert orbit.r2[early].max() < 0.91
+
+
+def periodic_near(view: View, x: float, px: float, returns: int) -> PeriodicOrbit:
+    return find_periodic_orbit(POTENTIALS[view.system.case], start_of(view, x, px), returns)
+
+
+def changes_of(orbit: PeriodicOrbit, energy: float) -> dict[SpecialKind, float]:
+    """Return the energies of the special points of a family up to an energy that are no resonances."""
+    special = continue_family(orbit, energy).special
+    return {point.kind: round(point.energy, 4) for point in special if point.kind is not SpecialKind.RESONANCE}
+
+
+def test_the_island_that_divides_has_the_orbits_of_the_caption() -> None:
+    view = view_of("divided")
+    middle, *sides = (periodic_near(view, x, 0.2935, 1) for x in (0.0, -0.07, 0.07))
+    assert middle.stability is Stability.UNSTABLE
+    assert [each.stability for each in sides] == [Stability.STABLE] * 2
+    assert changes_of(middle, 0.31) == {SpecialKind.BRANCHING: 0.3114}
+
+
+def test_the_period_doubles_at_the_energy_of_the_caption() -> None:
+    view = view_of("doubled")
+    cross, rings = periodic_near(view, 0.1312, 0.2867, 1), periodic_near(view, 0.1227, 0.2871, 2)
+    assert (cross.stability, rings.stability) == (Stability.REFLECTING, Stability.STABLE)
+    assert (cross.returns, rings.returns) == (1, 2)
+    assert changes_of(cross, 0.3175) == {SpecialKind.DOUBLING: 0.3187}
+    (later,) = continue_family(rings, 0.3201).at(0.32)
+    assert later.stability is Stability.REFLECTING
+
+
+def test_family_g_changes_its_stability_at_the_energy_of_the_caption() -> None:
+    """M. Hénon, Astronomy & Astrophysics 1, 223 (1969): the constant there, −2h, is 4.5."""
+    view = view_of("direct")
+    middle, *rings = (periodic_near(view, x, 0.0, 1) for x in (0.2987, 0.5368, 0.1069))
+    assert middle.stability is Stability.UNSTABLE
+    assert [each.stability for each in rings] == [Stability.STABLE] * 2
+    special = continue_family(middle, -2.3).special
+    assert [(point.kind, round(point.energy, 2)) for point in special] == [(SpecialKind.BRANCHING, -2.25)]
+    # "Follow the family" begins from the chosen orbit.
+    chosen = find_periodic_orbit(POTENTIALS["Hill"], start_of(view, *view.starts[view.chosen]), t_max=view.t_max)
+    assert chosen.period == pytest.approx(middle.period, rel=1e-9)
 
 
 def near(share: float, count: int) -> Any:
