@@ -283,3 +283,16 @@ def test_a_search_without_periodic_orbit_says_why(session: Session) -> None:
     state.add_start((0.26, 0.39))
     search.search()
     recorder.wait_for(lambda: "no periodic orbit: the orbit of the start does not return" in recorder.messages[-1])
+
+
+def test_the_path_of_an_unstable_periodic_orbit_is_explained(session: Session) -> None:
+    state, _, recorder, _ = session
+    search = begin_periodic_search(session)
+    state.energy = 0.15
+    state.add_start((0.26, 0.0))
+    search.search()
+    recorder.wait_for(lambda: recorder.all_computed(2) and recorder.orbits[1].periodic is not None)
+    assert recorder.orbits[1].summarize() == "periodic, unstable"
+    assert recorder.messages[-1].startswith("Rounding errors grow on this unstable orbit")
+    # The verdict on the path stays with its values.
+    assert recorder.orbits[1].describe() == recorder.orbits[1].verdict.describe()  # type: ignore[union-attr]
