@@ -26,7 +26,7 @@ from plots.texts.exports import file_stem, netcdf_bytes, orbits_csv, python_line
 File = tuple[str, Callable[[], bytes]]
 """Name of a file, and the function that makes its content. Calling the function may take seconds."""
 
-LIVE = "Live figure (HTML)"
+LIVE = "Save as live figure"
 """Label of the button that saves a figure which needs no server."""
 
 # Labels of the buttons that save data.
@@ -70,7 +70,8 @@ class Downloads:
         """Return the parts of a column: the buttons under their titles."""
         hint = TextPane(f"<span class='quiet'>{NOT_ALLOWED}</span>", visible=self.embed.disabled)
         figure_title, data_title = (TextPane(f"<h3>{title}</h3>", margin=(6, 10, 0, 10)) for title in ("Figure", "Data"))
-        return [self.link, self.embed, hint, figure_title, *self.figure.build(), data_title, *self.data.values(), self.saver]
+        live, *data = self.data.values()
+        return [self.link, self.embed, hint, figure_title, *self.figure.build(), live, data_title, *data, self.saver]
 
     async def save(self, file: File) -> None:
         """Make a file in a thread, because making it would delay the event loop, and send the file to the browser."""
