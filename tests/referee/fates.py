@@ -17,6 +17,9 @@ _ROUNDING = 1e-5
 # Factor of the distance up to which an orbit is followed to see whether it comes back, possibly from a large outer well.
 _FARTHER = 1000.0
 
+# Factor of the time within which orbits come back: one that stays near a Lyapunov orbit for a while comes back later.
+_LONGER = 4.0
+
 
 def check_fates(setting: Setting, seed: int, report: Report) -> None:
     """Compare the fates of random starts, and of the start of an example."""
@@ -56,14 +59,15 @@ def _check_beyond(setting: Setting, channel: int, state: np.ndarray, known: dict
     """Compare whether an orbit comes back with the share of the flux through its exit that does."""
     flux = setting.flux
     share = float(flux.returning[flux.channels == channel][0])
+    longest = _LONGER * flux.followed_time
     try:
-        later = setting.orbits.end_of(_beyond(setting, state), setting.exits, flux.followed_time, farther=_FARTHER)
+        later = setting.orbits.end_of(_beyond(setting, state), setting.exits, longest, farther=_FARTHER)
     except EnergyError:
         raise
     except UndecidedError:
         # The orbit runs to infinity in a finite time.
         later = None
-    if later is not None and later.time < flux.followed_time and not later.channel and not setting.orbits.leaves(later.state):
+    if later is not None and later.time < longest and not later.channel and not setting.orbits.leaves(later.state):
         report.add(CHECK, UNDECIDED, "an orbit is far away, but does not leave")
         return
     comes_back = later is not None and later.channel > 0
