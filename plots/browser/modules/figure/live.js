@@ -42,7 +42,7 @@ class LiveFigure {
     this.#well = new WellPicture(part("well"), data, this.#integrator)
     const worker = URL.createObjectURL(new Blob([part("worker").textContent], {type: "text/javascript"}))
     const pool = new Pool(() => new Worker(worker))
-    this.#frames = new Frames(pool, workerCount(), (view, pixels) => this.#receive(view, pixels))
+    this.#frames = new Frames(pool, workerCount(), (view, pixels, isMoving) => this.#receive(view, pixels, isMoving))
     this.#frames.setSystem(data.system, modules)
     this.#player = new EnergyPlayer(
       energy => this.#setEnergy(energy),
@@ -191,12 +191,17 @@ class LiveFigure {
     this.#paint()
   }
 
-  /** @type {(view: import("../engine/pixels.js").View, pixels: import("../engine/pixels.js").Pixels) => void} */
-  #receive(view, pixels) {
+  /**
+   * @param {import("../engine/pixels.js").View} view
+   * @param {import("../engine/pixels.js").Pixels} pixels
+   * @param {boolean} isMoving  whether another preview may follow in the next frame
+   */
+  #receive(view, pixels, isMoving) {
     this.#shown = this.#map.preview(view, pixels)
     const horizon = number(view.horizon * this.#integrator.system.units.time)
-    this.#showStatus(`Preview, computed here: ${view.columns} × ${view.rows} pixels, up to t = ${horizon}.`)
-    document.body.dataset.pictures = String(Number(document.body.dataset.pictures ?? 0) + 1)
+    // A screen reader would read every change of the sentence.
+    const details = isMoving ? "" : `: ${view.columns} × ${view.rows} pixels, up to t = ${horizon}`
+    this.#showStatus(`Preview, computed here${details}.`)
     this.#paint()
   }
 
@@ -249,7 +254,7 @@ class LiveFigure {
       return [String(index + 1), ...start.map(value => String(Number(value.toPrecision(10)))), outcome, ...numbers]
     })
     part("orbit-rows").replaceChildren(...rows.map(row))
-    part("orbit-axes").replaceChildren(...["", ...axes, "outcome", "t", "crossings"].map(text => cell("th", text)))
+    part("orbit-axes").replaceChildren(...["orbit", ...axes, "outcome", "t", "crossings"].map(text => cell("th", text)))
   }
 
   /** @param {boolean} isPlaying */
@@ -259,7 +264,7 @@ class LiveFigure {
 
   /** @param {string} sentence */
   #showStatus(sentence) {
-    part("status").textContent = sentence
+    if (part("status").textContent !== sentence) part("status").textContent = sentence
   }
 }
 
