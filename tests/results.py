@@ -78,6 +78,9 @@ _MAKERS: dict[str, Callable[[], Result | None]] = {
     "periodic orbits": lambda: find_periodic_orbits(replace(SPEC, resolution=(8, 8)), returns=1),
     "family": lambda: continue_family(find_periodic_orbit(POTENTIAL, (0.0, 0.0, 0.0, 0.8), returns=1), 0.4),
     "symmetric families": lambda: find_symmetric_families(MapSpec(POTENTIAL, Plane.X_H, (0.2, 0.4), (16, 16), t_max=50.0)),
+    "family along a parameter": lambda: continue_family(
+        find_periodic_orbit(POTENTIAL, (0.0, 0.0, 0.0, 0.8), returns=1), 1.1, along="epsilon"
+    ),
     "sweep": lambda: compute_sweep(SweepSpec(POTENTIAL, Plane.X_PX, (0.3, 0.36), (20, 20), t_max=100.0, measures="shares")),
 }
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from engine.exits.saddle_orbits.orbit_parts import matrix_product, monodromy_matrix, trace_parts
 from engine.integrator.kernels.dense_output import sample_path, trace_steps
 from engine.periodic.shooting import Trial
-from engine.periodic.symmetries import Symmetry, symmetries_of
+from engine.periodic.symmetries import Symmetry
 from engine.propagation.passages import find_passages_of_orbit
 from engine.slices.sections.section import Section
 from engine.systems.potential import Potential
@@ -35,10 +37,10 @@ def stability_index(potential: Potential, orbit: Trial) -> float:
     return 0.5 * (float(np.trace(transition_matrix(potential, orbit))) - 2.0)
 
 
-def half_symmetry(potential: Potential, orbit: Trial) -> Symmetry | None:
-    """Return the reflection that maps a closed orbit, half a period later, onto itself; None if there is none."""
+def half_symmetry(potential: Potential, orbit: Trial, symmetries: Sequence[Symmetry]) -> Symmetry | None:
+    """Return the reflection, of some symmetries, that maps a closed orbit onto itself half a period later; None without one."""
     state, _ = _first_half(potential, orbit)
-    for symmetry in symmetries_of(potential):
+    for symmetry in symmetries:
         if not symmetry.reverses_time and np.abs(symmetry.factors * state - orbit.states[0]).max() < SAME_POINT:
             return symmetry
     return None
@@ -109,7 +111,7 @@ def with_all_returns(potential: Potential, section: Section, orbit: Trial) -> Tr
     everything = np.vstack([np.column_stack([orbit.states[orbit.returns], known]), further])
     everything = everything[np.argsort(everything[:, 4])]
     times = everything[:, 4]
-    return Trial(everything[:, :4], np.diff(times, append=times[0] + period), orbit.energy, (1,) * len(times))
+    return Trial(everything[:, :4], np.diff(times, append=times[0] + period), orbit.value, (1,) * len(times))
 
 
 def sampled_path(potential: Potential, orbit: Trial, points: int) -> np.ndarray:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -11,11 +12,17 @@ import numpy as np
 from engine.foundations.arrays import read_only
 from engine.foundations.validation import checked_count, checked_number
 from engine.foundations.wording import format_count, format_number
+from engine.periodic.family_parameter import ENERGY, EnergyParameter
 from engine.periodic.periodic_orbit import DIGITS, STATE_COLUMNS, PeriodicOrbit, ResultOnSection, Stability
 from engine.periodic.shooting import close_orbit
 from engine.periodic.special_points import SpecialKind
 from engine.periodic.switching import first_orbits_of_branches
 from engine.slices.sections.section_text import section_of_file
+from engine.systems.formulas.formula_parser import read_potential
+from engine.systems.parameters import symbol_of
+from engine.systems.potential import Potential
+from engine.systems.related_wells import with_well_of
+from engine.systems.system import System
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -41,6 +48,8 @@ class SpecialPoint:
         What happens there.
     member
         Number of its member in the family, from 0.
+    value
+        What changes along the family, at the member, dimensionless: h, or the parameter of the system.
     energy, period
         h and T of the member, dimensionless.
     turns, periods
@@ -51,6 +60,7 @@ class SpecialPoint:
 
     kind: SpecialKind
     member: int
+    value: float
     energy: float
     period: float
     turns: int = 0
@@ -65,13 +75,15 @@ class SpecialPoint:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class OrbitFamily(ResultOnSection):
-    """A family of periodic orbits with n returns, along which the energy changes, as returned by `continue_family`.
+    """A family of periodic orbits with n returns, along which the energy or a parameter changes, see `continue_family`.
 
     Its columns have a row for each member. Special points are members. All quantities are dimensionless, and arrays are
     read-only. ``len(family)`` is the number of members, and ``family[k]`` a member as a `PeriodicOrbit`.
 
     Attributes
     ----------
+    value
+        (members,) what changes along the family: the energy, or the parameter of the system.
     energy, period, stability_index, action
         (members,) numbers of each member, see `PeriodicOrbit`.
     states
@@ -84,12 +96,15 @@ class OrbitFamily(ResultOnSection):
         Why the family ends at its first member, and why at its last one.
     complete
         Whether the search has ended, and was not cancelled.
+    along
+        Name of what changes along the family: "h", or the parameter of the system.
     section
         The surface of section.
     potential
-        The potential in which the orbits move.
+        The potential of the orbit from which the family was continued. Along a parameter, each member has its own.
     """
 
+    value: np.ndarray
     energy: np.ndarray
     period: np.ndarray
     stability_index: np.ndarray
@@ -99,6 +114,7 @@ class OrbitFamily(ResultOnSection):
     special: tuple[SpecialPoint, ...] = ()
     ends: tuple[str, ...] = ("", "")
     complete: bool = True
+    along: str = ENERGY
     row_dimension: ClassVar = "member"
     held_as: ClassVar = ResultOnSection.held_as | {"states": "x", "time": "time"}
 
@@ -114,8 +130,20 @@ class OrbitFamily(ResultOnSection):
         x, y, px, py = (read_only(column) for column in self.states[member].T.copy())
         return PeriodicOrbit(
             energy, period, stability_index, action, self.time[member], x, y, px, py,
-            section=self.section, potential=self.potential,
+            section=self.section, potential=self._potential_at(float(self.value[member])),
         )  # fmt: skip
+
+    def _potential_at(self, value: float) -> Potential:
+        """Return the potential in which the orbits of a value move."""
+        system = self.potential.system
+        if self.along == ENERGY or system is None:
+            return self.potential
+        return system.with_parameter(self.along, value).potential
+
+    @property
+    def symbol(self) -> str:
+        """Symbol of what changes along the family: "h" or "ε"."""
+        return symbol_of(self.along)
 
     @property
     def returns(self) -> int:
@@ -132,35 +160,41 @@ class OrbitFamily(ResultOnSection):
         """(members, n, 2) returns in the coordinates in which the section is drawn."""
         return self.section.axes.points(self.states)
 
-    def at(self, h: float) -> tuple[PeriodicOrbit, ...]:
-        """Return the orbits of the family at an energy: none beyond its ends, several if it has folds.
+    def at(self, value: float) -> tuple[PeriodicOrbit, ...]:
+        """Return the orbits of the family at an energy, or at a value of its parameter: none beyond its ends, several with folds.
 
         Raises
         ------
         ValueError
-            If `h` is not finite.
+            If `value` is not finite.
         """
-        h = checked_number("h", h)
-        low, high = self.energy[:-1], self.energy[1:]
-        # A member at this energy belongs to one segment only.
-        segments = np.flatnonzero(((low <= h) & (h < high)) | ((high < h) & (h <= low)))
-        found = [self._between(int(k), h) for k in segments]
-        if self.energy[-1] == h:
+        value = checked_number("value", value)
+        low, high = self.value[:-1], self.value[1:]
+        # A member at this value belongs to one segment only.
+        segments = np.flatnonzero(((low <= value) & (value < high)) | ((high < value) & (value <= low)))
+        found = [self._between(int(k), value) for k in segments]
+        if self.value[-1] == value:
             found.append(self[len(self) - 1])
         return tuple(orbit for orbit in found if orbit is not None)
 
-    def _between(self, member: int, h: float) -> PeriodicOrbit | None:
-        """Return the orbit at an energy between a member and the next one; None if it is not found."""
+    def _between(self, member: int, value: float) -> PeriodicOrbit | None:
+        """Return the orbit at a value between a member and the next one; None if it is not found."""
         begin, end = self[member], self[member + 1]
-        share = (h - begin.energy) / (end.energy - begin.energy)
-        trial, units = begin.trial, self.potential.units
+        share = (value - self.value[member]) / (self.value[member + 1] - self.value[member])
+        energy = value if self.along == ENERGY else begin.energy
+        # Both members and the orbit between them in the same units.
+        potential = with_well_of(self._potential_at(value), begin.potential)
+        trial, units = begin.trial, potential.units
         states = (begin.states + share * (end.states - begin.states)) / units.state
         durations = trial.durations + share * (np.diff(end.time, append=end.period) / units.time - trial.durations)
         # The nodes between the returns stay where they are: Newton's method moves them.
         nodes = trial.states + (states - trial.states[trial.returns])[trial.owners]
-        guess = trial._replace(states=nodes, durations=durations, energy=h / units.energy)
-        closed = close_orbit(self.potential.in_well_units, self.section.in_well_units(units), guess)
-        return None if closed is None else PeriodicOrbit.from_trial(self.potential, self.section, closed[0])
+        guess = trial._replace(states=nodes, durations=durations, value=energy / units.energy)
+        closed = close_orbit(EnergyParameter(potential, self.section), guess)
+        if closed is None:
+            return None
+        orbit = PeriodicOrbit.from_trial(potential, self.section, closed[0])
+        return replace(orbit, potential=self._potential_at(value))
 
     def switch(self, number: int, step: float | None = None) -> tuple[PeriodicOrbit, ...]:
         """Return orbits of the other families that meet this one at a special point, one for each branch found, to be continued.
@@ -181,8 +215,12 @@ class OrbitFamily(ResultOnSection):
         Raises
         ------
         ValueError
-            If a parameter is out of range, or no orbit of a branch is found.
+            If a parameter is out of range, no orbit of a branch is found, or the family is one along a parameter of the system.
         """
+        if self.along != ENERGY:
+            raise ValueError(
+                f"number={number}: branches are followed from families along h only; continue a member next to the point along h"
+            )
         if not self.special:
             raise ValueError(f"number={number}: the family has no special points")
         point = self.special[checked_count("number", number, 0, len(self.special) - 1)]
@@ -202,15 +240,15 @@ class OrbitFamily(ResultOnSection):
 
     def describe(self) -> str:
         """Describe the family in a sentence."""
-        low, high = (format_number(bound, DIGITS) for bound in (self.energy.min(), self.energy.max()))
+        low, high = (format_number(bound, DIGITS) for bound in (self.value.min(), self.value.max()))
         folds = format_count(sum(point.kind is SpecialKind.FOLD for point in self.special), "fold")
         others = format_count(sum(point.kind is not SpecialKind.FOLD for point in self.special), "other special point")
         members = format_count(len(self), "member")
-        return f"Family of periodic orbits with {members} from h = {low} to {high}, {folds}, {others}."
+        return f"Family of periodic orbits with {members} from {self.symbol} = {low} to {high}, {folds}, {others}."
 
     def columns(self) -> Mapping[str, np.ndarray]:
         """Return a table with a row for each member: its numbers and its first return."""
-        numbers = {name: getattr(self, name) for name in NUMBERS}
+        numbers = {name: getattr(self, name) for name in ("value", *NUMBERS)}
         return numbers | {name: self.states[:, 0, k] for k, name in enumerate(STATE_COLUMNS)}
 
     def to_xarray(self) -> xr.Dataset:
@@ -219,9 +257,19 @@ class OrbitFamily(ResultOnSection):
         states = {name: (("member", "return"), self.states[..., k], {"units": "1"}) for k, name in enumerate(STATE_COLUMNS)}
         return dataset.assign(states | {"time": (("member", "return"), self.time, {"units": "1"})})
 
+    def provenance(self) -> dict[str, Any]:
+        """Return the potential, its system, the section, the integrator and the version."""
+        system = self.potential.system
+        return super().provenance() | ({} if system is None else {"system": json.dumps(asdict(system))})
+
     @classmethod
     def read_parts(cls, dataset: xr.Dataset) -> dict[str, Any]:
         """Return the section, the states and the times, which files store in other forms."""
         states = np.stack([dataset[name].transpose("member", "return").values for name in STATE_COLUMNS], axis=-1)
         time = dataset["time"].transpose("member", "return").values
-        return {"section": section_of_file(dataset.attrs), "states": read_only(states), "time": read_only(time)}
+        parts = {"section": section_of_file(dataset.attrs), "states": read_only(states), "time": read_only(time)}
+        if "system" not in dataset.attrs:
+            return parts
+        # The potentials of members are those of the system.
+        system = System(**json.loads(dataset.attrs["system"]))
+        return parts | {"potential": replace(read_potential(dataset.attrs), system=system)}

@@ -1,7 +1,7 @@
 """Follow a family of periodic orbits through its members, by their distance in the space of unknowns.
 
-The energy is one of the unknowns, so a family is followed through folds, where its energy turns (pseudo-arclength continuation;
-Keller 1977, in Applications of Bifurcation Theory). All quantities are in units of the well.
+The parameter is one of the unknowns, so a family is followed through folds, where its value turns (pseudo-arclength continuation;
+Keller 1977, in Applications of Bifurcation Theory). All quantities are in units of the well and of the parameter.
 """
 
 from __future__ import annotations
@@ -13,9 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from engine.periodic.closed_orbits import stability_index
+from engine.periodic.family_parameter import FamilyParameter
 from engine.periodic.shooting import Equations, Trial, close_orbit, crosses_section, divided, linearise
-from engine.slices.sections.section import Section
-from engine.systems.potential import Potential
 
 # First step, and smallest step, in the space of unknowns.
 _FIRST_STEP, _SMALLEST_STEP = 0.01, 1e-7
@@ -35,24 +34,24 @@ class Member(NamedTuple):
     direction: np.ndarray
 
     @classmethod
-    def of(cls, potential: Potential, orbit: Trial, equations: Equations, previous: np.ndarray) -> Member:
+    def of(cls, parameter: FamilyParameter, orbit: Trial, equations: Equations, previous: np.ndarray) -> Member:
         """Return a closed orbit as a member. Its direction is on the side of a previous direction."""
         null_vector = np.linalg.svd(equations.jacobian)[2][-1]
         direction = null_vector if null_vector @ previous >= 0.0 else -null_vector
-        return cls(orbit, stability_index(potential, orbit), direction)
+        return cls(orbit, stability_index(parameter.at(orbit.value).potential, orbit), direction)
 
 
-def first_member(potential: Potential, section: Section, orbit: Trial, *, rising: bool) -> Member | None:
-    """Return the first member of a family, from a closed orbit, in the direction of higher or lower energy.
+def first_member(parameter: FamilyParameter, orbit: Trial, *, rising: bool) -> Member | None:
+    """Return the first member of a family, from a closed orbit, in the direction of higher or lower values of the parameter.
 
     None if the orbit cannot be integrated.
     """
-    equations = linearise(potential, section, orbit)
+    equations = linearise(parameter, orbit)
     if equations is None:
         return None
     upward = np.zeros(orbit.vector.size)
     upward[-1] = 1.0 if rising else -1.0
-    return Member.of(potential, orbit, equations, upward)
+    return Member.of(parameter, orbit, equations, upward)
 
 
 class Segment(NamedTuple):
@@ -62,13 +61,13 @@ class Segment(NamedTuple):
     after: Member
 
 
-def follow_family(potential: Potential, section: Section, first: Member, longest_step: float) -> Iterator[Segment]:
+def follow_family(parameter: FamilyParameter, first: Member, longest_step: float) -> Iterator[Segment]:
     """Yield the segments of a family from a member. The iterator ends where the next member is not found.
 
     Parameters
     ----------
-    potential, section
-        See `engine.periodic.shooting.linearise`.
+    parameter
+        The parameter.
     first
         The first member.
     longest_step
@@ -77,39 +76,40 @@ def follow_family(potential: Potential, section: Section, first: Member, longest
     """
     member, step = first, min(_FIRST_STEP, longest_step)
     while step >= _SMALLEST_STEP:
-        following = _advance(potential, section, member, step)
+        following = _advance(parameter, member, step)
         if following is None:
             step *= _SHORTER
             continue
         yield Segment(member, following)
-        member = _divided(potential, section, following)
+        member = _divided(parameter, following)
         step = min(step * _LONGER, longest_step * math.sqrt(len(member.orbit.states) / len(member.orbit.durations)))
 
 
-def _divided(potential: Potential, section: Section, member: Member) -> Member:
+def _divided(parameter: FamilyParameter, member: Member) -> Member:
     """Return a member with further nodes if its errors grow much; its direction is found again."""
-    orbit = divided(potential, member.orbit)
+    orbit = divided(parameter.at(member.orbit.value).potential, member.orbit)
     if orbit.parts == member.orbit.parts:
         return member
-    equations = linearise(potential, section, orbit)
+    equations = linearise(parameter, orbit)
     if equations is None:
         return member
-    # Times and energy change as before.
+    # The times and the value change as before.
     count = len(orbit.durations) + 1
     previous = np.concatenate([np.zeros(orbit.states.size), member.direction[-count:]])
-    return Member.of(potential, orbit, equations, previous)
+    return Member.of(parameter, orbit, equations, previous)
 
 
-def _advance(potential: Potential, section: Section, member: Member, step: float) -> Member | None:
+def _advance(parameter: FamilyParameter, member: Member, step: float) -> Member | None:
     """Return the member at a distance; None if it is not found, or may belong to another family."""
     predicted = member.orbit.moved(member.orbit.vector + step * member.direction)
-    closed = close_orbit(potential, section, predicted, member.direction)
+    closed = close_orbit(parameter, predicted, member.direction)
     if closed is None:
         return None
     orbit, equations = closed
+    potential, section, _ = parameter.at(orbit.value)
     if not crosses_section(potential, section, orbit):
         return None
-    following = Member.of(potential, orbit, equations, member.direction)
+    following = Member.of(parameter, orbit, equations, member.direction)
     before, after = member.stability_index, following.stability_index
     is_near = np.linalg.norm(orbit.vector - predicted.vector) <= step
     changes_little = abs(after - before) <= _LARGEST_CHANGE * (1.0 + min(abs(before), abs(after)))

@@ -11,6 +11,7 @@ from engine.foundations.validation import checked_count, checked_state, checks_t
 from engine.foundations.wording import format_count
 from engine.integrator.kernels.dense_output import advance_states, trace_steps
 from engine.periodic.closed_orbits import primitive_returns, with_all_returns
+from engine.periodic.family_parameter import EnergyParameter
 from engine.periodic.periodic_orbit import PeriodicOrbit
 from engine.periodic.shooting import Trial, close_orbit, crosses_section, divided
 from engine.propagation.passages import find_passages_of_orbit
@@ -98,14 +99,15 @@ def close_near(potential: Potential, section: Section, start: np.ndarray, return
     # The start need not be on the section: the orbit is closed from its first return.
     states, durations = passages[:-1, :4], np.diff(passages[:, 4])
     trial = divided(well, Trial(states, durations, float(potential.energy(start)) / units.energy, (1,) * returns))
-    closed = close_orbit(well, well_section, trial)
+    parameter = EnergyParameter(potential, section)
+    closed = close_orbit(parameter, trial)
     if closed is None or not crosses_section(well, well_section, closed[0]):
         return None
     # Newton's method can lead to an orbit with further returns, or with fewer.
     orbit = with_all_returns(well, well_section, closed[0])
     orbit = orbit.shortened(primitive_returns(orbit))
     if orbit.durations.size != returns:
-        closed = close_orbit(well, well_section, divided(well, orbit))
+        closed = close_orbit(parameter, divided(well, orbit))
     return None if closed is None else closed[0]
 
 

@@ -119,13 +119,15 @@ class PeriodicOrbit(ResultOnSection):
     ) -> PeriodicOrbit:
         """Return a closed orbit in units of the well as an orbit of a potential, with a section in the units of the potential.
 
+        The value of the orbit is its energy.
+
         The stability index and the action, in the units of the potential, are computed unless they are known.
         """
         units, well = potential.units, potential.in_well_units
         times = np.concatenate([[0.0], np.cumsum(orbit.durations)]) * units.time
         states = section.settle(orbit.states[orbit.returns] * units.state)
         return cls(
-            orbit.energy * units.energy, float(times[-1]), stability_index(well, orbit) if known_index is None else known_index,
+            orbit.value * units.energy, float(times[-1]), stability_index(well, orbit) if known_index is None else known_index,
             action(well, orbit) * units.length * units.momentum if known_action is None else known_action,
             read_only(times[:-1]), *map(read_only, states.T.copy()), section=section, potential=potential,
         )  # fmt: skip

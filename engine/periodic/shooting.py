@@ -1,10 +1,10 @@
 """Close an orbit: correct its returns to a section by Newton's method until the orbit is periodic.
 
-The unknowns are the states at the nodes, the times between the n returns of a period, and the energy. The returns are nodes, and
-further nodes divide the time between two returns evenly. Each part of the orbit must end where the next part begins, the returns
-must be on the section, and the energy must be the given one (multiple shooting; Stoer & Bulirsch 2002, Introduction to Numerical
-Analysis, section 7.3.5). Errors grow over one part only, so very unstable orbits are found as well. All quantities are in units
-of the well.
+The unknowns are the states at the nodes, the times between the n returns of a period, and the value of the parameter of a family,
+such as the energy. The returns are nodes, and further nodes divide the time between two returns evenly. Each part of the orbit
+must end where the next part begins, the returns must be on the section, and the orbit must have the energy of the value (multiple
+shooting; Stoer & Bulirsch 2002, Introduction to Numerical Analysis, section 7.3.5). Errors grow over one part only, so very
+unstable orbits are found as well. All quantities are in units of the well, and the value is in the unit of the parameter.
 """
 
 from __future__ import annotations
@@ -14,8 +14,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from engine.exits.saddle_orbits.orbit_parts import trace_parts, velocities
+from engine.exits.saddle_orbits.orbit_parts import Parts, trace_parts, velocities
 from engine.integrator.kernels.dense_output import sample_path
+from engine.periodic.family_parameter import Conditions, FamilyParameter, NoPotentialError
 from engine.slices.sections.section import Crossing, Section
 from engine.systems.potential import Potential
 
@@ -48,15 +49,15 @@ class Trial(NamedTuple):
         (nodes, 4) x, y, px, py at the nodes.
     durations
         (n,) times from each return to the next one.
-    energy
-        The energy h.
+    value
+        The value of the parameter, see `engine.periodic.family_parameter`: the energy h if this is the parameter.
     parts
         (n,) numbers of parts between each return and the next one.
     """
 
     states: np.ndarray
     durations: np.ndarray
-    energy: float
+    value: float
     parts: tuple[int, ...]
 
     @property
@@ -77,12 +78,12 @@ class Trial(NamedTuple):
     @property
     def vector(self) -> np.ndarray:
         """(4 nodes + n + 1,) all unknowns."""
-        return np.concatenate([self.states.ravel(), self.durations, [self.energy]])
+        return np.concatenate([self.states.ravel(), self.durations, [self.value]])
 
     def moved(self, vector: np.ndarray) -> Trial:
         """Return the trial orbit with other unknowns."""
         size = self.states.size
-        return self._replace(states=vector[:size].reshape(-1, 4), durations=vector[size:-1], energy=float(vector[-1]))
+        return self._replace(states=vector[:size].reshape(-1, 4), durations=vector[size:-1], value=float(vector[-1]))
 
     def shortened(self, returns: int) -> Trial:
         """Return the trial orbit with the first returns only."""
@@ -102,7 +103,7 @@ class Equations(NamedTuple):
     Attributes
     ----------
     jacobian
-        (m, m) derivatives of the residual by the unknowns, the last of which is the energy.
+        (m, m) derivatives of the residual by the unknowns, the last of which is the value of the parameter.
     residual
         (m,) gaps between the parts, distances of the returns from the section, and error of the energy.
     """
@@ -111,48 +112,73 @@ class Equations(NamedTuple):
     residual: np.ndarray
 
 
-def linearise(potential: Potential, section: Section, trial: Trial) -> Equations | None:
+def linearise(parameter: FamilyParameter, trial: Trial) -> Equations | None:
     """Return the equations of a trial orbit; None if it cannot be integrated.
 
     Parameters
     ----------
-    potential
-        The potential in units of its well, `Potential.in_well_units`.
-    section
-        The section, in units of the well.
+    parameter
+        The parameter.
     trial
         The trial orbit.
     """
-    states, gaps, returns, owners = trial.states, trial.states.size, trial.returns, trial.owners
-    parts = trace_parts(potential, states, trial.part_durations)
+    try:
+        conditions = parameter.at(trial.value)
+        by_value = parameter.derivative(trial.value, trial.vector.size, lambda others: _residual(others, trial))
+    except NoPotentialError:
+        return None
+    parts = _traced(conditions, trial)
     if parts is None:
         return None
-    size = gaps + len(returns) + 1
-    jacobian, residual = np.zeros((size, size)), np.empty(size)
-    residual[:gaps], jacobian[:gaps, :gaps] = parts.gaps(states), parts.changes_of_gaps()
-    changes = velocities(potential, parts.ends) / np.array(trial.parts)[owners, None]
-    jacobian[np.arange(gaps), gaps + np.repeat(owners, 4)] = changes.ravel()
-    residual[gaps:-1] = section.values(states[returns])
-    for row, k in enumerate(returns, gaps):
-        jacobian[row, 4 * k : 4 * k + 4] = section.rates(states[k], np.eye(4))
-    x, y, px, py = states[0]
-    residual[-1] = potential.energy(states[0]) - trial.energy
-    jacobian[-1, :4] = *potential.gradient(x, y), px, py
-    jacobian[-1, -1] = -1.0
+    residual = _residual_of_parts(conditions, trial, parts)
+    jacobian = np.column_stack([_jacobian(conditions, trial, parts), by_value])
     return Equations(jacobian, residual) if np.isfinite(residual).all() and np.isfinite(jacobian).all() else None
 
 
+def _traced(conditions: Conditions, trial: Trial) -> Parts | None:
+    """Return the parts of a trial orbit; None if it cannot be integrated."""
+    return trace_parts(conditions.potential, trial.states, trial.part_durations)
+
+
+def _residual(conditions: Conditions, trial: Trial) -> np.ndarray:
+    """Return the residual of a trial orbit, (m,); NaN if it cannot be integrated."""
+    parts = _traced(conditions, trial)
+    return np.full(trial.vector.size, np.nan) if parts is None else _residual_of_parts(conditions, trial, parts)
+
+
+def _residual_of_parts(conditions: Conditions, trial: Trial, parts: Parts) -> np.ndarray:
+    """Return the residual of a trial orbit with these parts."""
+    potential, section, energy = conditions
+    distances = section.values(trial.states[trial.returns])
+    return np.concatenate([parts.gaps(trial.states), distances, [potential.energy(trial.states[0]) - energy]])
+
+
+def _jacobian(conditions: Conditions, trial: Trial, parts: Parts) -> np.ndarray:
+    """Return the derivatives of the residual by the states and the times, (m, m − 1)."""
+    potential, section, _ = conditions
+    states, gaps, returns, owners = trial.states, trial.states.size, trial.returns, trial.owners
+    jacobian = np.zeros((gaps + len(returns) + 1, gaps + len(returns)))
+    jacobian[:gaps, :gaps] = parts.changes_of_gaps()
+    changes = velocities(potential, parts.ends) / np.array(trial.parts)[owners, None]
+    jacobian[np.arange(gaps), gaps + np.repeat(owners, 4)] = changes.ravel()
+    for row, k in enumerate(returns, gaps):
+        jacobian[row, 4 * k : 4 * k + 4] = section.rates(states[k], np.eye(4))
+    x, y, px, py = states[0]
+    jacobian[-1, :4] = *potential.gradient(x, y), px, py
+    return jacobian
+
+
 def close_orbit(
-    potential: Potential, section: Section, trial: Trial, direction: np.ndarray | None = None, singular: float = SINGULAR
+    parameter: FamilyParameter, trial: Trial, direction: np.ndarray | None = None, singular: float = SINGULAR
 ) -> tuple[Trial, Equations] | None:
     """Return the closed orbit near a trial orbit with its equations; None if the corrections do not converge.
 
     Parameters
     ----------
-    potential, section, trial
+    parameter, trial
         See `linearise`.
     direction
-        Direction in the space of unknowns in which the orbit is not corrected; None to keep the energy.
+        Direction in the space of unknowns in which the orbit is not corrected; None to keep the value of the parameter.
     singular
         Share of the largest singular value below which a singular value counts as 0: the orbit is not corrected in its direction.
     """
@@ -163,7 +189,7 @@ def close_orbit(
     # Trial orbits that diverge are rejected.
     with np.errstate(all="ignore"):
         for _ in range(_MOST_CORRECTIONS):
-            equations = linearise(potential, section, trial.moved(vector))
+            equations = linearise(parameter, trial.moved(vector))
             if equations is None:
                 return None
             # The shortest solution of these equations has no part along the direction.
@@ -173,7 +199,7 @@ def close_orbit(
             vector = vector + correction * min(1.0, _LARGEST_CORRECTION * scale / max(size, np.finfo(float).tiny))
             is_accurate = float(np.abs(equations.residual).max()) < _SMALL_RESIDUAL * scale
             if is_accurate or (size < _TOLERANCE * scale and size >= 0.1 * previous_size):
-                return _checked(potential, section, trial.moved(vector))
+                return _checked(parameter, trial.moved(vector))
             growths += size > previous_size
             if growths > _MOST_GROWTHS:
                 return None
@@ -181,12 +207,12 @@ def close_orbit(
     return None
 
 
-def _checked(potential: Potential, section: Section, trial: Trial) -> tuple[Trial, Equations] | None:
+def _checked(parameter: FamilyParameter, trial: Trial) -> tuple[Trial, Equations] | None:
     """Return a corrected orbit with its equations; None if its parts do not join within `_LARGEST_GAP`.
 
     A state after a time of 0 solves the equations as well, but is not an orbit.
     """
-    equations = linearise(potential, section, trial)
+    equations = linearise(parameter, trial)
     if equations is None or trial.durations.sum() < _SHORTEST_PERIOD:
         return None
     # `not … <` also rejects NaN.

@@ -11,11 +11,10 @@ import numpy as np
 
 from engine.foundations.root_finding import find_root
 from engine.periodic.closed_orbits import half_index
+from engine.periodic.family_parameter import FamilyParameter
 from engine.periodic.following import Member, Segment
 from engine.periodic.shooting import SINGULAR, close_orbit, linearise
 from engine.periodic.symmetries import Symmetry
-from engine.slices.sections.section import Section
-from engine.systems.potential import Potential
 
 # Distance within which a point is located, as a share of a segment.
 _LOCATED = 1e-13
@@ -31,7 +30,7 @@ class SpecialKind(StrEnum):
     """What happens at a special point of a family."""
 
     FOLD = "fold"
-    """The energy turns back."""
+    """The parameter of the family, such as the energy, turns back."""
     BRANCHING = "branching"
     """a = 1: another family of the same period meets this one."""
     DOUBLING = "period doubling"
@@ -48,7 +47,7 @@ class Numbers(NamedTuple):
     Attributes
     ----------
     slope
-        Change of the energy along the family.
+        Change of the parameter along the family.
     stability_index
         a.
     half_index
@@ -122,36 +121,36 @@ class Located(NamedTuple):
     converged: bool
 
 
-def numbers_of(potential: Potential, symmetry: Symmetry | None, member: Member) -> Numbers:
+def numbers_of(parameter: FamilyParameter, symmetry: Symmetry | None, member: Member) -> Numbers:
     """Return the numbers of a member whose orbit has a `half_symmetry`, or None."""
-    half = None if symmetry is None else half_index(potential, member.orbit, symmetry)
+    half = None if symmetry is None else half_index(parameter.at(member.orbit.value).potential, member.orbit, symmetry)
     return Numbers(float(member.direction[-1]), member.stability_index, half)
 
 
 def find_special_points(
-    potential: Potential, section: Section, segment: Segment, symmetry: Symmetry | None, ends: tuple[Numbers, Numbers]
+    parameter: FamilyParameter, segment: Segment, symmetry: Symmetry | None, ends: tuple[Numbers, Numbers]
 ) -> list[Located]:
     """Return the special points of a segment, whose ends have these numbers, in the order of the family."""
     found = []
     for test in _TESTS:
         values = test.value(ends[0]), test.value(ends[1])
         if values[0] is not None and values[1] is not None and values[0] * values[1] < 0.0:
-            found.append(_locate(potential, section, segment, symmetry, test, {0.0: values[0], 1.0: values[1]}))
+            found.append(_locate(parameter, segment, symmetry, test, {0.0: values[0], 1.0: values[1]}))
     # At a fold, a is 1 as well.
     has_fold = any(each.kind is SpecialKind.FOLD for each in found)
     return sorted((each for each in found if not (has_fold and each.kind is SpecialKind.BRANCHING)), key=lambda each: each.share)
 
 
 def _locate(
-    potential: Potential, section: Section, segment: Segment, symmetry: Symmetry | None, test: Test, values: dict[float, float]
+    parameter: FamilyParameter, segment: Segment, symmetry: Symmetry | None, test: Test, values: dict[float, float]
 ) -> Located:
     """Return the point at which a test changes its sign in a segment, given its values at the ends, by their shares."""
     members = {0.0: segment.before, 1.0: segment.after}
 
     def value(share: float) -> float:
         if share not in members:
-            members[share] = _member_between(potential, section, segment, share)
-            found = test.value(numbers_of(potential, symmetry, members[share]))
+            members[share] = _member_between(parameter, segment, share)
+            found = test.value(numbers_of(parameter, symmetry, members[share]))
             values[share] = math.nan if found is None else found
         return values[share]
 
@@ -162,29 +161,29 @@ def _locate(
         return Located(0.0, test.kind, test.resonance, segment.before, converged=False)
     member = members[share]
     if test.kind is SpecialKind.BRANCHING:
-        member = _interpolated(potential, section, segment, symmetry, test, share) or member
+        member = _interpolated(parameter, segment, symmetry, test, share) or member
     return Located(share, test.kind, test.resonance, member, converged=True)
 
 
 def _interpolated(
-    potential: Potential, section: Section, segment: Segment, symmetry: Symmetry | None, test: Test, share: float
+    parameter: FamilyParameter, segment: Segment, symmetry: Symmetry | None, test: Test, share: float
 ) -> Member | None:
     """Return the member at which a test vanishes near a share, from members around it; None if they are not found.
 
     At a branching point, the equations do not fix the orbit along the other family.
     """
     try:
-        members = [_member_between(potential, section, segment, share + step * _STENCIL, (SINGULAR,)) for step in _STEPS]
+        members = [_member_between(parameter, segment, share + step * _STENCIL, (SINGULAR,)) for step in _STEPS]
     except _NotFoundError:
         return None
-    values = [test.value(numbers_of(potential, symmetry, member)) for member in members]
+    values = [test.value(numbers_of(parameter, symmetry, member)) for member in members]
     roots = np.polynomial.Polynomial.fit(_STEPS, np.array(values, float), len(_STEPS) - 1).roots()
     place = float(roots[np.argmin(np.abs(roots))].real)
     vectors = np.array([member.orbit.vector for member in members])
     weights = [np.prod([(place - other) / (step - other) for other in _STEPS if other != step]) for step in _STEPS]
     orbit = members[0].orbit.moved(np.array(weights) @ vectors)
-    equations = linearise(potential, section, orbit)
-    return None if equations is None else Member.of(potential, orbit, equations, members[0].direction)
+    equations = linearise(parameter, orbit)
+    return None if equations is None else Member.of(parameter, orbit, equations, members[0].direction)
 
 
 class _NotFoundError(Exception):
@@ -192,7 +191,7 @@ class _NotFoundError(Exception):
 
 
 def _member_between(
-    potential: Potential, section: Section, segment: Segment, share: float, singular_values: Sequence[float] = _SINGULAR_VALUES
+    parameter: FamilyParameter, segment: Segment, share: float, singular_values: Sequence[float] = _SINGULAR_VALUES
 ) -> Member:
     """Return the member nearest to a point of the chord of a segment."""
     begin = segment.before.orbit
@@ -201,7 +200,7 @@ def _member_between(
     # Near a point at which another family meets this one, rounding errors move an orbit along the other family. A symmetry of
     # this family keeps the orbit on it without corrections along the other one.
     for singular in singular_values:
-        closed = close_orbit(potential, section, trial, direction, singular)
+        closed = close_orbit(parameter, trial, direction, singular)
         if closed is not None:
-            return Member.of(potential, *closed, chord)
+            return Member.of(parameter, *closed, chord)
     raise _NotFoundError

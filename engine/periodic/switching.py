@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from engine.periodic.closed_orbits import primitive_returns
+from engine.periodic.family_parameter import EnergyParameter, FamilyParameter
 from engine.periodic.periodic_orbit import PeriodicOrbit
 from engine.periodic.shooting import SINGULAR, Equations, Trial, close_orbit, crosses_section, linearise
-from engine.slices.sections.section import Section
-from engine.systems.potential import Potential
 
 # Directions from which branches are sought around an orbit of which all nearby orbits close.
 _DIRECTIONS = 12
@@ -42,29 +41,30 @@ def first_orbits_of_branches(
     step
         The distance, in units of the well.
     """
-    potential, section = orbit.potential.in_well_units, orbit.section.in_well_units(orbit.potential.units)
+    parameter = EnergyParameter(orbit.potential, orbit.section)
     trial = orbit.trial.repeated(periods)
     secant = _numbers(neighbours[1], periods) - _numbers(neighbours[0], periods)
     found: list[Trial] = []
-    across = _null_vectors_across(potential, section, trial, secant, dimensions)
+    across = _null_vectors_across(parameter, trial, secant, dimensions)
     for direction in _directions(across, periods):
-        closed = _branch_near(potential, section, trial, across, step * direction)
+        closed = _branch_near(parameter, trial, across, step * direction)
         is_new = closed is not None and not any(_is_same(closed, known, _SAME * step) for known in found)
         if closed is not None and is_new and (periods == 1 or primitive_returns(closed) == len(closed.durations)):
             found.append(closed)
     return [PeriodicOrbit.from_trial(orbit.potential, orbit.section, each) for each in found]
 
 
-def _branch_near(potential: Potential, section: Section, trial: Trial, across: np.ndarray, offset: np.ndarray) -> Trial | None:
+def _branch_near(parameter: FamilyParameter, trial: Trial, across: np.ndarray, offset: np.ndarray) -> Trial | None:
     """Return the orbit of a branch at the distance of an offset from an orbit, near this offset; None if it is not found.
 
     The corrections keep the orbit in a plane at right angles to a direction. That of the branch is found by repetition.
     """
     step = float(np.linalg.norm(offset))
+    potential, section, _ = parameter.at(trial.value)
     for _ in range(_MOST_CORRECTIONS):
         shares = across @ offset
         direction = shares @ across / np.linalg.norm(shares)
-        closed = close_orbit(potential, section, trial.moved(trial.vector + offset), direction)
+        closed = close_orbit(parameter, trial.moved(trial.vector + offset), direction)
         if closed is None or not _is_determined(closed[1]) or not crosses_section(potential, section, closed[0]):
             return None
         distance = closed[0].vector - trial.vector
@@ -99,9 +99,9 @@ def _numbers(orbit: PeriodicOrbit, periods: int) -> np.ndarray:
     return np.concatenate([np.tile(states, periods), np.tile(durations, periods), [orbit.energy / units.energy]])
 
 
-def _null_vectors_across(potential: Potential, section: Section, trial: Trial, secant: np.ndarray, dimensions: int) -> np.ndarray:
+def _null_vectors_across(parameter: FamilyParameter, trial: Trial, secant: np.ndarray, dimensions: int) -> np.ndarray:
     """Return null vectors of the equations that are orthogonal to each other and to the family; none without equations."""
-    equations = linearise(potential, section, trial)
+    equations = linearise(parameter, trial)
     if equations is None:
         return np.empty((0, trial.vector.size))
     null_vectors = np.linalg.svd(equations.jacobian)[2][-1 - dimensions :]

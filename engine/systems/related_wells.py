@@ -121,6 +121,39 @@ class ContinuedWell(Well):
         return self._mergers_at(self.maxima, [np.sort(channels[list(indices)]) for indices in self.saddle_indices])
 
 
+@dataclass(frozen=True, eq=False)
+class BorrowedWell(Well):
+    """A well with the exits and the units of another one, for orbits that are followed beyond all exits.
+
+    Attributes
+    ----------
+    lender
+        The well of another potential.
+    """
+
+    lender: Well
+
+    @cached_property
+    def units(self) -> WellUnits:
+        """The units of length and energy of the other well, and the mass of this one."""
+        return replace(self.lender.units, mass=self.mass)
+
+    @cached_property
+    def exits_unknown(self) -> str:
+        """See `Well.exits_unknown`."""
+        return self.lender.exits_unknown
+
+    @cached_property
+    def saddles(self) -> np.ndarray:
+        """The saddles of the other well."""
+        return self.lender.saddles
+
+    @cached_property
+    def channel_mergers(self) -> tuple[ChannelMerger, ...]:
+        """The maxima of the other well."""
+        return self.lender.channel_mergers
+
+
 @dataclass(frozen=True)
 class Lineage:
     """The way in which the well of a potential is found.
@@ -128,8 +161,9 @@ class Lineage:
     Attributes
     ----------
     family
-        Name of the family from which the exits were continued (`ParameterFamily`); otherwise empty. Continued exits may differ in
-        the last bit from exits found from the critical points, so caches keep their results apart.
+        Name of the family from which the exits were continued (`ParameterFamily`), or of the potential from which they were
+        borrowed; otherwise empty. Such exits differ from exits found from the critical points, continued ones perhaps in the
+        last bit, so caches keep their results apart.
     make_well
         Function that makes the well from form, rotation, ends and mass. Lineages with the same `family` compare equal.
     """
@@ -155,3 +189,12 @@ def scaled_to_well(potential: Potential) -> Potential:
         system=None,
         mass=1.0,
     )
+
+
+def with_well_of(potential: Potential, lender: Potential) -> Potential:
+    """Return a potential with the exits and the units of length and energy of another one, without a search for its own.
+
+    The number of exits decides on the compiled functions, and periodic orbits depend on the exits in no other way.
+    """
+    lineage = Lineage(f"exits of {lender.form.text}", partial(BorrowedWell, lender=lender.well))
+    return replace(potential, lineage=lineage)

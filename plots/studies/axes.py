@@ -30,6 +30,12 @@ def parameter_axis(subject: Subject, axis: str) -> ParameterAxis | None:
     return None if axis == ENERGY else ParameterAxis(axis, *default_range(subject.system, axis), subject.system)
 
 
+def usual_range(subject: Subject, axis: str) -> tuple[float, float]:
+    """Return the range in which the energy of a subject, or a parameter of its system, is explored."""
+    energies = subject.energies
+    return (energies.low, energies.high) if axis == ENERGY else default_range(subject.system, axis)
+
+
 def spaced_values(subject: Subject, axis: str, count: int) -> tuple[float, ...]:
     """Return evenly spaced values over the range of the energy or of a parameter.
 
@@ -46,8 +52,7 @@ def spaced_values(subject: Subject, axis: str, count: int) -> tuple[float, ...]:
     -------
     The values, rounded to 4 decimals, or to more if the spacing is small.
     """
-    energies = subject.energies
-    low, high = (energies.low, energies.high) if axis == ENERGY else default_range(subject.system, axis)
+    low, high = usual_range(subject, axis)
     decimals = max(4, 2 - math.floor(math.log10((high - low) / (count - 1))))
     return tuple(np.round(np.linspace(low, high, count), decimals).tolist())
 

@@ -1,4 +1,4 @@
-"""The study of the family of the periodic orbit nearest to the chosen orbit, against the energy."""
+"""The study of the family of the periodic orbit nearest to the chosen orbit, against the energy or a parameter."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from plots.pictures.charts import Chart, Frame, Series, Shape
 from plots.pictures.palette import THRESHOLD, Palette
 from plots.pictures.periodic_marks import SPECIAL, STABILITY_COLOURS
 from plots.pictures.setting import NO_SETTINGS, Settings
-from plots.studies.axes import ENERGY
+from plots.studies.axes import ENERGY, energy_and_parameters, usual_range, value_on
 from plots.studies.section import start_through
 from plots.studies.study import Changes, Study, Subject
 
@@ -27,15 +27,15 @@ _RETURN_DECIMALS = 12
 _DIGITS, _MOST_NAMED = 8, 6
 
 _HOW = "Thick lines are stable orbits, points are folds, bifurcations and resonances. "
-_TEXT = "@note<br>Click to open this energy"
+_TEXT = "@note<br>Click to open this member"
 
 
 def _frame(name: str, title: str, label: str, text: str) -> Frame:
-    """Return the frame of a chart against the energy."""
-    return Frame(f"family_{name}", title, (ENERGY, label), _HOW + text, _TEXT, Shape.RINGS)
+    """Return the frame of a chart; the label of x is that of a family."""
+    return Frame(f"family_{name}", title, ("", label), _HOW + text, _TEXT, Shape.RINGS)
 
 
-_RETURNS = _frame("returns", "Returns against h", "", "Where the orbits of the family return to the section.")
+_RETURNS = _frame("returns", "Returns", "", "Where the orbits of the family return to the section.")
 _INDEX = _frame(
     "index",
     "Stability index a",
@@ -44,7 +44,7 @@ _INDEX = _frame(
     "resonances between them chains of islands are born.",
 )
 _PERIOD = _frame("period", "Period T", "T", "The time after which an orbit repeats itself.")
-_ACTION = _frame("action", "Action J", "J", "The integral of the momentum along the orbit; its slope is T.")
+_ACTION = _frame("action", "Action J", "J", "The integral of the momentum along the orbit; against h its slope is T.")
 
 
 def nearest_orbit_job(subject: Subject) -> Job[PeriodicOrbit]:
@@ -57,13 +57,14 @@ def nearest_orbit_job(subject: Subject) -> Job[PeriodicOrbit]:
 
 def _job(subject: Subject, axis: str) -> Job[OrbitFamily]:
     near = nearest_orbit_job(subject)
-    energy = float(subject.potential.energy(np.array(subject.state)))
-    bounds = min(subject.energies.low, energy), max(subject.energies.high, energy)
-    return Job(continue_family, (near, bounds), queue=Queue.LONG_CALL)
+    value = value_on(axis, subject.system, float(subject.potential.energy(np.array(subject.state))))
+    low, high = usual_range(subject, axis)
+    bounds = min(low, value), max(high, value)
+    return Job(continue_family, (near, bounds), (("along", axis),), queue=Queue.LONG_CALL)
 
 
 def family_charts(family: OrbitFamily, palette: Palette, settings: Settings = NO_SETTINGS) -> list[Chart]:
-    """Return the charts of the returns, the stability index, the period and the action against the energy.
+    """Return the charts of the returns, the stability index, the period and the action against what changes along the family.
 
     Empty for a family with one member only.
     """
@@ -73,22 +74,25 @@ def family_charts(family: OrbitFamily, palette: Palette, settings: Settings = NO
     returns = np.round(family.points, _RETURN_DECIMALS)
     axis = int(np.argmax(np.ptp(returns, axis=(0, 1))))
     curves = [one for k in range(family.returns) for one in _curves(family, returns[:, k, axis], labelled=k == 0)]
-    frame = replace(_RETURNS, labels=(ENERGY, family.section.axes.symbols[axis]))
-    bounds = np.array([family.energy.min(), family.energy.max()])
+    bounds = np.array([family.value.min(), family.value.max()])
     levels = [Series("", THRESHOLD, bounds, np.full(2, level), Shape.DASHED) for level in (-1.0, 1.0)]
     index = [*_curves(family, family.stability_index), *_special(family, family.stability_index), *levels]
-    return [
-        Chart(frame, [*curves, *_special(family, returns[:, 0, axis], "special points")]),
+    charts = [
+        Chart(
+            replace(_RETURNS, labels=("", family.section.axes.symbols[axis])),
+            [*curves, *_special(family, returns[:, 0, axis], "special points")],
+        ),
         Chart(_INDEX, index, (None, _INDEX_LIMITS)),
         *(
             Chart(frame, [*_curves(family, values), *_special(family, values)])
             for frame, values in ((_PERIOD, family.period), (_ACTION, family.action))
         ),
     ]
+    return [replace(chart, frame=replace(chart.frame, labels=(family.symbol, chart.frame.labels[1]))) for chart in charts]
 
 
 def _curves(family: OrbitFamily, values: np.ndarray, *, labelled: bool = False) -> list[Series]:
-    """Return the curve of values against the energy: thick where the orbits are stable."""
+    """Return the curve of values along the family: thick where the orbits are stable."""
     middles = 0.5 * (family.stability_index[1:] + family.stability_index[:-1])
     kinds = [Stability.of(index) for index in middles.tolist()]
     series: list[Series] = []
@@ -99,7 +103,7 @@ def _curves(family: OrbitFamily, values: np.ndarray, *, labelled: bool = False) 
         label = kind.value if labelled and kind.value not in known else ""
         shape = Shape.THICK if kind is Stability.STABLE else Shape.LINE
         rows = slice(begin, end + 1)
-        series.append(Series(label, STABILITY_COLOURS[kind], family.energy[rows], values[rows], shape))
+        series.append(Series(label, STABILITY_COLOURS[kind], family.value[rows], values[rows], shape))
         begin = end
     return series
 
@@ -109,28 +113,32 @@ def _special(family: OrbitFamily, values: np.ndarray, label: str = "") -> list[S
     if not family.special:
         return []
     rows = np.array([point.member for point in family.special])
-    notes = [_name(point) for point in family.special]
-    return [Series(label, SPECIAL, family.energy[rows], values[rows], Shape.RINGS, notes=notes)]
+    notes = [_name(family, point) for point in family.special]
+    return [Series(label, SPECIAL, family.value[rows], values[rows], Shape.RINGS, notes=notes)]
 
 
 def _changes(subject: Subject, axis: str, family: OrbitFamily, x: float, y: float) -> Changes:
-    """Return the energy of the member nearest to the click, and the start of the first member of this energy."""
-    member = family[int(np.argmin(np.abs(family.energy - x)))]
-    return {"energy": member.energy, **start_through(family.section, subject.potential, member.state, member.energy)}
+    """Return the system and the energy of the member nearest to the click, and the start of this member."""
+    member = family[int(np.argmin(np.abs(family.value - x)))]
+    changes = {"energy": member.energy, **start_through(family.section, member.potential, member.state, member.energy)}
+    if axis == ENERGY:
+        return changes
+    starts = (changes.pop("start"),) if "start" in changes else ()
+    return {"system": member.potential.system, "window": None, "starts": starts, "chosen": 0, **changes}
 
 
 def _sentence(family: OrbitFamily) -> str:
-    named = [_name(point) for point in family.special if point.kind is not SpecialKind.RESONANCE]
+    named = [_name(family, point) for point in family.special if point.kind is not SpecialKind.RESONANCE]
     more = f" and {len(named) - _MOST_NAMED} more" if len(named) > _MOST_NAMED else ""
     special = f" {', '.join(named[:_MOST_NAMED]).capitalize()}{more}." if named else ""
     if not family.complete:
         return f"{family.describe()}{special}"
     ends = f" Lower end: {family.ends[0]}. Upper end: {family.ends[1]}."
-    return f"{family.describe()}{special}{ends}{' Click a curve to open its energy.' if len(family) > 1 else ''}"
+    return f"{family.describe()}{special}{ends}{' Click a curve to open a member.' if len(family) > 1 else ''}"
 
 
-def _name(point: SpecialPoint) -> str:
-    return f"{point.name} at h = {format_number(point.energy, _DIGITS)}"
+def _name(family: OrbitFamily, point: SpecialPoint) -> str:
+    return f"{point.name} at {family.symbol} = {format_number(point.value, _DIGITS)}"
 
 
 FAMILY_STUDY = Study(
@@ -139,8 +147,9 @@ FAMILY_STUDY = Study(
     tab="periodic",
     needs_orbit=True,
     button="Follow the family",
-    hint="The family of the periodic orbit nearest to the chosen orbit, against h, with its special points: a few seconds.",
-    axes=lambda system: (ENERGY,),
+    hint="The family of the periodic orbit nearest to the chosen orbit, with its special points: a few seconds, or a minute "
+    "against a parameter.",
+    axes=energy_and_parameters,
     job=_job,
     progress=lambda family: 1.0 if family.complete else 0.0,
     sentence=_sentence,
@@ -151,4 +160,4 @@ FAMILY_STUDY = Study(
     figure="Family of periodic orbits",
     caption=lambda family: f"{family.potential.name}: {family.describe()}",
 )
-"""How a periodic orbit changes with the energy: where its island is born, divides and vanishes."""
+"""How a periodic orbit changes with the energy or a parameter: where its island is born, divides and vanishes."""
