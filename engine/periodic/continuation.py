@@ -95,7 +95,7 @@ def continue_family(
     [('touching', 0.435576877), ('branching', 0.581679744)]
     >>> family = continue_family(orbit, until=3.0, along="epsilon")
     >>> [(point.name, round(point.value, 9)) for point in family.special if point.kind != "resonance"]
-    [('touching', 2.177884386), ('branching', 2.908398722)]
+    [('touching', 2.177884386), ('branching', 2.908398718)]
     """
     value = _value_of(orbit, along)
     bounds = _checked_bounds(until, along, value)
@@ -214,9 +214,9 @@ class _Branch:
     def _limited(self, segment: Segment) -> tuple[Segment, bool]:
         """Return a segment within the range of the parameter, and whether it is the last one."""
         (begin, end), noun = segment, self._parameter.noun
-        bound = float(np.clip(end.orbit.value, *self._bounds))
-        if bound == end.orbit.value:
+        if self._bounds[0] < end.orbit.value < self._bounds[1]:
             return segment, False
+        bound = float(np.clip(end.orbit.value, *self._bounds))
         is_asked_for = bound != self._bounds[not self.rising]
         self.end = f"the {noun} asked for is reached" if is_asked_for else f"it turns back to the lowest or highest {noun}"
         share = (bound - begin.orbit.value) / (end.orbit.value - begin.orbit.value)

@@ -79,6 +79,11 @@ class FamilyParameter:
         """Unit of its values, a power of 2."""
         raise NotImplementedError
 
+    @property
+    def limits(self) -> tuple[float, float]:
+        """Smallest and largest legal value, in its unit."""
+        raise NotImplementedError
+
     def potential_at(self, value: float) -> Potential:
         """Return the potential at a value, with the units of the first one; `NoPotentialError` if there is none."""
         raise NotImplementedError
@@ -114,6 +119,11 @@ class EnergyParameter(FamilyParameter):
     def unit(self) -> float:
         """The unit of energy of the well."""
         return self.potential.units.energy
+
+    @property
+    def limits(self) -> tuple[float, float]:
+        """None: every energy is legal."""
+        return -np.inf, np.inf
 
     def potential_at(self, value: float) -> Potential:
         """Return the potential."""
@@ -159,6 +169,12 @@ class SystemParameter(FamilyParameter):
         """About the range, which thus takes as many steps as a change of the orbit by the size of the well."""
         return nearest_power_of_two(self.axis.high - self.axis.low)
 
+    @property
+    def limits(self) -> tuple[float, float]:
+        """See `FamilyParameter.limits`."""
+        lowest, highest = self.axis.system.range_of(self.axis.key)
+        return lowest / self.unit, highest / self.unit
+
     def potential_at(self, value: float) -> Potential:
         """See `FamilyParameter.potential_at`."""
         return _potential_on(self.axis, value * self.unit, self.potential)
@@ -179,7 +195,7 @@ class SystemParameter(FamilyParameter):
 
     def _beside(self, value: float) -> tuple[float, float]:
         """Return the legal values below and above a value, in the unit of the parameter."""
-        lowest, highest = (bound / self.unit for bound in self.axis.system.range_of(self.axis.key))
+        lowest, highest = self.limits
         return max(value - _DIFFERENCE, lowest), min(value + _DIFFERENCE, highest)
 
 

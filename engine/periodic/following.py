@@ -99,10 +99,20 @@ def _divided(parameter: FamilyParameter, member: Member) -> Member:
     return Member.of(parameter, orbit, equations, previous)
 
 
+def _predicted(parameter: FamilyParameter, member: Member, step: float) -> tuple[Trial, np.ndarray | None]:
+    """Return the trial orbit at a distance from a member and the direction in which it is not corrected, see `close_orbit`."""
+    orbit, change = member.orbit, step * member.direction
+    limit = float(np.clip(orbit.value + change[-1], *parameter.limits))
+    if limit == orbit.value + change[-1]:
+        return orbit.moved(orbit.vector + change), member.direction
+    # There is no potential beyond the legal values, so the next member is that of the last legal one.
+    return orbit.moved(orbit.vector + (limit - orbit.value) / change[-1] * change)._replace(value=limit), None
+
+
 def _advance(parameter: FamilyParameter, member: Member, step: float) -> Member | None:
     """Return the member at a distance; None if it is not found, or may belong to another family."""
-    predicted = member.orbit.moved(member.orbit.vector + step * member.direction)
-    closed = close_orbit(parameter, predicted, member.direction)
+    predicted, direction = _predicted(parameter, member, step)
+    closed = close_orbit(parameter, predicted, direction)
     if closed is None:
         return None
     orbit, equations = closed

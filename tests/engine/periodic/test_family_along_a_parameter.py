@@ -157,3 +157,10 @@ def test_what_is_no_parameter_of_the_system_is_refused() -> None:
 def test_branches_of_a_family_along_a_parameter_are_refused(in_epsilon: OrbitFamily) -> None:
     with pytest.raises(ValueError, match="number=0: branches are followed from families along h only"):
         in_epsilon.switch(0)
+
+
+def test_a_family_reaches_the_last_legal_value_of_a_parameter() -> None:
+    orbit = find_periodic_orbit(CASES["I"], [0.0, 0.0, 0.0, 0.3], 1)
+    family = continue_family(orbit, 0.01, along="epsilon")
+    assert family.ends[0] == "the value of ε asked for is reached"
+    assert family.value[0] == 0.01
