@@ -103,6 +103,32 @@ def test_a_click_on_a_family_opens_the_member_of_that_energy(family: OrbitFamily
     assert changes["start"] == pytest.approx((0.0, 0.0), abs=1e-9)
 
 
+@pytest.fixture(scope="module")
+def along_epsilon() -> OrbitFamily:
+    result: OrbitFamily = run_job(FAMILY_STUDY.job(CHOSEN, "epsilon"), Execution(), {})
+    return result
+
+
+def test_a_family_can_be_followed_along_a_parameter_of_the_system(along_epsilon: OrbitFamily) -> None:
+    assert set(SYSTEM.parameter_names) < set(FAMILY_STUDY.axes(SYSTEM))
+    assert (along_epsilon.value[0], along_epsilon.value[-1]) == (0.5, 2.0)
+    charts = FAMILY_STUDY.charts(along_epsilon, PAPER, NO_SETTINGS)
+    assert {chart.frame.labels[0] for chart in charts} == {"ε"}
+    assert max(one.x.max() for one in charts[1].series) == 2.0
+    assert "Touching at ε = " in FAMILY_STUDY.sentence(along_epsilon)
+
+
+def test_a_click_on_a_family_along_a_parameter_opens_the_system_of_the_member(along_epsilon: OrbitFamily) -> None:
+    changes = FAMILY_STUDY.changes(CHOSEN, "epsilon", along_epsilon, 1.4, 0.0)
+    system = changes["system"]
+    assert abs(system.value_of("epsilon") - 1.4) == np.abs(along_epsilon.value - 1.4).min()
+    assert changes["energy"] == along_epsilon.energy[0]
+    ((x, px),) = changes["starts"]
+    (start,) = changes["plane"].states(system.potential, changes["energy"], np.array([x]), np.array([px]))
+    path = integrate_orbit(system.potential, start, t_max=along_epsilon.period[0])
+    assert (path.x[-1], path.y[-1]) == pytest.approx((path.x[0], path.y[0]), abs=1e-6)
+
+
 def test_the_sentence_names_the_special_points(family: OrbitFamily) -> None:
     sentence = FAMILY_STUDY.sentence(family)
     assert "Touching at h = 0.43557688, branching at h = 0.58167974." in sentence
