@@ -25,8 +25,7 @@ from engine.systems.potential import Potential
 MOST_MEMBERS = 10_000
 """Largest number of members of a family."""
 
-# Largest distance of neighbouring members in the space of states, times and the parameter, in its unit and
-# those of the well.
+# Largest distance of neighbouring members in the space of states, times and the parameter.
 _LONGEST_STEP = 0.05
 # Sizes of the path of an orbit near an equilibrium, and speed and force near a saddle, in units of the well.
 _SMALL_ORBIT, _SLOW = 0.02, 0.02
@@ -219,6 +218,8 @@ class _Branch:
         bound = float(np.clip(end.orbit.value, *self._bounds))
         is_asked_for = bound != self._bounds[not self.rising]
         self.end = f"the {noun} asked for is reached" if is_asked_for else f"it turns back to the lowest or highest {noun}"
+        if bound == end.orbit.value:
+            return segment, True
         share = (bound - begin.orbit.value) / (end.orbit.value - begin.orbit.value)
         guess = begin.orbit.moved(begin.orbit.vector + share * (end.orbit.vector - begin.orbit.vector))
         closed = close_orbit(self._parameter, guess._replace(value=bound))

@@ -70,6 +70,17 @@ def test_a_family_begins_at_a_start_on_the_plane_or_at_a_state(run: Run, tmp_pat
     assert run("study", "family", "III", *state, "--output", tmp_path / "family.csv")[0] == 0
 
 
+def test_a_family_is_followed_along_a_parameter(run: Run, tmp_path: Path) -> None:
+    start = ("--energy", "0.3", "--start", "0", "0")
+    code, out, _ = run("study", "family", "III", *start, "--against", "epsilon", "--output", tmp_path / "family.csv")
+    assert code == 0
+    assert "Touching at ε = 1.4519229, branching at ε = 1.9389325." in out
+    with (tmp_path / "family.csv").open() as file:
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    assert (float(rows[0]["value"]), float(rows[-1]["value"])) == (0.5, 2.0)
+    assert {row["energy"] for row in rows} == {rows[0]["energy"]}
+
+
 def test_a_family_without_a_start_is_refused(run: Run) -> None:
     code, _, err = run("study", "family", "III", "--energy", "0.3")
     assert code == 2
