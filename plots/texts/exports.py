@@ -166,18 +166,13 @@ def _expression(value: Any) -> str:
 
 
 def _potential_expression(system: System) -> str:
-    """Return the expression of the potential."""
-    if system.parameters and not system.entry.is_well:
-        return f"System({system.case!r}, parameters={dict(system.parameters)!r}).potential"
-    parameters = ", ".join(f"{name}={value!r}" for name, value in system.well_parameters.items())
-    calls = f".with_parameters({parameters})" if parameters else ""
-    rotation = system.value_of("rotation") if system.entry.is_well else 0.0
-    if rotation:
-        calls += f".in_rotating_frame({rotation!r})"
+    """Return the expression of the potential of a system, which families and sweeps along a parameter need."""
     if system.case == TYPED:
-        letters = f", parameters={system.letter_parameters!r}" if system.letter_parameters else ""
-        return f"parse_formula({system.formula!r}{letters}){calls}"
-    return f"{'CASES' if system.case in CASES else 'POTENTIALS'}[{system.case!r}]{calls}"
+        parameters = "".join(f", {name}={value!r}" for name, value in system.parameters.items())
+        return f"System.from_formula({system.formula!r}{parameters}).potential"
+    if system.parameters:
+        return f"System({system.case!r}, parameters={dict(system.parameters)!r}).potential"
+    return f"{'CASES' if system.case in CASES else 'POTENTIALS'}[{system.case!r}]"
 
 
 def _state(start: Sequence[float]) -> str:

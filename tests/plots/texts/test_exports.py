@@ -183,6 +183,7 @@ def test_the_script_reproduces_the_study(
         System("C5"),
         System("III", parameters={"omega_1": 1.1}),
         System(TYPED, "x²/2 + y²/2 − x²y", {"omega_2": 0.9}),
+        System(TYPED, "x²/2 + y²/2 − αx²y", {"α": 0.7, "rotation": 0.1}),
     ],
 )
 def test_the_script_reproduces_the_potential(system: System) -> None:
@@ -190,6 +191,7 @@ def test_the_script_reproduces_the_potential(system: System) -> None:
     made: dict[str, Any] = {}
     exec(head, made)
     assert made["potential"] == system.potential
+    assert made["potential"].system == system
 
 
 @pytest.mark.parametrize(
