@@ -154,14 +154,18 @@ def _locate(
             values[share] = math.nan if found is None else found
         return values[share]
 
+    member: Member | None
     try:
         share = find_root(value, 0.0, 1.0, xtol=_LOCATED)
         value(share)
+        member = members[share]
     except _NotFoundError:
-        return Located(0.0, test.kind, test.resonance, segment.before, converged=False)
-    member = members[share]
-    if test.kind is SpecialKind.BRANCHING:
+        # Where another family meets a fold, members are found around it only.
+        share, member = values[0.0] / (values[0.0] - values[1.0]), None
+    if member is None or test.kind is SpecialKind.BRANCHING:
         member = _interpolated(parameter, segment, symmetry, test, share) or member
+    if member is None:
+        return Located(0.0, test.kind, test.resonance, segment.before, converged=False)
     return Located(share, test.kind, test.resonance, member, converged=True)
 
 

@@ -164,3 +164,14 @@ def test_a_family_reaches_the_last_legal_value_of_a_parameter() -> None:
     family = continue_family(orbit, 0.01, along="epsilon")
     assert family.ends[0] == "the value of ε asked for is reached"
     assert family.value[0] == 0.01
+
+
+def test_the_point_at_which_two_families_meet_is_found_on_both() -> None:
+    # In a rotating frame, the straight orbits of case III become oval, and meet at a round orbit.
+    oval = continue_family(find_periodic_orbit(III, [0.0, 0.0, 0.0, 0.5], 1), 0.4, along="rotation", most_members=16)
+    rotating = System("III", parameters={"rotation": 0.05}).potential
+    speed = np.sqrt(2.0 * (0.125 - rotating.value(0.355, 0.0)))
+    round_orbit = continue_family(find_periodic_orbit(rotating, [-0.355, 0.0, 0.0, speed], 1), 0.0, along="rotation")
+    (meeting,) = values(round_orbit, "branching")
+    assert values(oval, "fold") == pytest.approx([meeting], abs=1e-9)
+    assert all(point.converged for point in oval.special)
