@@ -8,17 +8,19 @@ import numpy as np
 
 # Widening of the range of displacements in a cell, as a share of it, beyond those at its corners.
 _WIDENING = 0.5
+# Share of the largest displacement at the corners of a cell below which another one is a rounding error.
+_ROUNDING = 1e-9
 # Corrections of the zero of the bilinear interpolation in a cell.
 _CORRECTIONS = 4
 
 
-def cells_near_zero(displacements: np.ndarray, *, also_incomplete: bool = False) -> np.ndarray:
+def cells_near_zero(displacements: np.ndarray) -> np.ndarray:
     """Return the cells in which the displacement can vanish, of shape (n, 2): row and column of the first corner.
 
     For displacements of shape (…, rows, columns, 2), of several grids, the indices of the grid precede the row.
 
     A cell is among them if 0 is within the range of the displacements at its corners, widened on both sides, for each coordinate.
-    With `also_incomplete`, cells without the displacements of some of their corners are among them.
+    Cells without the displacements of some of their corners are among them as well.
     """
     corners = np.stack(_corners(displacements))
     low, high = corners.min(axis=0), corners.max(axis=0)
@@ -26,7 +28,8 @@ def cells_near_zero(displacements: np.ndarray, *, also_incomplete: bool = False)
     # Comparisons with NaN are false.
     is_near = np.all((low - margin <= 0.0) & (high + margin >= 0.0), axis=-1)
     counts = np.isfinite(corners[..., 0]).sum(axis=0)
-    return np.argwhere(is_near | (also_incomplete & (counts > 0) & (counts < 4)))
+    is_incomplete = (counts > 0) & (counts < 4)
+    return np.argwhere(is_near | is_incomplete)
 
 
 def cells_with_index(displacements: np.ndarray) -> np.ndarray:
@@ -36,6 +39,8 @@ def cells_with_index(displacements: np.ndarray) -> np.ndarray:
     unstable with reflection, and −1 around another unstable point (Greene 1979, J. Math. Phys. 20, 1183). A cell with two fixed
     points of both kinds has the index 0. Along lines on which the map jumps, cells can have an index without a fixed point.
 
+    Around a fixed point at a corner, as on a line of symmetry, the displacement turns by chance: its cells are always among them.
+
     Parameters
     ----------
     displacements
@@ -44,8 +49,9 @@ def cells_with_index(displacements: np.ndarray) -> np.ndarray:
     corners = _corners(np.arctan2(displacements[..., 1:], displacements[..., :1]))
     steps = (later[..., 0] - earlier[..., 0] for earlier, later in pairwise([*corners, corners[0]]))
     turns = sum((step + np.pi) % (2.0 * np.pi) - np.pi for step in steps)
+    sizes = np.abs(np.stack(_corners(displacements))).max(axis=-1)
     # Comparisons with NaN are false.
-    return np.argwhere(np.abs(turns) > np.pi)
+    return np.argwhere((np.abs(turns) > np.pi) | (sizes.min(axis=0) < _ROUNDING * sizes.max(axis=0)))
 
 
 def _corners(values: np.ndarray) -> list[np.ndarray]:

@@ -9,6 +9,7 @@ from operator import truediv
 
 import numpy as np
 
+from engine.exits.exit_rows import exit_curves
 from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.validation import checked_count, checks_types
@@ -20,13 +21,13 @@ from engine.periodic.periodic_orbit import STATE_COLUMNS, PeriodicOrbit
 from engine.periodic.periodic_orbits import PeriodicOrbits, energy_of
 from engine.periodic.shooting import Trial
 from engine.periodic.symmetries import symmetries_of
-from engine.trajectories.orbit_returns import find_returns
+from engine.propagation.followed_orbits import FollowedOrbits
 
 # Columns of the table of points, and those that contain numbers of orbits.
 _COLUMNS = ("orbit", "time", *STATE_COLUMNS, "period", "stability_index", "action", "image_of")
 _NUMBERS = ("orbit", "image_of")
 # Numbers of parts along each side of a cell, and of each such part.
-_FIRST_PARTS, _SECOND_PARTS = 6, 4
+_PARTS = 4
 # Number of starts that are followed at once, which limits memory.
 _STARTS_AT_ONCE = 20_000
 # Number of corrections of places, distance of the starts for their derivatives, and last correction of a fixed point, in cells.
@@ -79,7 +80,7 @@ def find_periodic_orbits(
     >>> from escape_explorer import CASES, MapSpec, Plane, find_periodic_orbits
     >>> found = find_periodic_orbits(MapSpec(CASES["III"], Plane.X_PX, 0.3, (20, 20), t_max=100.0), returns=1)
     >>> len(found), [(round(orbit.period, 4), orbit.stability.value) for orbit in found][:2]
-    (7, [(6.2832, 'stable'), (6.8438, 'unstable')])
+    (11, [(6.2832, 'stable'), (6.8438, 'unstable')])
     """
     energy_of(spec)
     if min(spec.resolution) < 2:
@@ -110,6 +111,8 @@ class _Search:
         self.starts = np.stack(np.meshgrid(x, ordinate), axis=-1)
         self._cell = np.array([x[-1] - x[0], ordinate[-1] - ordinate[0]]) / np.maximum(np.array(spec.resolution) - 1, 1)
         self._symmetries = symmetries_of(spec.potential)
+        well = spec.in_well_units()
+        self._curves = exit_curves(well.potential, energy_of(well))[None]
         self._orbits: list[tuple[PeriodicOrbit, int]] = []
         self._points, self._counts = np.empty((0, 2)), np.empty(0, int)
 
@@ -117,12 +120,13 @@ class _Search:
         """Return the places, (k, 2), near which the n-th return has fixed points, given its displacements on the grid.
 
         In a cell, the return map can be far from linear. Cells in which the displacement can vanish are therefore divided, and
-        such parts again. Where the map jumps, there is no fixed point, and the corrections do not converge.
+        such parts again. Starts near an unstable orbit escape before they return, so cells and parts without the displacements of
+        some corners are divided as well. Where the map jumps, there is no fixed point, and the corrections do not converge.
         """
-        cells = cells_near_zero(displacements, also_incomplete=True)
+        cells = cells_near_zero(displacements)
         corners, size = self.starts[cells[:, 0], cells[:, 1]], self._cell
-        corners, size, _ = self._divided(n, corners, size, _FIRST_PARTS, cells_near_zero)
-        corners, size, around = self._divided(n, corners, size, _SECOND_PARTS, cells_with_index)
+        corners, size, _ = self._divided(n, corners, size, cells_near_zero)
+        corners, size, around = self._divided(n, corners, size, cells_with_index)
         shares = np.array([zero_in_cell(part, 0, 0) for part in around]).reshape(-1, 2)
         return self._corrected(n, corners + size * shares)
 
@@ -148,31 +152,32 @@ class _Search:
         return current[has_converged & np.all(np.abs(current - places) <= _FARTHEST * self._cell, axis=1)]
 
     def _divided(
-        self, n: int, corners: np.ndarray, size: np.ndarray, parts: int, choose: Callable[[np.ndarray], np.ndarray]
+        self, n: int, corners: np.ndarray, size: np.ndarray, choose: Callable[[np.ndarray], np.ndarray]
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return the chosen parts of cells: their first corners (k, 2), size (2,) and displacements at corners (k, 2, 2, 2)."""
-        shares = np.linspace(0.0, 1.0, parts + 1)
+        shares = np.linspace(0.0, 1.0, _PARTS + 1)
         grids = corners[:, None, None] + np.stack(np.meshgrid(shares, shares), axis=-1) * size
         displacements = self._displacements(n, grids)
         cell, row, column = choose(displacements).T
         around = [displacements[cell, row + i, column + j] for i in (0, 1) for j in (0, 1)]
-        return grids[cell, row, column], size / parts, np.stack(around, axis=1).reshape(-1, 2, 2, 2)
+        return grids[cell, row, column], size / _PARTS, np.stack(around, axis=1).reshape(-1, 2, 2, 2)
 
     def _displacements(self, n: int, places: np.ndarray) -> np.ndarray:
         """Return the displacements of the n-th return of starts at places (…, 2); NaN without this return."""
-        spec, displacements = self._spec, np.full(places.shape, np.nan)
-        states = spec.start_states(*places.reshape(-1, 2).T).reshape(*places.shape[:-1], 4)
-        is_start = np.isfinite(states).all(axis=-1)
-        parts = np.array_split(states[is_start], 1 + np.count_nonzero(is_start) // _STARTS_AT_ONCE)
+        starts = self._spec.start_states(*places.reshape(-1, 2).T) / self._spec.potential.units.state
+        parts = np.array_split(starts, 1 + len(starts) // _STARTS_AT_ONCE)
         points = [self._points_after(n, part) for part in parts if len(part)]
-        displacements[is_start] = np.concatenate([np.empty((0, 2)), *points]) - places[is_start]
-        return displacements
+        return np.concatenate([np.empty((0, 2)), *points]).reshape(places.shape) - places
 
-    def _points_after(self, n: int, states: np.ndarray) -> np.ndarray:
-        """Return the points of the n-th returns of states (k, 4), in the coordinates of the section."""
-        spec, execution = self._spec, replace(self._execution, on_progress=None)
-        found = find_returns(spec.potential, energy_of(spec), states, n, spec.t_max, section=spec.section, execution=execution)
-        return spec.section.axes.points(found.states[n - 1])
+    def _points_after(self, n: int, starts: np.ndarray) -> np.ndarray:
+        """Return the points of the n-th returns of starts (k, 4) in units of the well, in the coordinates of the section."""
+        spec, units, execution = self._spec, self._spec.potential.units, replace(self._execution, on_progress=None)
+        orbits = FollowedOrbits(
+            spec.potential.in_well_units, starts, np.zeros(len(starts), np.int64), self._curves, n,
+            spec.t_max / units.time, spec.section.in_well_units(units).numbers,
+        )  # fmt: skip
+        orbits.follow(np.concatenate(orbits.parts(execution)), execution)
+        return spec.section.axes.points(spec.section.restore_returns(orbits.points, units)[0][n - 1])
 
     def try_place(self, n: int, place: np.ndarray) -> None:
         """Search for an orbit with n returns near a place, unless one is known there."""

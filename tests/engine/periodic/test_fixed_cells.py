@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine.periodic.fixed_cells import cells_with_index, zero_in_cell
+from engine.periodic.fixed_cells import cells_near_zero, cells_with_index, zero_in_cell
 
 AXIS = np.linspace(-1.0, 1.0, 12)
 X, Y = np.meshgrid(AXIS, AXIS)
@@ -26,6 +26,24 @@ def test_the_cell_of_the_fixed_point_has_an_index(matrix: list[list[float]]) -> 
     ((row, column),) = found.tolist()
     assert AXIS[column] < FIXED[0] < AXIS[column + 1]
     assert AXIS[row] < FIXED[1] < AXIS[row + 1]
+
+
+@pytest.mark.parametrize("matrix", [ROTATION, SADDLE, REFLECTION], ids=["stable", "unstable", "with reflection"])
+@pytest.mark.parametrize("error", [(0.0, 0.0), (1e-17, 0.0), (-1e-17, 2e-17), (0.0, -1e-17)])
+def test_all_cells_around_a_fixed_point_at_a_corner_are_found(matrix: list[list[float]], error: tuple[float, float]) -> None:
+    values = displacements(matrix)
+    values += (FIXED - [AXIS[4], AXIS[7]]) @ (np.array(matrix) - np.eye(2)).T
+    values[7, 4] = error
+    assert cells_with_index(values).tolist() == [[6, 3], [6, 4], [7, 3], [7, 4]]
+
+
+def test_cells_with_missing_displacements_can_contain_a_fixed_point() -> None:
+    values = displacements(ROTATION) + 10.0
+    assert cells_near_zero(values).size == 0
+    values[3:6, 5] = np.nan
+    assert cells_near_zero(values).tolist() == [[row, column] for row in (2, 3, 4, 5) for column in (4, 5)]
+    values[:] = np.nan
+    assert cells_near_zero(values).size == 0
 
 
 def test_cells_with_missing_displacements_have_no_index() -> None:

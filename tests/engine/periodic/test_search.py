@@ -95,6 +95,25 @@ def test_henon_and_heiles_have_the_eight_simple_orbits_of_churchill_pecelli_and_
     assert sorted(numbers.values()) == [2, 3, 3]
 
 
+def test_an_orbit_at_a_corner_of_parts_of_cells_is_found() -> None:
+    # The orbit x = 0 is where four cells of this window meet, and unstable.
+    periods = [round(orbit.period, 6) for orbit in find_periodic_orbits(replace(SPEC, energy=0.6), 1)]
+    assert round(2.0 * np.pi, 6) in periods
+
+
+# Orbits of one return with a = 63.97 and −275.4, which Newton's method found from thousands of random starts.
+@pytest.mark.parametrize(("energy", "period"), [(0.2, 10.508880), (0.4, 9.307161)])
+def test_orbits_near_which_most_starts_escape_are_found(energy: float, period: float) -> None:
+    spec = MapSpec(POTENTIALS["HH"], Plane.X_PX, energy, (60, 60), t_max=60.0)
+    assert period in {round(orbit.period, 6) for orbit in find_periodic_orbits(spec, 1)}
+
+
+def test_parts_of_cells_can_have_corners_in_a_body() -> None:
+    found = find_periodic_orbits(MapSpec(POTENTIALS["Hill"], Plane.X_PX, -2.1, (30, 30), t_max=60.0), 2)
+    # Near the last two, most starts escape.
+    assert {round(orbit.period, 4) for orbit in found} >= {1.498, 0.5096, 2.908, 4.6875}
+
+
 def test_a_point_is_found_by_its_place(found: PeriodicOrbits) -> None:
     orbit = found.nearest(0.59, 0.01)
     assert orbit is not None
