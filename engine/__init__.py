@@ -51,8 +51,9 @@ from engine.measures.measure import Measure as Measure
 from engine.measures.table import MEASURES as MEASURES
 from engine.measures.uncertain_pairs import compute_uncertainty_exponent as compute_uncertainty_exponent
 from engine.opened_results import open_result as open_result
-from engine.periodic.continuation import continue_family as continue_family
-from engine.periodic.family import OrbitFamily as OrbitFamily
+from engine.periodic.families.continuation import continue_family as continue_family
+from engine.periodic.families.family import OrbitFamily as OrbitFamily
+from engine.periodic.families.special_points import SpecialKind as SpecialKind
 from engine.periodic.jpl_table import read_jpl_table as read_jpl_table
 from engine.periodic.jpl_table import write_jpl_table as write_jpl_table
 from engine.periodic.nearest_orbit import NoPeriodicOrbitError as NoPeriodicOrbitError
@@ -60,7 +61,6 @@ from engine.periodic.nearest_orbit import find_periodic_orbit as find_periodic_o
 from engine.periodic.periodic_orbit import PeriodicOrbit as PeriodicOrbit
 from engine.periodic.periodic_orbit import Stability as Stability
 from engine.periodic.search import find_periodic_orbits as find_periodic_orbits
-from engine.periodic.special_points import SpecialKind as SpecialKind
 from engine.periodic.symmetric.search import find_symmetric_families as find_symmetric_families
 from engine.propagation.fates import Evidence as Evidence
 from engine.propagation.fates import Fate as Fate

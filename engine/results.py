@@ -17,7 +17,7 @@ from engine.measures.basins.islands import Islands as Islands
 from engine.measures.basins.power_law_fit import UncertaintyExponent as UncertaintyExponent
 from engine.measures.basins.wada import WadaTest as WadaTest
 from engine.measures.flux import EscapeFlux as EscapeFlux
-from engine.periodic.family import SpecialPoint as SpecialPoint
+from engine.periodic.families.family import SpecialPoint as SpecialPoint
 from engine.periodic.periodic_orbits import PeriodicOrbits as PeriodicOrbits
 from engine.periodic.symmetric.symmetric_families import SymmetricFamilies as SymmetricFamilies
 from engine.propagation.classification import Outcomes as Outcomes

@@ -227,10 +227,15 @@ def _scale_of(trial: Trial) -> float:
 
 
 def crosses_section(potential: Potential, section: Section, orbit: Trial) -> bool:
-    """Return whether all returns of an orbit cross the section in its direction, and do not only touch it."""
+    """Return whether all returns of an orbit cross the section in its direction, and do not only touch it.
+
+    A state within `_LARGEST_GAP` of an equilibrium closes after any time, but is no orbit.
+    """
     states = orbit.states[orbit.returns]
     rates = section.rates(states, velocities(potential, states))
-    return bool(np.all(rates > 0.0) or (section.direction is Crossing.BOTH and np.all(rates != 0.0)))
+    if section.direction is Crossing.BOTH:
+        rates = np.abs(rates)
+    return bool(np.all(rates > _LARGEST_GAP))
 
 
 def divided(potential: Potential, trial: Trial) -> Trial:

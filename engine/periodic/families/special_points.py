@@ -11,8 +11,8 @@ import numpy as np
 
 from engine.foundations.root_finding import find_root
 from engine.periodic.closed_orbits import half_index
+from engine.periodic.families.following import Member, Segment
 from engine.periodic.family_parameter import FamilyParameter
-from engine.periodic.following import Member, Segment
 from engine.periodic.shooting import SINGULAR, close_orbit, linearise
 from engine.periodic.symmetries import Symmetry
 

@@ -13,12 +13,12 @@ from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_pro
 from engine.foundations.validation import checked_count, checked_number, checks_types, short_repr
 from engine.foundations.wording import format_number
 from engine.periodic.closed_orbits import half_symmetry, sampled_path
-from engine.periodic.family import NUMBERS, OrbitFamily, SpecialPoint
+from engine.periodic.families.family import NUMBERS, OrbitFamily, SpecialPoint
+from engine.periodic.families.following import Member, Segment, first_member, follow_family
+from engine.periodic.families.special_points import Located, find_special_points, numbers_of
 from engine.periodic.family_parameter import ENERGY, EnergyParameter, FamilyParameter, SystemParameter
-from engine.periodic.following import Member, Segment, first_member, follow_family
 from engine.periodic.periodic_orbit import PeriodicOrbit
 from engine.periodic.shooting import Trial, close_orbit
-from engine.periodic.special_points import Located, find_special_points, numbers_of
 from engine.slices.axes import ParameterAxis
 from engine.systems.potential import Potential
 

@@ -12,11 +12,11 @@ import numpy as np
 from engine.foundations.arrays import read_only
 from engine.foundations.validation import checked_count, checked_number
 from engine.foundations.wording import format_count, format_number
+from engine.periodic.families.special_points import SpecialKind
+from engine.periodic.families.switching import first_orbits_of_branches
 from engine.periodic.family_parameter import ENERGY, EnergyParameter
 from engine.periodic.periodic_orbit import DIGITS, STATE_COLUMNS, PeriodicOrbit, ResultOnSection, Stability
 from engine.periodic.shooting import close_orbit
-from engine.periodic.special_points import SpecialKind
-from engine.periodic.switching import first_orbits_of_branches
 from engine.slices.sections.section_text import section_of_file
 from engine.systems.formulas.formula_parser import read_potential
 from engine.systems.parameters import symbol_of
