@@ -26,8 +26,8 @@ from engine.propagation.followed_orbits import FollowedOrbits
 # Columns of the table of points, and those that contain numbers of orbits.
 _COLUMNS = ("orbit", "time", *STATE_COLUMNS, "period", "stability_index", "action", "image_of")
 _NUMBERS = ("orbit", "image_of")
-# Numbers of parts along each side of a cell, and of each such part.
-_PARTS = 4
+# Number of parts along each side of a cell, and of each such part; odd, so that a line of symmetry through the middle is no edge.
+_PARTS = 5
 # Number of starts that are followed at once, which limits memory.
 _STARTS_AT_ONCE = 20_000
 # Number of corrections of places, distance of the starts for their derivatives, and last correction of a fixed point, in cells.

@@ -179,7 +179,7 @@ def test_no_family_is_followed_from_a_fold() -> None:
 def test_a_stable_and_an_unstable_orbit_are_born_at_a_resonance(straight_in_hh: OrbitFamily, turns: int, returns: int) -> None:
     number = [point.name for point in straight_in_hh.special].index(f"resonance {turns}:{returns}")
     point = straight_in_hh.special[number]
-    branches = straight_in_hh.switch(number, 0.05)
+    branches = straight_in_hh.switch(number, 0.08)
     assert {orbit.returns for orbit in branches} == {returns}
     excess = [orbit.stability_index - 1.0 for orbit in branches]
     assert min(excess) < 0.0 < max(excess)

@@ -63,7 +63,7 @@ def test_a_letter_of_a_formula_in_other_units_has_the_same_special_point() -> No
 def test_a_fold_along_a_parameter_is_that_along_the_energy() -> None:
     # Orbits depend on h ε only.
     straight = continue_family(STRAIGHT, 0.6)
-    branch = straight.switch([point.kind for point in straight.special].index(SpecialKind.BRANCHING), 0.1)
+    branch = straight.switch([point.kind for point in straight.special].index(SpecialKind.BRANCHING), 0.1)[0]
     # From here the value falls to the fold, and rises again.
     of_energy, of_epsilon = continue_family(branch, 0.57), continue_family(branch, 0.9, along="epsilon")
     (fold,) = values(of_energy, "fold")
