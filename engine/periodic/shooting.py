@@ -238,6 +238,18 @@ def crosses_section(potential: Potential, section: Section, orbit: Trial) -> boo
     return bool(np.all(rates > _LARGEST_GAP))
 
 
+def with_parts(potential: Potential, orbit: Trial, parts: tuple[int, ...]) -> Trial | None:
+    """Return an orbit without nodes between its returns with numbers of parts instead; None if it cannot be integrated."""
+    found = trace_parts(potential, orbit.states, orbit.durations)
+    if found is None:
+        return None
+    nodes = [
+        sample_path(potential.well.kernels, steps, np.arange(count) * (duration / count)).T
+        for steps, duration, count in zip(found.steps, orbit.durations, parts, strict=True)
+    ]
+    return orbit._replace(states=np.concatenate(nodes), parts=parts)
+
+
 def divided(potential: Potential, trial: Trial) -> Trial:
     """Return a trial orbit with further nodes where errors grow much between two returns. Other nodes stay where they are."""
     found = trace_parts(potential, trial.states, trial.part_durations)

@@ -16,7 +16,7 @@ from engine.periodic.families.special_points import SpecialKind
 from engine.periodic.families.switching import first_orbits_of_branches
 from engine.periodic.family_parameter import ENERGY, EnergyParameter
 from engine.periodic.periodic_orbit import DIGITS, STATE_COLUMNS, PeriodicOrbit, ResultOnSection, Stability
-from engine.periodic.shooting import close_orbit
+from engine.periodic.shooting import Trial, close_orbit, with_parts
 from engine.slices.sections.section_text import section_of_file
 from engine.systems.formulas.formula_parser import read_potential
 from engine.systems.parameters import symbol_of
@@ -184,12 +184,13 @@ class OrbitFamily(ResultOnSection):
         energy = value if self.along == ENERGY else begin.energy
         # Both members and the orbit between them in the same units.
         potential = with_well_of(self._potential_at(value), begin.potential)
-        trial, units = begin.trial, potential.units
-        states = (begin.states + share * (end.states - begin.states)) / units.state
-        durations = trial.durations + share * (np.diff(end.time, append=end.period) / units.time - trial.durations)
-        # The nodes between the returns stay where they are: Newton's method moves them.
-        nodes = trial.states + (states - trial.states[trial.returns])[trial.owners]
-        guess = trial._replace(states=nodes, durations=durations, value=energy / units.energy)
+        first, units = begin.trial, potential.units
+        durations = np.diff(end.time, append=end.period) / units.time
+        returns = Trial(end.states / units.state, durations, first.value, (1,) * self.returns)
+        last = with_parts(with_well_of(end.potential, begin.potential).in_well_units, returns, first.parts)
+        if last is None:
+            return None
+        guess = first.moved(first.vector + share * (last.vector - first.vector))._replace(value=energy / units.energy)
         closed = close_orbit(EnergyParameter(potential, self.section), guess)
         if closed is None:
             return None

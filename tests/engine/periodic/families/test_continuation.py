@@ -8,7 +8,16 @@ import numpy as np
 import pytest
 from scipy.special import mathieu_a
 
-from engine import CASES, POTENTIALS, Execution, OrbitFamily, SpecialKind, continue_family, find_periodic_orbit
+from engine import (
+    CASES,
+    POTENTIALS,
+    Execution,
+    OrbitFamily,
+    SpecialKind,
+    continue_family,
+    find_lyapunov_orbits,
+    find_periodic_orbit,
+)
 from engine.foundations.root_finding import find_root
 
 III, HH, HILL = CASES["III"], POTENTIALS["HH"], POTENTIALS["Hill"]
@@ -109,6 +118,16 @@ def test_at_finds_the_orbit_of_an_energy_and_nothing_beyond_the_ends(straight_in
     assert orbit.stability_index == pytest.approx(-0.340506, abs=1e-6)
     assert straight_in_iii.at(0.05) == ()
     assert len(straight_in_iii.at(0.1)) == len(straight_in_iii.at(0.7)) == 1
+
+
+def test_at_finds_the_orbits_between_members_of_an_unstable_family() -> None:
+    moon = POTENTIALS["Earth-Moon"]
+    (exit_orbit,) = (orbit for orbit in find_lyapunov_orbits(moon, moon.jacobi_energy(3.16)) if orbit.name == "L1")
+    family = continue_family(find_periodic_orbit(moon, exit_orbit.start, 1), moon.jacobi_energy(2.91))
+    middles = 0.5 * (family.energy[1:] + family.energy[:-1])[::12]
+    periods = [[orbit.period for orbit in family.at(float(h))] for h in middles]
+    assert [len(found) for found in periods] == [1] * len(middles)
+    assert np.ravel(periods) == pytest.approx(0.5 * (family.period[1:] + family.period[:-1])[::12], rel=1e-2)
 
 
 def test_the_family_says_why_it_ends() -> None:
