@@ -36,6 +36,8 @@ _PATH_POINTS = 2000
 _HOMOCLINIC = "the period grows without limit, because the orbits tend to an equilibrium"
 # Members after which a family can close.
 _FEWEST_MEMBERS = 10
+# Growth of a family from one frame to the next. Each frame has all members.
+_GROWTH = 1.1
 
 
 @shows_progress("family")
@@ -66,7 +68,7 @@ def continue_family(
     execution
         How the computation runs. When it is cancelled, the family ends at the last member found.
     on_frame
-        Called with the family so far after each member.
+        Called with the family so far, each time that it has grown by a tenth.
 
     Returns
     -------
@@ -106,10 +108,13 @@ def continue_family(
         for rising, bound in zip((False, True), bounds, strict=True)
         if bound != value
     ]
+    shown = 0
     for number, branch in enumerate(branches):
         for _ in branch.grow(execution.part(number, len(branches))):
-            if on_frame is not None:
+            members = sum(len(each.entries) for each in branches)
+            if on_frame is not None and members >= _GROWTH * shown:
                 on_frame(_joined(start, branches, along, complete=False))
+                shown = members
     return _joined(start, branches, along, complete=not execution.is_cancelled)
 
 
