@@ -120,6 +120,20 @@ def test_at_finds_the_orbit_of_an_energy_and_nothing_beyond_the_ends(straight_in
     assert len(straight_in_iii.at(0.1)) == len(straight_in_iii.at(0.7)) == 1
 
 
+# Contopoulos, Harsoula & Lukes-Gerakopoulos 2012, arXiv:1203.1010, describe this family. Near the saddle, errors grow at the rate
+# 1 and turn at the rate √2 about the orbit y = √2 x, whose period is −ln(1/8 − h) + …: a turn more takes e^(2π/√2) times less.
+def test_bifurcations_of_case_i_accumulate_at_its_escape_energy_and_their_families_go_on_above_it() -> None:
+    speed = np.sqrt(0.2)
+    orbit = find_periodic_orbit(CASES["I"], [0.0, 0.0, speed / np.sqrt(3.0), speed * np.sqrt(2.0 / 3.0)], 1)
+    family = continue_family(orbit, 0.125)
+    assert family.ends[1] == "the period grows without limit, because the orbits tend to an equilibrium"
+    branchings = np.array(energies(family, "branching"))
+    ratios = (0.125 - branchings[:-2]) / (0.125 - branchings[2:])
+    assert ratios[-2:] == pytest.approx(np.exp(np.sqrt(2.0) * np.pi), rel=2e-4)
+    child = family.switch([point.kind for point in family.special].index(SpecialKind.BRANCHING))[0]
+    assert continue_family(child, 0.14, most_members=300).energy.max() == 0.14
+
+
 def test_at_finds_the_orbits_between_members_of_an_unstable_family() -> None:
     moon = POTENTIALS["Earth-Moon"]
     (exit_orbit,) = (orbit for orbit in find_lyapunov_orbits(moon, moon.jacobi_energy(3.16)) if orbit.name == "L1")
