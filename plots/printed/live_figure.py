@@ -70,7 +70,7 @@ def live_figure(
     caption
         A text below the figure.
     link
-        Address of the view in an explorer; empty for none.
+        Address of the view in an explorer, which begins with http:// or https://; empty for none.
     palette
         Colours of the map.
     execution
@@ -87,6 +87,8 @@ def live_figure(
         raise ValueError(f"found: {refusal}")
     if len(starts) > len(palette.orbits):
         raise ValueError(f"starts: there are {len(starts)}; must be at most {len(palette.orbits)}")
+    if link and not link.startswith(("http://", "https://")):
+        raise ValueError(f"link={link!r}: must begin with http:// or https://")
     low, high = _checked_energies(spec, energies)
     decimals = math.ceil(_DIGITS - math.log10(high - low))
     system = make_browser_system(spec.potential, low, high, spec.section, execution=execution).to_dict()
