@@ -81,33 +81,40 @@ def live_figure(
     ValueError
         If the map is not complete, there is no live figure of it, there are too many starts, or a number is not legal.
     """
-    spec = found.spec
-    found.check_complete("found")
-    if refusal := live_refusal(spec):
-        raise ValueError(f"found: {refusal}")
-    if len(starts) > len(palette.orbits):
-        raise ValueError(f"starts: there are {len(starts)}; must be at most {len(palette.orbits)}")
-    if link and not link.startswith(("http://", "https://")):
-        raise ValueError(f"link={link!r}: must begin with http:// or https://")
-    low, high = _checked_energies(spec, energies)
-    decimals = math.ceil(_DIGITS - math.log10(high - low))
-    system = make_browser_system(spec.potential, low, high, spec.section, execution=execution).to_dict()
-    data = _data(found, system, starts, palette) | {"low": low, "high": high, "decimals": max(decimals, 0)}
+    _check(found, starts, link, palette)
+    data = _data(found, _checked_energies(found.spec, energies), starts, palette, execution)
     script, worker = (script_code(_MODULES / name) for name in ("figure/live.js", "workers/worker.js"))
-    name = spec.potential.name
-    title = f"{'Case ' if name in CASES else ''}{name}, {spec.plane.title}"
     shown = ShownMap.of(found, palette, {})
     lines = [escape(caption), f'<a href="{escape(link)}">Open in the explorer</a>' if link else ""]
     return Template((_FOLDER / "live_figure.html").read_text(encoding="utf-8")).substitute(
-        policy=_policy(script), generator=program_version(), title=escape(title), still=_still(found, starts, palette),
+        policy=_policy(script), generator=program_version(), title=_title(found.spec), still=_still(found, starts, palette),
         choices="".join(f'<option value="{name}">{escape(PICTURES[name].title)}</option>' for name in LIVE_PICTURES),
-        no_energy=" hidden" if spec.common_energy is None else "", low=low, high=high, energy=data["energy"],
-        shown_energy=f"{data['energy']:.{data['decimals']}f}",
-        map_label=escape(f"Map of {title}"),
+        no_energy=" hidden" if found.spec.common_energy is None else "", low=data["low"], high=data["high"],
+        energy=data["energy"], shown_energy=f"{data['energy']:.{data['decimals']}f}",
         legends="".join(_legend(name, shown) for name in LIVE_PICTURES),
         caption=" ".join(filter(None, lines)), provenance=escape(provenance_line(found)), citation=_CITATION,
         data=_inline(json.dumps(data, separators=(",", ":"))), worker=_inline(worker), script=script,
     )  # fmt: skip
+
+
+def _check(found: EscapeMap, starts: Sequence[tuple[float, float]], link: str, palette: Palette) -> None:
+    """Check the arguments of `live_figure`."""
+    found.check_complete("found")
+    if refusal := live_refusal(found.spec):
+        raise ValueError(f"found: {refusal}")
+    if len(starts) > len(palette.orbits):
+        raise ValueError(f"starts: there are {len(starts)}; must be at most {len(palette.orbits)}")
+    for start in starts:
+        for number in start:
+            checked_number("starts", number)
+    if link and not link.startswith(("http://", "https://")):
+        raise ValueError(f"link={link!r}: must begin with http:// or https://")
+
+
+def _title(spec: MapSpec) -> str:
+    """Return the title of a figure, as HTML."""
+    name = spec.potential.name
+    return escape(f"{'Case ' if name in CASES else ''}{name}, {spec.plane.title}")
 
 
 def live_refusal(spec: MapSpec) -> str:
@@ -129,10 +136,17 @@ def _checked_energies(spec: MapSpec, energies: tuple[float, float] | None) -> tu
     return low, high
 
 
-def _data(found: EscapeMap, system: dict[str, Any], starts: Sequence[tuple[float, float]], palette: Palette) -> dict[str, Any]:
-    """Return the data of a figure in the form of `FigureData` in plots/browser/modules/figure/data.js, without the energies."""
+def _data(
+    found: EscapeMap,
+    energies: tuple[float, float],
+    starts: Sequence[tuple[float, float]],
+    palette: Palette,
+    execution: Execution,
+) -> dict[str, Any]:
+    """Return the data of a figure in the form of `FigureData` in plots/browser/modules/figure/data.js."""
     spec, outcomes = found.spec, found.spec.outcomes
-    columns, rows = spec.resolution
+    (low, high), (columns, rows) = energies, spec.resolution
+    system = make_browser_system(spec.potential, low, high, spec.section, execution=execution).to_dict()
     return {
         "module": _base64(system.pop("module")),
         "kernels": _base64(kernel_module()),
@@ -141,6 +155,9 @@ def _data(found: EscapeMap, system: dict[str, Any], starts: Sequence[tuple[float
         "plane": slice_name(spec.plane),
         "axes": list(spec.plane.axis_symbols),
         "energy": spec.common_energy or 0.0,
+        "low": low,
+        "high": high,
+        "decimals": max(math.ceil(_DIGITS - math.log10(high - low)), 0),
         "window": window_in_browser(spec.find_window()),
         "home": spec.given_window is None,
         "starts": [list(start) for start in starts],

@@ -91,6 +91,7 @@ def test_a_map_writes_its_live_figure(found: EscapeMap, tmp_path: Path) -> None:
         ({"energies": (0.6, 0.3)}, "energies="),
         ({"energies": (0.3, np.inf)}, "energies"),
         ({"starts": [(0.0, 0.0)] * 6}, "starts: there are 6; must be at most 5"),
+        ({"starts": [(np.nan, 0.0)]}, "starts"),
         ({"palette": "blue"}, "palette="),
         ({"link": "javascript:alert(1)"}, "link="),
     ],
