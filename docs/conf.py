@@ -18,6 +18,7 @@ from docutils.utils.math.latex2mathml import tex2mathml
 from sphinx.util.docutils import SphinxDirective
 
 from app.state.glossary import GLOSSARY
+from docs.pictures.live import FOLDER, LIVE, write_live_figures
 from engine import results
 
 if TYPE_CHECKING:
@@ -54,16 +55,18 @@ html_theme = "furo"
 html_title = project
 html_extra_path = ["redirect"]
 html_static_path = ["static"]
-html_css_files = ["formulas.css"]
+html_css_files = ["formulas.css", "live.css"]
 # Browsers show MathML without a program. MathJax would come from another host.
 html_math_renderer = "mathml"
 
 
 def setup(app: Sphinx) -> None:
-    """Add formulas as MathML and the list of terms, and replace docstrings that the extensions misread or do not find."""
+    """Add formulas as MathML, the list of terms and live figures, and replace docstrings that the extensions misread or miss."""
     app.add_html_math_renderer("mathml", (_write_formula, None), (_write_formula, None))
     app.add_directive("terms", Terms)
     app.connect("autodoc-process-docstring", _set_docstring, priority=900)
+    app.connect("doctree-resolved", _add_live_figures)
+    app.connect("build-finished", lambda app, error: None if error else write_live_figures(Path(app.outdir)))
 
 
 class Terms(SphinxDirective):
@@ -73,6 +76,18 @@ class Terms(SphinxDirective):
         """Return the nodes of the glossary."""
         entries = (f"{term}\n  {meaning}\n" for term, meaning in GLOSSARY.items())
         return self.parse_text_to_nodes("\n".join(["```{glossary}", ":sorted:", "", *entries, "```"]))
+
+
+def _add_live_figures(app: Sphinx, doctree: nodes.document, name: str) -> None:
+    """Add the live figure of each drawing that has one, closed at first, because an open one computes."""
+    for image in [*doctree.findall(nodes.image)]:
+        drawing = Path(image["uri"])
+        if drawing.parent.name != "drawings" or drawing.stem not in LIVE:
+            continue
+        address = f"{'../' * name.count('/')}{FOLDER}/{drawing.stem}.html"
+        frame = f'<iframe src="{address}" title="Live figure" loading="lazy" sandbox="allow-scripts"></iframe>'
+        html = f'<details class="live"><summary>Change this map yourself</summary>{frame}</details>'
+        image.parent.parent.insert(image.parent.parent.index(image.parent) + 1, nodes.raw("", html, format="html"))
 
 
 def _write_formula(writer: HTML5Translator, node: nodes.math | nodes.math_block) -> None:

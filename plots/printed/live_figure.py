@@ -13,6 +13,9 @@ from pathlib import Path
 from string import Template
 from typing import Any
 
+import numpy as np
+from PIL import Image
+
 from engine import CASES, EscapeMap, Fate, MapSpec
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.foundations.validation import checked_number
@@ -40,6 +43,8 @@ _MODULES = _FOLDER / "modules"
 _CITATION = "Computed with Escape Explorer, which implements the system of Zotos (2014), Nonlinear Dynamics 78, 1389."
 # Longest time of the orbits that a reader chooses, in units of the well.
 _LONGEST_TIME = 200.0
+# Largest number of colours in the table of a PNG file.
+_MOST_COLOURS = 256
 # Decimals of an energy beyond the size of the range of energies.
 _DIGITS = 3
 # The picture for readers without scripts.
@@ -175,18 +180,28 @@ def _picture(name: str, found: EscapeMap, palette: Palette) -> dict[str, Any]:
     """Return a picture in the form of `PictureData` in plots/browser/modules/figure/data.js."""
     picture, scale = PICTURES[name], fitted_scale(found)
     times = {"colours": list(palette.escape_time), "low": scale.low, "high": scale.high}
-    # Matplotlib is slow to import, and only saved figures need it.
-    from matplotlib.image import imsave
-
-    file = BytesIO()
-    imsave(file, picture_pixels(found, name, palette), format="png")
     return {
         "name": name,
         "column": picture.column,
         "colours": list(picture.colours(palette)),
         "times": times if picture.has_times else None,
-        "image": f"data:image/png;base64,{_base64(file.getvalue())}",
+        "image": f"data:image/png;base64,{_base64(_png(picture_pixels(found, name, palette)))}",
     }
+
+
+def _png(pixels: np.ndarray) -> bytes:
+    """Return RGBA pixels (rows, columns, 4) as a PNG file, with a table of the colours if there are few enough for one."""
+    # A pixel is one number, and its bytes are a colour.
+    colours, codes = np.unique(pixels.view(np.uint32)[..., 0], return_inverse=True)
+    image, transparency = Image.fromarray(pixels), {}
+    if len(colours) <= _MOST_COLOURS:
+        table = colours[:, None].view(np.uint8)
+        image = Image.fromarray(codes.reshape(pixels.shape[:2]).astype(np.uint8))
+        image.putpalette(table[:, :3].tobytes())
+        transparency = {"transparency": table[:, 3].tobytes()}
+    file = BytesIO()
+    image.save(file, "png", optimize=True, **transparency)
+    return file.getvalue()
 
 
 def _legend(name: str, shown: ShownMap) -> str:
