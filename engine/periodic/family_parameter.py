@@ -199,6 +199,15 @@ class SystemParameter(FamilyParameter):
         return max(value - _DIFFERENCE, lowest), min(value + _DIFFERENCE, highest)
 
 
+def parameter_of_family(
+    potential: Potential, section: Section, along: str, bounds: tuple[float, float], energy: float
+) -> FamilyParameter:
+    """Return the parameter of a family, with the potential and the energy of its first orbit, and the range of its values."""
+    if along == ENERGY:
+        return EnergyParameter(potential, section)
+    return SystemParameter(potential, section, ParameterAxis(along, *bounds, potential), energy)
+
+
 @lru_cache(maxsize=_KEPT_POTENTIALS)
 def _potential_on(axis: ParameterAxis, value: float, first: Potential) -> Potential:
     """Return the potential at a value of a parameter of the system, with the well of the first potential of a family."""

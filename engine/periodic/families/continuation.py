@@ -16,10 +16,9 @@ from engine.periodic.closed_orbits import half_symmetry, sampled_path
 from engine.periodic.families.family import NUMBERS, OrbitFamily, SpecialPoint
 from engine.periodic.families.following import Member, Segment, first_member, follow_family
 from engine.periodic.families.special_points import Located, find_special_points, numbers_of
-from engine.periodic.family_parameter import ENERGY, EnergyParameter, FamilyParameter, SystemParameter
+from engine.periodic.family_parameter import ENERGY, FamilyParameter, parameter_of_family
 from engine.periodic.periodic_orbit import PeriodicOrbit
 from engine.periodic.shooting import Trial, close_orbit
-from engine.slices.axes import ParameterAxis
 from engine.systems.potential import Potential
 
 MOST_MEMBERS = 10_000
@@ -100,7 +99,7 @@ def continue_family(
     """
     value = _value_of(orbit, along)
     bounds = _checked_bounds(until, along, value)
-    parameter = _parameter(orbit, along, bounds)
+    parameter = parameter_of_family(orbit.potential, orbit.section, along, bounds, orbit.energy)
     most_members = checked_count("most_members", most_members, 2, MOST_MEMBERS)
     start = _Entry(orbit, value, [])
     branches = [
@@ -143,14 +142,6 @@ def _checked_bounds(until: Any, along: str, value: float) -> tuple[float, float]
             f"until={until!r}: must be another value of {along} than that of the orbit, {own}, or (low, high) around it"
         )
     return low, high
-
-
-def _parameter(orbit: PeriodicOrbit, along: str, bounds: tuple[float, float]) -> FamilyParameter:
-    """Return the parameter of the family of an orbit, between these bounds; ValueError if they are not legal."""
-    potential, section = orbit.potential, orbit.section
-    if along == ENERGY:
-        return EnergyParameter(potential, section)
-    return SystemParameter(potential, section, ParameterAxis(along, *bounds, potential), orbit.energy)
 
 
 class _Entry(NamedTuple):

@@ -14,7 +14,7 @@ from engine.foundations.validation import checked_count, checked_number
 from engine.foundations.wording import format_count, format_number
 from engine.periodic.families.special_points import SpecialKind
 from engine.periodic.families.switching import first_orbits_of_branches
-from engine.periodic.family_parameter import ENERGY, EnergyParameter
+from engine.periodic.family_parameter import ENERGY, EnergyParameter, FamilyParameter, parameter_of_family
 from engine.periodic.periodic_orbit import DIGITS, STATE_COLUMNS, PeriodicOrbit, ResultOnSection, Stability
 from engine.periodic.shooting import Trial, close_orbit, with_parts
 from engine.slices.sections.section_text import section_of_file
@@ -216,12 +216,8 @@ class OrbitFamily(ResultOnSection):
         Raises
         ------
         ValueError
-            If a parameter is out of range, no orbit of a branch is found, or the family is one along a parameter of the system.
+            If a parameter is out of range, or no orbit of a branch is found.
         """
-        if self.along != ENERGY:
-            raise ValueError(
-                f"number={number}: branches are followed from families along h only; continue a member next to the point along h"
-            )
         if not self.special:
             raise ValueError(f"number={number}: the family has no special points")
         point = self.special[checked_count("number", number, 0, len(self.special) - 1)]
@@ -230,14 +226,34 @@ class OrbitFamily(ResultOnSection):
             raise ValueError(f"number={number}: no other family is followed from this {point.name}; must be one of {legal}")
         if step is not None and not _STEPS[0] <= (step := checked_number("step", step)) <= _STEPS[1]:
             raise ValueError(f"step={step:g}: must be from {_STEPS[0]:g} to {_STEPS[1]:g}")
-        neighbours = self[max(point.member - 1, 0)], self[min(point.member + 1, len(self) - 1)]
+        member, before, after = map(self._trial, (point.member, max(point.member - 1, 0), min(point.member + 1, len(self) - 1)))
         periods = point.periods or _PERIODS_OF_BRANCHES[point.kind]
         dimensions = 2 if point.kind in _ALL_CLOSE else 1
         for distance in _DEFAULT_STEPS if step is None else (step,):
-            orbits = first_orbits_of_branches(self[point.member], neighbours, periods, dimensions, distance)
+            orbits = first_orbits_of_branches(self._parameter, member, (before, after), periods, dimensions, distance)
             if orbits:
-                return tuple(orbits)
+                return tuple(map(self._restored, orbits))
         raise ValueError(f"step={step}: no orbit of a branch was found at this distance; choose another one")
+
+    @property
+    def _parameter(self) -> FamilyParameter:
+        bounds = float(self.value.min()), float(self.value.max())
+        return parameter_of_family(self.potential, self.section, self.along, bounds, float(self.energy[0]))
+
+    def _trial(self, member: int) -> Trial:
+        """Return a member in the units of the well of the family and of its parameter."""
+        orbit = self[member]
+        if orbit.potential is not self.potential:
+            orbit = replace(orbit, potential=with_well_of(orbit.potential, self.potential))
+        return orbit.trial._replace(value=float(self.value[member]) / self._parameter.unit)
+
+    def _restored(self, orbit: Trial) -> PeriodicOrbit:
+        """Return an orbit in the units of the well of the family and of its parameter as one of its own potential."""
+        parameter, value = self._parameter, orbit.value
+        restored = PeriodicOrbit.from_trial(
+            parameter.potential_at(value), self.section, orbit._replace(value=parameter.energy_at(value))
+        )
+        return replace(restored, potential=self._potential_at(value * parameter.unit))
 
     def describe(self) -> str:
         """Describe the family in a sentence."""

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from engine.periodic.closed_orbits import primitive_returns
-from engine.periodic.family_parameter import EnergyParameter, FamilyParameter
-from engine.periodic.periodic_orbit import PeriodicOrbit
+from engine.periodic.family_parameter import FamilyParameter
 from engine.periodic.shooting import SINGULAR, Equations, Trial, close_orbit, crosses_section, linearise
 
 # Directions from which branches are sought around an orbit of which all nearby orbits close.
@@ -21,8 +20,8 @@ _DETERMINED = 10.0 * SINGULAR
 
 
 def first_orbits_of_branches(
-    orbit: PeriodicOrbit, neighbours: tuple[PeriodicOrbit, PeriodicOrbit], periods: int, dimensions: int, step: float
-) -> list[PeriodicOrbit]:
+    parameter: FamilyParameter, orbit: Trial, neighbours: tuple[Trial, Trial], periods: int, dimensions: int, step: float
+) -> list[Trial]:
     """Return an orbit of each branch that is found at a distance from a special point.
 
     At the point, the equations of the repeated orbit have null vectors along the family and across it. Orbits of the branches
@@ -30,6 +29,8 @@ def first_orbits_of_branches(
 
     Parameters
     ----------
+    parameter
+        The parameter of the family.
     orbit
         The orbit at the special point.
     neighbours
@@ -41,9 +42,8 @@ def first_orbits_of_branches(
     step
         The distance, in units of the well.
     """
-    parameter = EnergyParameter(orbit.potential, orbit.section)
-    trial = orbit.trial.repeated(periods)
-    secant = _numbers(neighbours[1], periods) - _numbers(neighbours[0], periods)
+    trial = orbit.repeated(periods)
+    secant = _numbers(neighbours[1].repeated(periods)) - _numbers(neighbours[0].repeated(periods))
     found: list[Trial] = []
     across = _null_vectors_across(parameter, trial, secant, dimensions)
     for direction in _directions(across, periods):
@@ -51,7 +51,7 @@ def first_orbits_of_branches(
         is_new = closed is not None and not any(_is_same(closed, known, _SAME * step) for known in found)
         if closed is not None and is_new and (periods == 1 or primitive_returns(closed) == len(closed.durations)):
             found.append(closed)
-    return [PeriodicOrbit.from_trial(orbit.potential, orbit.section, each) for each in found]
+    return found
 
 
 def _branch_near(parameter: FamilyParameter, trial: Trial, across: np.ndarray, offset: np.ndarray) -> Trial | None:
@@ -91,12 +91,9 @@ def _is_same(orbit: Trial, other: Trial, distance: float) -> bool:
     return any(bool(np.abs(states - np.roll(others, k, axis=0)).max() < distance) for k in range(len(states)))
 
 
-def _numbers(orbit: PeriodicOrbit, periods: int) -> np.ndarray:
-    """Return the states at the returns, the times between them and the energy of a repeated orbit, in units of the well."""
-    units = orbit.potential.units
-    durations = np.diff(orbit.time, append=orbit.period) / units.time
-    states = (orbit.states / units.state).ravel()
-    return np.concatenate([np.tile(states, periods), np.tile(durations, periods), [orbit.energy / units.energy]])
+def _numbers(orbit: Trial) -> np.ndarray:
+    """Return the unknowns of an orbit without those of nodes between its returns."""
+    return np.concatenate([orbit.states[orbit.returns].ravel(), orbit.durations, [orbit.value]])
 
 
 def _null_vectors_across(parameter: FamilyParameter, trial: Trial, secant: np.ndarray, dimensions: int) -> np.ndarray:

@@ -154,9 +154,29 @@ def test_what_is_no_parameter_of_the_system_is_refused() -> None:
         continue_family(unknown, 2.0, along="c")
 
 
-def test_branches_of_a_family_along_a_parameter_are_refused(in_epsilon: OrbitFamily) -> None:
-    with pytest.raises(ValueError, match="number=0: branches are followed from families along h only"):
-        in_epsilon.switch(0)
+def test_branches_of_a_family_along_a_parameter_move_in_their_own_potentials(in_epsilon: OrbitFamily) -> None:
+    number = [point.kind for point in in_epsilon.special].index(SpecialKind.BRANCHING)
+    point = in_epsilon.special[number]
+    branches = in_epsilon.switch(number)
+    assert len(branches) == 2
+    for orbit in branches:
+        assert orbit.potential != in_epsilon[point.member].potential
+        assert orbit.potential.energy(orbit.state) == pytest.approx(in_epsilon.energy[0], abs=1e-10)
+        assert find_periodic_orbit(orbit.potential, orbit.state, 1).period == pytest.approx(orbit.period, rel=1e-10)
+    one, other = branches
+    np.testing.assert_allclose(one.states * [-1.0, 1.0, -1.0, 1.0], other.states, atol=1e-9)
+
+
+# Case III with ε at h is case III with ε = 1 at ε h: lengths and momenta shrink by √ε.
+def test_branches_along_a_parameter_are_those_along_the_energy(in_epsilon: OrbitFamily) -> None:
+    along_h = continue_family(STRAIGHT, 0.6)
+    numbers = [[point.kind for point in family.special].index(SpecialKind.BRANCHING) for family in (in_epsilon, along_h)]
+    orbit = in_epsilon.switch(numbers[0])[0]
+    epsilon = orbit.potential.system.value_of("epsilon")
+    scaled = find_periodic_orbit(III, orbit.state * np.sqrt(epsilon), 1)
+    branch = continue_family(along_h.switch(numbers[1])[0], (scaled.energy - 1e-3, scaled.energy + 0.05))
+    assert scaled.stability_index == pytest.approx(orbit.stability_index, abs=1e-9)
+    assert min(abs(each.period - scaled.period) for each in branch.at(scaled.energy)) < 1e-9
 
 
 def test_a_family_reaches_the_last_legal_value_of_a_parameter() -> None:
