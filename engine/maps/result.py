@@ -255,14 +255,7 @@ class EscapeMap(MapResult):
         TypeError
             If an option does not exist.
         ValueError
-            If the map is not complete, an axis of its slice is a parameter, its orbits run backward in time, or an option is not
-            legal.
-
-        Examples
-        --------
-        >>> from escape_explorer import CASES, MapSpec, Plane, compute_map
-        >>> found = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.45))
-        >>> found.to_html("figure.html", energies=(0.2, 1.0))  # doctest: +SKIP
+            If the map is not complete, has an axis that is a parameter, runs backward in time, or an option is not legal.
         """
         content = load_pictures().to_live_html(self, **options)
         with output_named_in_errors(Path(path)):

@@ -14,7 +14,7 @@ from engine.foundations.validation import checked_count, checked_number
 from engine.foundations.wording import format_count, format_number
 from engine.periodic.families.special_points import SpecialKind
 from engine.periodic.families.switching import first_orbits_of_branches
-from engine.periodic.family_parameter import ENERGY, EnergyParameter, FamilyParameter, parameter_of_family
+from engine.periodic.family_parameter import ENERGY, FamilyParameter, parameter_of_family
 from engine.periodic.periodic_orbit import DIGITS, STATE_COLUMNS, PeriodicOrbit, ResultOnSection, Stability
 from engine.periodic.shooting import Trial, close_orbit, with_parts
 from engine.slices.sections.section_text import section_of_file
@@ -179,23 +179,15 @@ class OrbitFamily(ResultOnSection):
 
     def _between(self, member: int, value: float) -> PeriodicOrbit | None:
         """Return the orbit at a value between a member and the next one; None if it is not found."""
-        begin, end = self[member], self[member + 1]
+        parameter, first, last = self._parameter, self._trial(member), self._trial(member + 1)
         share = (value - self.value[member]) / (self.value[member + 1] - self.value[member])
-        energy = value if self.along == ENERGY else begin.energy
-        # Both members and the orbit between them in the same units.
-        potential = with_well_of(self._potential_at(value), begin.potential)
-        first, units = begin.trial, potential.units
-        durations = np.diff(end.time, append=end.period) / units.time
-        returns = Trial(end.states / units.state, durations, first.value, (1,) * self.returns)
-        last = with_parts(with_well_of(end.potential, begin.potential).in_well_units, returns, first.parts)
-        if last is None:
+        returns = last._replace(states=last.states[last.returns], parts=(1,) * self.returns)
+        end = with_parts(parameter.at(last.value).potential, returns, first.parts)
+        if end is None:
             return None
-        guess = first.moved(first.vector + share * (last.vector - first.vector))._replace(value=energy / units.energy)
-        closed = close_orbit(EnergyParameter(potential, self.section), guess)
-        if closed is None:
-            return None
-        orbit = PeriodicOrbit.from_trial(potential, self.section, closed[0])
-        return replace(orbit, potential=self._potential_at(value))
+        guess = first.moved(first.vector + share * (end.vector - first.vector))._replace(value=value / parameter.unit)
+        closed = close_orbit(parameter, guess)
+        return None if closed is None else self._restored(closed[0])
 
     def switch(self, number: int, step: float | None = None) -> tuple[PeriodicOrbit, ...]:
         """Return orbits of the other families that meet this one at a special point, one for each branch found, to be continued.
