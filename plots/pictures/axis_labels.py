@@ -6,6 +6,8 @@ import math
 from decimal import Decimal
 from typing import NamedTuple
 
+from engine.foundations.wording import format_number
+
 # Smallest number of ticks of an axis.
 _FEWEST_TICKS = 3
 FINEST_PLAIN_STEP = -4
@@ -26,9 +28,14 @@ class Offset(NamedTuple):
     exponent: int
 
     def describe(self, name: str) -> str:
-        """Return the name of the axis, an expression such as (x − 0.5) / 1e-6."""
+        """Return the name of the axis, an expression such as (x − 0.5) / 10⁻⁶."""
         distance = f"({name} {'−' if self.base > 0 else '+'} {abs(self.base):f})" if self.base else name
-        return f"{distance} / 1e{self.exponent}"
+        return f"{distance} / {format_number(10.0**self.exponent)}"
+
+    def explain(self, name: str) -> str:
+        """Return the value of a coordinate as a sum with its label for an ellipsis, such as x = 0.5 + … × 10⁻⁶."""
+        base = f"{self.base:f} + ".replace("-", "−") if self.base else ""
+        return f"{name} = {base}… × {format_number(10.0**self.exponent)}"
 
 
 def find_offset(low: float, high: float, finest: int = FINEST_PLAIN_STEP) -> Offset | None:

@@ -10,6 +10,7 @@ from app.job_clients.shown_results import ShownResults
 from app.state.view_state import ViewState
 from app.views.components.view_store import ViewStore
 from app.views.maps.map_plots import MapActions, MapsView
+from app.views.maps.well import WellView
 from app.views.panels.engine_component import BrowserEngine
 from engine import Window
 from engine.jobs.manager import Jobs
@@ -33,3 +34,8 @@ def make_browser_engine(
 def make_maps(state: ViewState | None = None, store: ViewStore | None = None, **actions: Any) -> MapsView:
     """Return the view of maps that follows a view state and calls these actions."""
     return MapsView(state or ViewState(), replace(_NOTHING, **actions), store or make_browser_engine())
+
+
+def make_well(state: ViewState | None = None) -> WellView:
+    """Return the picture of the well, without texts around it."""
+    return WellView(state or ViewState(), lambda name, texts: None)

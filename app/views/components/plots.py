@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -69,7 +70,7 @@ _BORDERS = {"compact": _COMPACT_BORDERS, "small": _SMALL_BORDERS}
 
 
 def map_figure(name: str, title: str, x: Range1d, y: Range1d) -> figure:
-    """Return the square figure of a picture, see `square_figure`. `annotate_picture` writes around its frame."""
+    """Return the square figure of a picture, see `square_figure`. `PictureTexts` stand around its frame."""
     # A frame aligned with the frames of larger pictures would not be square.
     plot = square_figure(name, title, HELP_TEXTS[name], x_range=x, y_range=y, frame_align=False, **_PICTURE_BORDERS)
     for axis in (*plot.below, *plot.left):
@@ -92,37 +93,61 @@ def set_borders(plot: figure, kind: str) -> None:
     plot.update(**_BORDERS.get(kind, _PICTURE_BORDERS))
 
 
-def annotate_picture(
-    plot: figure, title: str, names: tuple[str, str], legend: str, notes: Sequence[str] = (), under_way: str = ""
-) -> None:
-    """Write around the frame of a picture.
+@dataclass(frozen=True)
+class PictureTexts:
+    """What stands around the frame of a picture.
 
-    Parameters
+    Attributes
     ----------
-    plot
-        The picture.
-    title, under_way
-        Texts above the frame: the title, and what is being computed.
-    names
-        Names of the axes.
-    legend, notes
-        Texts below the frame; the legend is HTML, see `legends.picture_legend`.
+    title, short_title
+        The title above the frame, and that of a picture that is too small for it.
+    axes
+        Names of the abscissa and the ordinate.
+    legend
+        HTML below the frame, see `legends.picture_legend`.
+    offsets
+        What the labels of the axes mean, see `label_axes`.
+    note
+        A text that only the largest picture has.
+    under_way
+        What is being computed.
     """
-    enlarge = f"Enlarge, or show all: {title}"
-    abscissa, ordinate = (_MOMENTUM.sub(r"p<sub>\1</sub>", name) for name in names)
-    html = (
-        f"{title_with_help(title, plot.name, HELP_TEXTS[plot.name], under_way)}"
-        f"<button type='button' class='enlarge' data-picture='{plot.name}' aria-label='{enlarge}' title='{enlarge}'></button>"
-        f"<i class='axis-name abscissa'>{abscissa} →</i><i class='axis-name ordinate'>{ordinate} ↑</i>"
-        f"<div class='foot legend' data-picture='{plot.name}'>{legend}"
-        f"{''.join(f'<small>{note}</small>' for note in notes)}</div>"
-    )
-    # The model is reused, because Bokeh would search all models of the page for a new model.
-    plot.elements[0].html = html
+
+    title: str
+    short_title: str
+    axes: tuple[str, str]
+    legend: str
+    offsets: Sequence[str] = ()
+    note: str = ""
+    under_way: str = ""
+
+    def write_above(self, plot: figure, *, short: bool) -> None:
+        """Write above the frame of a picture: the title, the name of the ordinate, and what is being computed."""
+        enlarge = f"Enlarge, or show all: {self.title}"
+        title = self.short_title if short else self.title
+        html = (
+            f"{title_with_help(title, plot.name, HELP_TEXTS[plot.name], self.under_way)}"
+            f"<button type='button' class='enlarge' data-picture='{plot.name}' aria-label='{enlarge}' title='{enlarge}'></button>"
+            f"<i class='axis-name ordinate'>{_axis_name(self.axes[1])} ↑</i>"
+        )
+        # The model is reused, because Bokeh would search all models of the page for a new model.
+        plot.elements[0].html = html
+
+    @property
+    def strip(self) -> str:
+        """The HTML below the frame."""
+        meanings = "".join(f"<small>{offset}</small>" for offset in self.offsets)
+        note = f"<small class='note'>{self.note}</small>" if self.note else ""
+        return f"<i class='axis-name'>{_axis_name(self.axes[0])} →</i>{self.legend}{meanings}{note}"
+
+
+def _axis_name(name: str) -> str:
+    """Return the name of an axis with the subscript of a momentum, as HTML."""
+    return _MOMENTUM.sub(r"p<sub>\1</sub>", name)
 
 
 def label_axes(plots: Iterable[figure], names: tuple[str, str], window: Window) -> list[str]:
-    """Label the axes of the pictures of a window; return sentences that explain labels that are not plain numbers."""
+    """Label the axes of the pictures of a window; return what labels that are distances mean, such as x = 0.5 + … × 10⁻⁶."""
     offsets = [find_offset(low, high, _FINEST_LABEL) for low, high in window.ranges]
     for plot in plots:
         for axis, offset in zip((plot.below[0], plot.left[0]), offsets, strict=True):
@@ -131,7 +156,7 @@ def label_axes(plots: Iterable[figure], names: tuple[str, str], window: Window) 
                 axis.formatter = CustomJSTickFormatter(args=numbers, code=_OFFSET_LABEL_CODE)
             elif isinstance(axis.formatter, CustomJSTickFormatter):
                 axis.formatter = BasicTickFormatter()
-    return [f"Labels: {offset.describe(name)}" for name, offset in zip(names, offsets, strict=True) if offset is not None]
+    return [offset.explain(name) for name, offset in zip(names, offsets, strict=True) if offset is not None]
 
 
 def square_figure(name: str, title: str, text: str, **options: Any) -> figure:

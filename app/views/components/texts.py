@@ -6,9 +6,11 @@ import math
 import re
 from typing import Any
 
+import numpy as np
 import panel as pn
 from bokeh.document import Document
 
+from engine import Potential
 from engine.foundations.wording import format_number, format_share, format_whole
 from engine.results import EscapeStatistics, PotentialReview
 from plots.texts.typeset import typeset
@@ -29,14 +31,24 @@ def plain_symbol(symbol: str) -> str:
 
 
 def describe_outcomes(review: PotentialReview) -> str:
-    """Describe the ends of orbits, and the energy above which exits are open, or up to which a well without exits is closed."""
+    """Describe the ends of orbits, and the energies above which exits are open, or up to which a well without exits is closed."""
     potential = review.potential
-    above = f"above h = {format_number(potential.escape_energy)}" if potential.channels else ""
     if not potential.ends:
-        closed = f"no exits, closed up to h = {format_number(review.closed_energy)}"
-        return f"{potential.channels} exits {above}" if above else closed
+        return _describe_openings(potential) or f"no exits, closed up to h = {format_number(review.closed_energy)}"
     labels = ", ".join(outcome.label for outcome in potential.outcomes)
-    return f"{labels}; exits open {above}" if above else labels
+    openings = f"exits open above h = {format_number(potential.escape_energy)}" if potential.channels else ""
+    return "; ".join(part for part in (labels, openings) if part)
+
+
+def _describe_openings(potential: Potential) -> str:
+    """Return how many exits are open above which energies: "2 exits above h = 0.1109, 3 above 0.1667"; empty without exits."""
+    energies = [format_number(energy) for energy in np.sort(potential.well.saddle_energies)]
+    counts = {energy: count for count, energy in enumerate(energies, 1)}
+    if not counts:
+        return ""
+    (lowest, first_count), *others = counts.items()
+    exits = "exit" if first_count == 1 else "exits"
+    return ", ".join([f"{first_count} {exits} above h = {lowest}", *(f"{count} above {energy}" for energy, count in others)])
 
 
 def escape_facts(statistics: EscapeStatistics) -> dict[str, str]:

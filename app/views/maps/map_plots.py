@@ -13,7 +13,7 @@ from bokeh.plotting import figure
 
 from app.state.view import PICTURES, Start
 from app.state.view_state import ViewState
-from app.views.components.plots import FigurePane, annotate_picture, changing_models, label_axes, map_figure
+from app.views.components.plots import FigurePane, PictureTexts, changing_models, label_axes, map_figure
 from app.views.components.view_store import ViewStore
 from app.views.maps.comparison import ComparedMap
 from app.views.maps.hover import pixel_hover
@@ -92,7 +92,8 @@ class MapsView:
     def __init__(self, state: ViewState, actions: MapActions, store: ViewStore, *, alone: bool = False) -> None:
         self._state, self._actions, self._store = state, actions, store
         self.source = ColumnDataSource(_blank_columns(), name="maps")
-        self.well, self._outlines = WellView(state), MapCurves(state)
+        self.grid = PictureGrid(state, alone=alone)
+        self.well, self._outlines = WellView(state, self.grid.write), MapCurves(state)
         self.overlays, self.marks = Overlays(self.source, state), Markers(state)
         self._time_mapper = LogColorMapper(nan_color="rgba(0,0,0,0)")
         # Scale that fits the escape times of the map in view.
@@ -113,7 +114,6 @@ class MapsView:
         self._last_tap: Start | None = None
         self.figures: dict[str, figure] = {}
         self._panes: dict[str, FigurePane] = {"well": self.well.pane}
-        self.grid = PictureGrid(state, alone=alone)
         state.follow(self._set_colours, "palette")
         state.follow(lambda times: self._scale_times(), "lock_times")
         state.follow(lambda *values: self._show_pictures(), "layers", "compared")
@@ -239,9 +239,10 @@ class MapsView:
         spec = self._spec
         if spec is None:
             return
-        notes = label_axes(self.figures.values(), spec.plane.axis_symbols, spec.find_window())
-        if self._store.magnification > _LEAST_MAGNIFICATION:
-            notes.append(f"{format_number(float(f'{self._store.magnification:.2g}'))} times enlarged")
+        offsets = label_axes(self.figures.values(), spec.plane.axis_symbols, spec.find_window())
+        magnification = self._store.magnification
+        is_enlarged = magnification > _LEAST_MAGNIFICATION
+        note = f"{format_number(float(f'{magnification:.2g}'))} times enlarged" if is_enlarged else ""
         other = self.compared.other
         is_locked = self._state.lock_times is not None
         shown_map = ShownMap(spec, self._state.colours, self.times, self._fates, is_locked, self._results, other)
@@ -249,10 +250,11 @@ class MapsView:
             if name == "well":
                 self.well.describe()
             else:
+                entry = PICTURE_ENTRIES[name]
                 axes = other.axes if name == "compared" and other is not None else spec.plane.axis_symbols
-                legend = picture_legend(map_legend(name, shown_map))
-                title = PICTURE_ENTRIES[name].title_for(spec)
-                annotate_picture(self.figures[name], title, axes, legend, notes, self._under_way(name))
+                legend, under_way = picture_legend(map_legend(name, shown_map)), self._under_way(name)
+                texts = PictureTexts(entry.title_for(spec), entry.short_title, axes, legend, offsets, note, under_way)
+                self.grid.write(name, texts)
 
     def _under_way(self, picture: str) -> str:
         """Return what is being computed for a picture: the picture itself, or layers over the picture; empty if nothing is."""

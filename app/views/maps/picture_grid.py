@@ -8,11 +8,13 @@ import panel as pn
 from bokeh.plotting import figure
 
 from app.state.view_state import ViewState
-from app.views.components.plots import FigurePane, set_borders
+from app.views.components.plots import FigurePane, PictureTexts, set_borders
+from app.views.components.texts import TextPane
 from app.views.components.widgets import FULL_HEIGHT, SegmentedControl
+from app.views.maps.well import SHORT_TITLE as WELL_TITLE
 from plots.layers.table import LAYERS_BY_PICTURE, PICTURES
 
-SHORT_TITLES = {"well": "Well"} | {name: picture.short_title for name, picture in PICTURES.items() if name != "curves"}
+SHORT_TITLES = {"well": WELL_TITLE} | {name: picture.short_title for name, picture in PICTURES.items() if name != "curves"}
 """Short titles of all pictures, in order."""
 
 FIRST_PICTURE = "basins"
@@ -22,6 +24,8 @@ FIRST_PICTURE = "basins"
 _MOST_EQUAL = 4
 # Largest number of pictures of which one is twice as large; of more pictures, one is three times as large as the others.
 _MOST_HALF = 6
+# Kinds of pictures with axes, and a strip below them.
+_WITH_STRIP = ("picked", "equal")
 # Numbers of pictures that leave the last cell empty.
 _WITH_GAP = (5, 7)
 
@@ -43,7 +47,12 @@ class PictureGrid:
         # Pictures that show nothing.
         self._empty_pictures: frozenset[str] = frozenset()
         # Before the first map, the pictures do not belong to the system.
-        classes = ["maps", "stale", *(["alone"] if alone else [])]
+        which = ["alone"] if alone else []
+        classes = ["maps", "stale", *which]
+        # Texts around pictures, and the kind of each picture on the page.
+        self._texts: dict[str, PictureTexts] = {}
+        self._kinds: dict[str, str] = {}
+        self.strips = TextPane(css_classes=["strips", *which])
         self._column = pn.Column(sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=classes)
         self.picker = SegmentedControl(label="Map", css_classes=["segmented", "map-picker"])
         self.picker.param.watch(lambda event: self._choose(event.new), "value")
@@ -62,6 +71,12 @@ class PictureGrid:
         """Put pictures on the page in this order, and remove other pictures: hidden pictures would be painted with each frame."""
         self._panes = panes
         self._place()
+
+    def write(self, name: str, texts: PictureTexts) -> None:
+        """Write around a picture. A compact or small picture has only its title, in short."""
+        self._texts[name] = texts
+        self._write_title(name)
+        self._write_strips()
 
     def mark_empty(self, name: str, empty: bool) -> None:
         """Set whether a picture shows nothing. An empty picture of a layer does not become the largest picture."""
@@ -103,17 +118,33 @@ class PictureGrid:
             self._set_class("many", is_many and not is_enlarged)
             self._set_class("crowded", count > _MOST_HALF and not is_enlarged)
             self._set_class("gap", count in _WITH_GAP and not is_enlarged)
+            self._kinds = {name: "picked" if name == largest else other_kind for name in self._panes}
             for name, pane in self._panes.items():
                 plot: figure = pane.object
-                classes = ["well" if name == "well" else "map", "picked" if name == largest else other_kind]
+                classes = ["well" if name == "well" else "map", self._kinds[name]]
                 if plot.css_classes != classes:
                     plot.css_classes = classes
                     set_borders(plot, classes[1])
+                    self._write_title(name)
+            self._write_strips()
             self.picker.param.update(options={SHORT_TITLES[name]: name for name in self._panes}, value=largest)
             # A narrow page shows only one picture, and offers a choice.
-            parts = [*([self.picker] if self._state.narrow else []), *self._panes.values()]
+            parts = [*([self.picker] if self._state.narrow else []), *self._panes.values(), self.strips]
             if parts != self._column.objects:
                 self._column.objects = parts
+
+    def _write_title(self, name: str) -> None:
+        if name in self._kinds and name in self._texts:
+            self._texts[name].write_above(self._panes[name].object, short=self._kinds[name] not in _WITH_STRIP)
+
+    def _write_strips(self) -> None:
+        kinds = {name: kind for name, kind in self._kinds.items() if kind in _WITH_STRIP and name in self._texts}
+        arrangements = " ".join({"many", "crowded", "enlarged"}.intersection(self._column.css_classes))
+        strips = (
+            f"<div class='foot legend {kind} {arrangements}' data-picture='{name}'>{self._texts[name].strip}</div>"
+            for name, kind in kinds.items()
+        )
+        self.strips.object = "".join(strips)
 
     def _set_class(self, name: str, on: bool) -> None:
         """Set or remove a CSS class of the grid."""

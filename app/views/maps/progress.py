@@ -14,8 +14,9 @@ import panel as pn
 from app.state.view_state import ViewState
 from app.views.components.texts import TextPane
 from app.views.components.widgets import button, keep_place
-from engine import EscapeMap, Evidence, Fate
+from engine import EscapeMap, Evidence, Fate, MapSpec
 from engine.foundations.wording import format_number, format_share, format_whole
+from engine.slices.axes import highest_energy
 from plots.layers.table import LAYERS
 from plots.pictures.palette import Palette
 from plots.texts.legends import patch
@@ -132,11 +133,21 @@ def _shares(frame: EscapeMap, palette: Palette) -> str:
     entries = palette.legend_entries(frame.spec.outcomes) | {Fate.BOUNDED: palette.outcomes[Fate.BOUNDED]}
     if shares[Fate.FAILED]:
         entries[Fate.FAILED] = palette.outcomes[Fate.FAILED]
+    closed = {fate: entries.pop(fate).label for fate in _closed_exits(frame.spec) if fate in entries}
     entry_shares = [(entry, shares[fate]) for fate, entry in entries.items()]
     parts = "".join(f"<i style='flex-grow:{share:.4f};background:{entry.colour}'></i>" for entry, share in entry_shares)
     rest = "" if frame.complete else f"<i style='flex-grow:{frame.undecided:.4f}'></i>"
     words = "".join(patch(entry.colour, f"{escape(entry.label)}&nbsp;{format_share(share)}") for entry, share in entry_shares)
-    return f"<div class='share-bar' aria-hidden='true'>{parts}{rest}</div><div class='legend'>{words}</div>"
+    closed_words = f"<span class='quiet'>closed: {escape(', '.join(closed.values()))}</span>" if closed else ""
+    return f"<div class='share-bar' aria-hidden='true'>{parts}{rest}</div><div class='legend'>{words}{closed_words}</div>"
+
+
+def _closed_exits(spec: MapSpec) -> list[int]:
+    """Return the numbers of the exits that are closed at all energies of a map; none if the potential differs between starts."""
+    if spec.plane.parameter is not None:
+        return []
+    open_channels = spec.potential.well.open_channels(highest_energy(spec.energy))
+    return [channel for channel in range(1, spec.potential.channels + 1) if channel not in open_channels]
 
 
 def _describe_stage(frame: EscapeMap) -> str:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from bokeh.models import ColumnDataSource, ImageRGBA, MultiLine, Range1d, Scatter
 
 from app.state.view_state import ViewState
 from app.views.components.orbit_lines import in_front, line_columns, line_source, line_style, opacities, orbit_colours
-from app.views.components.plots import FigurePane, LaterGlyphs, SourcedGlyphs, annotate_picture, map_figure, set_range
+from app.views.components.plots import FigurePane, LaterGlyphs, PictureTexts, SourcedGlyphs, map_figure, set_range
 from app.views.maps.map_curves import MapCurves
 from engine import MapSpec, Potential, Window
 from engine.slices.axes import highest_energy
@@ -19,6 +19,7 @@ from plots.pictures.palette import LIGHT, MARK_EDGE, Palette
 from plots.texts.legends import legend_items
 
 TITLE = "The well in (x, y)"
+SHORT_TITLE = "Well"
 
 # The line of a long path: none, because an image shows the path.
 _NO_LINE = np.zeros(0), np.zeros(0)
@@ -36,10 +37,12 @@ class WellView:
     ----------
     state
         View state, whose palette has the colours of exits and orbits.
+    write
+        Writes the texts around the picture of a name.
     """
 
-    def __init__(self, state: ViewState) -> None:
-        self._state = state
+    def __init__(self, state: ViewState, write: Callable[[str, PictureTexts], None]) -> None:
+        self._state, self._write = state, write
         self._ranges = Range1d(-1.0, 1.0), Range1d(-1.0, 1.0)
         self._line_style = line_style(orbit_colours(state))
         self._paths, self._trails = line_source("paths"), line_source("trails")
@@ -109,10 +112,12 @@ class WellView:
         self._trails.data = {**trail_lines, "slot": slots, "alpha": [1.0] * len(slots)}
 
     def describe(self) -> None:
-        """Write title, legend and names of the axes around the frame."""
+        """Write title, legend and names of the axes."""
         if self._outline_key is not None:
             spec, _ = self._outline_key
-            annotate_picture(self.plot, TITLE, spec.plane.axis_symbols, legend_items(self._outlines.entries(spec)))
+            self._write(
+                "well", PictureTexts(TITLE, SHORT_TITLE, spec.plane.axis_symbols, legend_items(self._outlines.entries(spec)))
+            )
 
     def _outline(self) -> None:
         """Draw the curves of the well, unless they are already drawn."""

@@ -7,6 +7,7 @@ from functools import partial
 from html import escape as escape_text
 from typing import Any
 
+import numpy as np
 import panel as pn
 
 from app.browser.inputs.counted_inputs import EnergyBox, EnergySlider
@@ -180,7 +181,7 @@ class Controls:
         self.case.value = self._listed_case()
         self.other.color = "light" if self._listed_case() else "primary"
         self.energy.param.update(low=energies.low, high=energies.high, decimals=energies.decimals)
-        self.ticks.object = _ticks(state.potential.escape_energy, energies)
+        self.ticks.object = _ticks(state.potential.well.saddle_energies, energies)
         self.exact_energy.step = 10.0**-energies.decimals
         self._follow_plane()
         self._follow_energy()
@@ -212,11 +213,14 @@ class Controls:
         self.exact_energy.disabled = self.play.disabled = is_energy_axis
 
 
-def _ticks(escape_energy: float, energies: EnergyRange) -> str:
-    """Return HTML of ticks below the slider, at the marked energies, with a label at the escape energy."""
-    shares = [(energy - energies.low) / (energies.high - energies.low) for energy in (escape_energy, *energies.marked)]
-    ticks = "".join(f"<i style='{_TICK.format(share=share)}'></i>" for share in shares if 0.0 <= share <= 1.0)
-    text = f"<span style='{_TICK_LABEL.format(share=shares[0])}'>escape energy {format_number(escape_energy)}</span>"
-    label = text if 0.0 <= shares[0] <= 1.0 else ""
+def _ticks(openings: np.ndarray, energies: EnergyRange) -> str:
+    """Return HTML of ticks below the slider, where exits open and at the marked energies, with a label at the lowest opening."""
+    width = energies.high - energies.low
+    shares = [(energy - energies.low) / width for energy in (*openings, *energies.marked)]
+    ticks = "".join(f"<i style='{_TICK.format(share=share)}'></i>" for share in dict.fromkeys(shares) if 0.0 <= share <= 1.0)
+    label = ""
+    if openings.size and energies.low <= openings.min() <= energies.high:
+        place = _TICK_LABEL.format(share=(openings.min() - energies.low) / width)
+        label = f"<span style='{place}'>escape energy {format_number(openings.min())}</span>"
     style = f"position:relative;height:22px;margin:0 {_THUMB};font-size:12px;color:var(--ui-quiet)"
     return f"<div style='{style}'>{ticks}{label}</div>"

@@ -11,9 +11,9 @@ import pytest
 from app.session.orbit_presenter import ORBITS_REMOVED, OrbitPresenter
 from app.state.view_state import ViewState
 from app.views.maps.markers import Markers
-from app.views.maps.well import WellView
 from engine import Coordinate, ParameterAxis, Plane, Slice, System
 from engine.jobs.manager import Jobs
+from tests.app.map_actions import make_well
 from tests.app.session.session_lock import context_of
 from tests.waiting import SECONDS
 
@@ -36,7 +36,7 @@ class Session:
     def __init__(self, plane: Slice) -> None:
         self.changed = threading.Condition()
         self.state = ViewState(system=System("I"), energy=0.19, t_max=1e3, plane=plane)
-        self.marks, self.well = RecordingMarkers(self.state), WellView(self.state)
+        self.marks, self.well = RecordingMarkers(self.state), make_well(self.state)
         self.opened: list[tuple[System, dict[str, Any]]] = []
         self.context = context_of(self.state, Jobs(), self.changed, lambda system, values: self.opened.append((system, values)))
         self.presenter = OrbitPresenter(self.context, self.marks, self.well, lambda x, ordinate: None)

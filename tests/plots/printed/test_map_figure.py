@@ -217,7 +217,7 @@ def test_the_fonts_have_every_character_of_the_texts(escape_map: EscapeMap) -> N
         *(entry.label for entry in entries),
         *TITLES.values(),
         provenance_line(escape_map),
-        "(x − 0.12) / 1e-11",
+        "(x − 0.12) / 10⁻¹¹",
         "R²",
         "0.05x⁴",
     ]

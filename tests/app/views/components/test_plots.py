@@ -15,7 +15,7 @@ from app.views.components.plots import (
     HOVER_FORMATS,
     FigurePane,
     LaterGlyphs,
-    annotate_picture,
+    PictureTexts,
     chart_hover,
     square_figure,
     with_gaps,
@@ -66,12 +66,15 @@ def test_lines_are_joined_with_a_gap_between_them() -> None:
     np.testing.assert_array_equal(with_gaps([]), gap)
 
 
-def test_another_legend_is_written_into_the_same_model() -> None:
+def test_another_title_is_written_into_the_same_model() -> None:
     plot = square_figure("basins", "Basins", "Help.")
     [title] = plot.elements
-    annotate_picture(plot, "Basins", ("x", "y"), "channels 1 to 3")
+    texts = PictureTexts("Basins of another map", "Other", ("x", "px"), "channels 1 to 3")
+    texts.write_above(plot, short=False)
     assert plot.elements == [title]
-    assert "channels 1 to 3" in title.html
+    assert "<h2>Basins of another map <" in title.html
+    texts.write_above(plot, short=True)
+    assert "<h2>Other <" in title.html
 
 
 def test_every_value_of_a_chart_is_written_in_its_format() -> None:

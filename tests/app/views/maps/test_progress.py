@@ -11,7 +11,7 @@ import pytest
 
 from app.state.view_state import ViewState
 from app.views.maps.progress import CONTINUE, STOP, STOPPED, ProgressView
-from engine import CASES, EscapeMap, Fate, MapSpec, Plane, compute_map
+from engine import CASES, EscapeMap, Fate, MapSpec, Plane, compute_map, parse_formula
 from plots.layers.table import LAYERS
 from plots.pictures.palette import PALETTES
 
@@ -35,6 +35,19 @@ def test_a_complete_map_gives_its_shares(escape_map: EscapeMap) -> None:
     assert "unresolved" not in text
     view.show(replace(escape_map, fate=np.where(escape_map.fate == 1, Fate.FAILED, escape_map.fate)))
     assert "unresolved" in view.text.object
+
+
+def test_exits_that_are_closed_at_the_energy_have_no_share() -> None:
+    # One saddle lies at h = 0.1667, and two lie at 0.1109.
+    well = parse_formula("0.5(x^2+y^2) + 1.2 x^2 y - y^3/3")
+    shown = {}
+    for energy in (0.05, 0.12, 0.2):
+        view, _ = make_view()
+        view.show(compute_map(MapSpec(well, Plane.X_PX, energy, (15, 15), t_max=100.0)))
+        shown[energy] = re.sub(r"<[^>]*>", "", view.text.object)
+    assert "closed: exit 1, exit 2, exit 3" in shown[0.05]
+    assert re.match(r"exit 2&nbsp;[\d.]+ %exit 3&nbsp;[\d.]+ %bounded&nbsp;[\d.]+ %closed: exit 1", shown[0.12])
+    assert re.match(r"exit 1&nbsp;[\d.]+ %exit 2&nbsp;[\d.]+ %exit 3&nbsp;[\d.]+ %bounded", shown[0.2])
 
 
 def test_a_map_in_progress_gives_time_and_undecided_share(escape_map: EscapeMap) -> None:

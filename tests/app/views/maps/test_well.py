@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.state.view_state import ViewState
 from app.views.maps.well import WellView
 from engine import (
     CASES,
@@ -22,6 +21,7 @@ from engine import (
     start_states,
 )
 from plots.pictures.orbit_curves import OrbitCurves, compute_orbit_curves
+from tests.app.map_actions import make_well
 
 
 def curves_of(case: str, energy: float, x: float = 0.1) -> OrbitCurves:
@@ -41,14 +41,14 @@ def edges(well: WellView) -> tuple[float, ...]:
 @pytest.mark.parametrize(("case", "energy", "exits"), [("I", 0.19, 2), ("III", 0.3, 4), ("I", 0.1, 0)])
 @pytest.mark.parametrize("plane", [Plane.X_PX, Plane.X_Y])
 def test_the_exits_of_the_map_are_drawn_on_every_plane(case: str, energy: float, exits: int, plane: Plane) -> None:
-    well = WellView(ViewState())
+    well = make_well()
     well.show_map(MapSpec(CASES["III"], Plane.X_PX, 0.4))
     well.show_map(MapSpec(CASES[case], plane, energy))
     assert len(source(well, "lyapunov_orbits").data["xs"]) == exits
 
 
 def test_a_zoom_of_the_maps_leaves_the_whole_well_in_view() -> None:
-    well = WellView(ViewState())
+    well = make_well()
     well.show_map(MapSpec(CASES["III"], Plane.X_Y, 0.4))
     whole = edges(well)
     well.show_map(MapSpec(CASES["III"], Plane.X_Y, 0.4, window=Window(0.1, 0.2, 0.1, 0.2)))
@@ -56,7 +56,7 @@ def test_a_zoom_of_the_maps_leaves_the_whole_well_in_view() -> None:
 
 
 def test_the_paths_end_and_begin_with_their_orbits() -> None:
-    well, drawings = WellView(ViewState()), [curves_of("III", 0.4, x) for x in (0.1, 0.2)]
+    well, drawings = make_well(), [curves_of("III", 0.4, x) for x in (0.1, 0.2)]
     well.show_map(MapSpec(CASES["III"], Plane.X_PX, 0.4))
     well.show_orbits([drawings[0], None, drawings[1]], chosen=0)
     paths = source(well, "paths").data
@@ -66,7 +66,7 @@ def test_the_paths_end_and_begin_with_their_orbits() -> None:
 
 
 def test_a_long_path_that_is_not_chosen_does_not_cover_the_chosen_one() -> None:
-    well = WellView(ViewState())
+    well = make_well()
     long = compute_orbit_curves(CASES["I"], integrate_orbit(CASES["I"], (-0.46, 0.0, 0.0, 0.2), 2000.0))
     assert long.visits is not None
     for chosen in (0, 1):
@@ -77,7 +77,7 @@ def test_a_long_path_that_is_not_chosen_does_not_cover_the_chosen_one() -> None:
 
 
 def test_the_points_move_along_the_orbits() -> None:
-    well, drawing = WellView(ViewState()), curves_of("III", 0.4)
+    well, drawing = make_well(), curves_of("III", 0.4)
     well.show_map(MapSpec(CASES["III"], Plane.X_PX, 0.4))
     well.show_orbits([drawing], chosen=0)
     well.set_time(1.0)
@@ -88,7 +88,7 @@ def test_the_points_move_along_the_orbits() -> None:
 
 
 def test_on_a_slice_along_h_the_well_has_the_energy_of_the_chosen_orbit() -> None:
-    well, spec = WellView(ViewState()), MapSpec(CASES["III"], Plane.X_H, (0.2, 0.6))
+    well, spec = make_well(), MapSpec(CASES["III"], Plane.X_H, (0.2, 0.6))
     well.show_map(spec)
     highest = edges(well)
     well.show_orbits([curves_of("III", 0.3), curves_of("III", 0.2)], chosen=0)
@@ -100,7 +100,7 @@ def test_on_a_slice_along_h_the_well_has_the_energy_of_the_chosen_orbit() -> Non
 
 
 def test_on_a_slice_along_a_parameter_the_well_is_that_of_the_chosen_orbit() -> None:
-    well, along = WellView(ViewState()), Slice(Coordinate.X, ParameterAxis("epsilon", 0.5, 2.0, System("I")))
+    well, along = make_well(), Slice(Coordinate.X, ParameterAxis("epsilon", 0.5, 2.0, System("I")))
     stronger = CASES["I"].with_parameters(epsilon=1.5)
     drawings = [
         compute_orbit_curves(potential, integrate_orbit(potential, (0.1, 0.0, 0.0, 0.6), 10.0))
@@ -108,7 +108,7 @@ def test_on_a_slice_along_a_parameter_the_well_is_that_of_the_chosen_orbit() -> 
     ]
     well.show_map(MapSpec(CASES["I"], along, 0.2))
     well.show_orbits(drawings, chosen=1)
-    own = WellView(ViewState())
+    own = make_well()
     own.show_map(MapSpec(stronger, Plane.X_PX, drawings[1].orbit.energy))
     assert edges(well) == edges(own)
     # The path of an orbit in another well is left out.
