@@ -24,7 +24,7 @@ from engine.slices.slice_text import AXIS_NAMES, read_slice
 from engine.slices.window import GivenWindow
 from engine.sweeps.spec import MOST_VALUES
 from engine.systems.system import TYPED
-from plots.pictures.palette import PALETTES, Palette
+from plots.pictures.palette import DEFAULT_PALETTE, PALETTES, Palette
 from plots.pictures.setting import Settings
 from plots.texts.accepted_potentials import page_refusal
 
@@ -196,7 +196,7 @@ def _describe_excess(option: str, value: object) -> str:
     return "" if value is None else f", not {option}"
 
 
-def find_palette(palette: Annotated[str, typer.Option(help=PALETTE_HELP)] = next(iter(PALETTES))) -> Palette:
+def find_palette(palette: Annotated[str, typer.Option(help=PALETTE_HELP)] = DEFAULT_PALETTE) -> Palette:
     """Return the palette with a name; ValueError for an unknown name."""
     if palette not in PALETTES:
         raise ValueError(f"palette={palette!r}: must be one of {', '.join(PALETTES)}")

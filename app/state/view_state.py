@@ -44,7 +44,7 @@ from engine.systems.catalogue.entry import EnergyRange
 from engine.systems.catalogue.table import PAPER_ENERGIES
 from engine.systems.system import TYPED
 from plots.layers.table import LAYERS
-from plots.pictures.palette import MOST_ORBITS, PALETTES, Palette
+from plots.pictures.palette import DEFAULT_PALETTE, MOST_ORBITS, PALETTES, Palette
 from plots.pictures.time_scale import TimeScale
 from plots.studies.study import Subject
 
@@ -148,7 +148,7 @@ class ViewState(param.Parameterized):
         class_=View, default=None, allow_None=True, doc="view with which this view is compared; None for no comparison"
     )
     focus = param.Selector(default="", objects=["", *PICTURES], doc="picture that is shown large; empty for none")
-    palette = param.Selector(default="paper", objects=list(PALETTES), doc="name of the palette")
+    palette = param.Selector(default=DEFAULT_PALETTE, objects=list(PALETTES), doc="name of the palette")
     touch = param.Boolean(default=False, doc="whether the visitor has touched the page with a finger")
     narrow = param.Boolean(default=False, doc="whether the page has had the layout of a phone")
     lock_times = param.ClassSelector(

@@ -50,7 +50,7 @@ from engine.slices.planes import SECTION
 from plots.layers.periodic_orbits import periodic_strokes
 from plots.pictures.orbit_curves import compute_orbit_curves
 from plots.pictures.orbit_quantities import ORBIT_QUANTITIES
-from plots.pictures.palette import LIGHT, MEASURED, PAPER, Entry, rgba
+from plots.pictures.palette import DEFAULT_COLOURS, LIGHT, MEASURED, Entry, rgba
 from plots.printed.curve_figures import draw_chart, draw_statistics_figure
 from plots.printed.figure_axes import (
     add_figure_legend,
@@ -104,10 +104,10 @@ def sali() -> Figure:
     window = MapSpec(case, SECTION, energy).find_window()
     starts = start_states(case, SECTION, energy, np.array([0.4, 0.58]), np.array([0.2, 0.0]))
     orbits = [integrate_orbit(case, start, 2e4) for start in starts]
-    for orbit, colour in zip(orbits, PAPER.orbits, strict=False):
+    for orbit, colour in zip(orbits, DEFAULT_COLOURS.orbits, strict=False):
         mark_section(left, orbit, window, colour)
     (quantity,) = (one for one in ORBIT_QUANTITIES if one.name == "sali")
-    draw_quantity(right, quantity, [compute_orbit_curves(case, orbit) for orbit in orbits], PAPER)
+    draw_quantity(right, quantity, [compute_orbit_curves(case, orbit) for orbit in orbits], DEFAULT_COLOURS)
     draw_limits(left, case, SECTION, energy, window)
     show_window(left, window, "x", "px")
     set_title(left, "Two orbits where they cross y = 0 upward")
@@ -121,7 +121,7 @@ def trust() -> Figure:
     first, second = start_states(CASE, Plane.X_PX, ENERGY, np.array([-0.3, -0.3 + 1e-11]), np.zeros(2))
     compute_separation(CASE, first, second, 200.0).plot(growth)
     set_title(growth, "Distance of two orbits")
-    draw_picture(basins, frame, "basins", PAPER)
+    draw_picture(basins, frame, "basins", DEFAULT_COLOURS)
     compute_trust(frame).plot(pixels)
     return figure
 
@@ -130,7 +130,7 @@ def basin_entropy() -> Figure:
     """Draw boxes of 5 × 5 starts, and the entropies of the boxes."""
     figure, (left, right) = new_panels(2, 11.0)
     frame = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.2, (60, 60), Window(0.0, 0.3, 0.0, 0.3), t_max=1e4))
-    draw_picture(left, frame, "basins", PAPER)
+    draw_picture(left, frame, "basins", DEFAULT_COLOURS)
     boxes = frame.fate.reshape(12, 5, 12, 5).swapaxes(1, 2)
     entropies = [[compute_basin_entropy(box).s_b for box in row] for row in boxes]
     image = right.imshow(entropies, origin="lower", extent=(0.0, 1.0, 0.0, 1.0), cmap="cividis")
@@ -147,7 +147,7 @@ def wada() -> Figure:
     """Draw three basins with a common boundary, and the Wada test of this boundary."""
     figure, (left, right) = new_panels(2, 11.0)
     frame = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.25, (SIDE, SIDE), t_max=1e4))
-    draw_picture(left, frame, "basins", PAPER)
+    draw_picture(left, frame, "basins", DEFAULT_COLOURS)
     compute_wada_test(frame).plot(right)
     set_title(right, "Share of the boundary that is close to all basins")
     return figure
@@ -175,11 +175,11 @@ def periodic() -> Figure:
     figure, (basins, index) = new_panels(2, 8.5)
     escape_map = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.3, (SIDE, SIDE), t_max=1e3))
     window = escape_map.spec.find_window()
-    draw_picture(basins, escape_map, "basins", PAPER)
+    draw_picture(basins, escape_map, "basins", DEFAULT_COLOURS)
     found = find_periodic_orbits(MapSpec(CASES["III"], Plane.X_PX, 0.3, (60, 60), t_max=1e3), 2)
-    draw_strokes(basins, periodic_strokes(found), window, PAPER)
+    draw_strokes(basins, periodic_strokes(found), window, DEFAULT_COLOURS)
     straight = find_periodic_orbit(CASES["III"], [0.0, 0.0, 0.0, np.sqrt(0.4)], 1)
-    chart = family_charts(continue_family(straight, (0.05, 0.7)), PAPER)[1]
+    chart = family_charts(continue_family(straight, (0.05, 0.7)), DEFAULT_COLOURS)[1]
     draw_chart(index, chart, STYLE, None)
     set_title(index, chart.frame.title, STYLE)
     return figure
@@ -194,7 +194,7 @@ def families() -> Figure:
     for axes, spec in zip(panels, (paper, henon_heiles), strict=True):
         window = spec.find_window()
         draw_limits(axes, spec.potential, spec.plane, spec.energy, window)
-        draw_strokes(axes, periodic_strokes(find_symmetric_families(spec, 3)), window, PAPER)
+        draw_strokes(axes, periodic_strokes(find_symmetric_families(spec, 3)), window, DEFAULT_COLOURS)
         show_window(axes, window, *spec.plane.axis_symbols)
         set_title(axes, f"{spec.potential.name} on {spec.plane.title}")
     return figure
@@ -206,7 +206,7 @@ def slices() -> Figure:
     throws = MapSpec(CASES["III"], Slice(Coordinate.THETA, Coordinate.H), (0.2, 0.8), (SIDE, SIDE), t_max=1e3)
     stronger = MapSpec(CASE, Slice(Coordinate.X, ParameterAxis("epsilon", 0.5, 2.0, System("I"))), 0.2, (SIDE, SIDE), t_max=1e3)
     for axes, spec in zip(panels, (throws, stronger), strict=True):
-        draw_picture(axes, compute_map(spec), "basins", PAPER)
+        draw_picture(axes, compute_map(spec), "basins", DEFAULT_COLOURS)
         set_title(axes, f"Basins on {spec.plane.title}")
     return figure
 
@@ -249,7 +249,7 @@ def evidence() -> Figure:
     draw_pixels(left, rgba(list(_EVIDENCE_COLOURS.values()))[frame.evidence][::-1], window, window)
     set_title(left, "Why an orbit is called bounded")
     starts = start_states(case, SECTION, energy, np.array([0.3, 0.6]), np.zeros(2))
-    for start, colour in zip(starts, PAPER.orbits, strict=False):
+    for start, colour in zip(starts, DEFAULT_COLOURS.orbits, strict=False):
         orbit = integrate_orbit(case, start, 1e4)
         mark_section(right, orbit, window, colour)
     set_title(right, "Two orbits on the section y = 0")
@@ -269,7 +269,7 @@ def origins() -> Figure:
     """Draw origin and exit of each orbit."""
     figure, panels = new_panels(2, 11.0)
     spec = MapSpec(CASE, Plane.X_PX, 0.3, (SIDE, SIDE), t_max=1e3)
-    draw_picture(panels[0], compute_map(spec), "basins", PAPER)
+    draw_picture(panels[0], compute_map(spec), "basins", DEFAULT_COLOURS)
     compute_origin_fates(spec).plot(panels[1])
     return figure
 

@@ -29,7 +29,7 @@ from engine.slices.limiting_curves import trace_equipotentials
 from plots.layers.layer import Analyses
 from plots.layers.map_images import picture_pixels
 from plots.layers.table import LAYERS
-from plots.pictures.palette import LIGHT, PAPER, PATCH_EDGE
+from plots.pictures.palette import DEFAULT_COLOURS, LIGHT, PATCH_EDGE
 from plots.printed.window_axes import draw_curve, draw_pixels, draw_strokes
 
 STATIC = Path(__file__).parents[2] / "app" / "static"
@@ -53,7 +53,7 @@ def _draw_thumbnail(preset: Preset) -> Image.Image:
     """Return a thumbnail in RGBA. It is transparent where no orbit can start, for light and dark pages."""
     frame = compute_map(replace(preset.view.map_spec(review_catalogue_entry(preset.view.system.case)), resolution=(SIDE, SIDE)))
     analyses = _analyse(frame, preset.view)
-    pixels = picture_pixels(frame, preset.picture, PAPER, analyses)
+    pixels = picture_pixels(frame, preset.picture, DEFAULT_COLOURS, analyses)
     strokes = [
         stroke
         for name, result in analyses.items()
@@ -67,7 +67,7 @@ def _draw_thumbnail(preset: Preset) -> Image.Image:
     axes.set_axis_off()
     draw_pixels(axes, pixels, frame.spec.find_window(), frame.spec.find_window())
     if strokes:
-        draw_strokes(axes, strokes, frame.spec.find_window(), PAPER)
+        draw_strokes(axes, strokes, frame.spec.find_window(), DEFAULT_COLOURS)
     else:
         _draw_curves(axes, frame, preset.view)
     axes.set(xlim=(0.0, 1.0), ylim=(0.0, 1.0))
@@ -91,12 +91,12 @@ def _draw_curves(axes: Axes, frame: EscapeMap, view: View) -> None:
         draw_curve(axes, pieces, spec.find_window(), colors=LIGHT.equipotential, linewidths=0.6)
     draw_curve(axes, critical, spec.find_window(), colors=LIGHT.critical_equipotential, linewidths=1.0)
     draw_curve(axes, limit, spec.find_window(), colors=PATCH_EDGE, linewidths=1.6)
-    for (x, y), colour in zip(view.starts, PAPER.orbits, strict=False):
+    for (x, y), colour in zip(view.starts, DEFAULT_COLOURS.orbits, strict=False):
         start = start_states(spec.potential, spec.plane, view.energy, np.array([x]), np.array([y]))[0]
         orbit = integrate_orbit(spec.potential, start, spec.t_max)
         draw_curve(axes, [np.column_stack([orbit.x, orbit.y])], spec.find_window(), colors=colour, linewidths=1.0)
     for exit_orbit in find_lyapunov_orbits(spec.potential, view.energy):
-        colour = PAPER.channels[exit_orbit.channel - 1]
+        colour = DEFAULT_COLOURS.channels[exit_orbit.channel - 1]
         draw_curve(axes, [exit_orbit.half_path], spec.find_window(), colors=colour, linewidths=2.5)
 
 

@@ -24,7 +24,7 @@ from engine import (
 from engine.slices.planes import SECTION, SPACE
 from plots.layers.manifolds import manifold_strokes, select_image
 from plots.pictures.orbit_curves import compute_orbit_curves, find_well_window
-from plots.pictures.palette import PAPER
+from plots.pictures.palette import DEFAULT_COLOURS
 from plots.printed.figure_axes import (
     add_figure_legend,
     legend_handles,
@@ -41,7 +41,7 @@ def well() -> Figure:
     figure, (left, right) = new_panels(2, 11.5)
     CASE.plot(left)
     starts = start_states(CASE, Plane.X_Y, ENERGY, np.array([-0.2, -0.1]), np.array([-0.2, -0.1]))
-    draw_path(right, CASE, [compute_orbit_curves(CASE, integrate_orbit(CASE, start, 300.0)) for start in starts], PAPER)
+    draw_path(right, CASE, [compute_orbit_curves(CASE, integrate_orbit(CASE, start, 300.0)) for start in starts], DEFAULT_COLOURS)
     set_title(right, f"Two orbits at h = {ENERGY}")
     return figure
 
@@ -49,7 +49,7 @@ def well() -> Figure:
 def maps() -> Figure:
     """Draw the three maps of the page."""
     frame = compute_map(MapSpec(CASE, Plane.X_PX, ENERGY, (SIDE, SIDE), Window(-0.65, 0.65, -0.65, 0.65), t_max=1e4))
-    return draw_map_figure(frame, ("basins", "times", "crossings"), PAPER, replace(STYLE, titles=True))
+    return draw_map_figure(frame, ("basins", "times", "crossings"), DEFAULT_COLOURS, replace(STYLE, titles=True))
 
 
 def blob() -> Figure:
@@ -61,10 +61,10 @@ def blob() -> Figure:
     orbits = [integrate_orbit(CASE, start, 200.0) for start in start_states(CASE, Plane.X_Y, ENERGY, x, y)]
     window = find_well_window(CASE, ENERGY)
     for axes, t in zip(panels, times, strict=True):
-        draw_well(axes, CASE, ENERGY, window, PAPER)
+        draw_well(axes, CASE, ENERGY, window, DEFAULT_COLOURS)
         inside = [orbit for orbit in orbits if orbit.t[-1] >= t]
         places = np.array([[np.interp(t, orbit.t, orbit.x), np.interp(t, orbit.t, orbit.y)] for orbit in inside])
-        colours = [PAPER.channels[orbit.fate - 1] if orbit.fate > 0 else PAPER.bounded for orbit in inside]
+        colours = [DEFAULT_COLOURS.channels[orbit.fate - 1] if orbit.fate > 0 else DEFAULT_COLOURS.bounded for orbit in inside]
         axes.scatter(*window_shares(places, window), s=1.5, c=colours, zorder=3, linewidths=0.0)
         show_window(axes, window, "x", "y", equal=True)
         set_title(axes, f"t = {t:g}")
@@ -78,10 +78,10 @@ def tubes() -> Figure:
     manifolds = find_stable_manifolds(CASE, ENERGY, images=2)
     for axes, image in zip(panels, (1, 2), strict=False):
         draw_limits(axes, CASE, SECTION, ENERGY, window)
-        draw_strokes(axes, manifold_strokes(select_image(manifolds, image)), window, PAPER)
+        draw_strokes(axes, manifold_strokes(select_image(manifolds, image)), window, DEFAULT_COLOURS)
         show_window(axes, window, "x", "px")
         set_title(axes, f"Image {image} of the tubes")
-    draw_picture(panels[2], compute_map(MapSpec(CASE, SECTION, ENERGY, (SIDE, SIDE), t_max=1e4)), "basins", PAPER)
+    draw_picture(panels[2], compute_map(MapSpec(CASE, SECTION, ENERGY, (SIDE, SIDE), t_max=1e4)), "basins", DEFAULT_COLOURS)
     return figure
 
 
@@ -90,9 +90,11 @@ def energies() -> Figure:
     figure, panels = new_panels(3, 9.5)
     for axes, energy in zip(panels, (0.13, 0.19, 0.4), strict=True):
         frame = compute_map(MapSpec(CASE, Plane.X_PX, energy, (SIDE, SIDE), t_max=1e4))
-        draw_picture(axes, frame, "basins", PAPER)
+        draw_picture(axes, frame, "basins", DEFAULT_COLOURS)
         set_title(axes, f"h = {energy}: {100.0 * frame.fractions()[Fate.BOUNDED]:.1f} % bounded")
-    add_figure_legend(figure, legend_handles([*PAPER.end_entries(CASES["I"].outcomes), PAPER.outcomes[Fate.BOUNDED]]))
+    add_figure_legend(
+        figure, legend_handles([*DEFAULT_COLOURS.end_entries(CASES["I"].outcomes), DEFAULT_COLOURS.outcomes[Fate.BOUNDED]])
+    )
     return figure
 
 
@@ -101,9 +103,9 @@ def exits() -> Figure:
     figure, (left, right) = new_panels(2, 11.5)
     orbits = _orbits_at_the_exit()
     for axes, window in ((left, find_well_window(CASE, ENERGY)), (right, Window(0.2, 0.8, 0.45, 1.05))):
-        for orbit, colour in zip(orbits, PAPER.orbits, strict=False):
+        for orbit, colour in zip(orbits, DEFAULT_COLOURS.orbits, strict=False):
             draw_curve(axes, [np.column_stack([orbit.x, orbit.y])], window, colors=colour, linewidths=1.4)
-        draw_limits(axes, CASE, SPACE, ENERGY, window, PAPER.channels)
+        draw_limits(axes, CASE, SPACE, ENERGY, window, DEFAULT_COLOURS.channels)
         show_window(axes, window, "x", "y", equal=True)
     set_title(left, "Three orbits from almost the same start")
     set_title(right, "At the Lyapunov orbit")

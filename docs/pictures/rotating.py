@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from docs.pictures.panels import new_panels
 from engine import Fate, compute_map
-from plots.pictures.palette import PAPER
+from plots.pictures.palette import DEFAULT_COLOURS
 from plots.printed.figure_axes import add_figure_legend, legend_handles, set_title
 from plots.printed.map_figure import draw_picture
 from reproduction.rotating.paper_maps import PAPER_MAPS, PaperMap
@@ -46,10 +46,10 @@ def _draw(paper_maps: tuple[PaperMap, ...], renamed: Mapping[str, str] = Mapping
     figure, panels = new_panels(len(paper_maps), 9.5)
     frames = [compute_map(replace(paper_map.spec, resolution=(_SIDE, _SIDE))) for paper_map in paper_maps]
     for axes, frame, paper_map in zip(panels, frames, paper_maps, strict=True):
-        draw_picture(axes, frame, "basins", PAPER)
+        draw_picture(axes, frame, "basins", DEFAULT_COLOURS)
         set_title(axes, paper_map.name)
     ends = np.unique([frame.fate for frame in frames])
-    entries = [PAPER.entry(int(fate), paper_maps[0].spec.outcomes) for fate in ends if fate >= Fate.BOUNDED]
+    entries = [DEFAULT_COLOURS.entry(int(fate), paper_maps[0].spec.outcomes) for fate in ends if fate >= Fate.BOUNDED]
     for old, new in renamed.items():
         entries = [replace(entry, label=entry.label.replace(old, new)) for entry in entries]
     add_figure_legend(figure, legend_handles(entries))

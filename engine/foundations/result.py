@@ -97,7 +97,7 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
         ax
             Matplotlib axes; None for new ones of `matplotlib.pyplot`.
         options
-            ``palette``: ``"paper"`` or ``"safe"`` for all results; ``picture`` of a map: ``"basins"``, ``"times"``,
+            ``palette``: ``"safe"`` or ``"paper"`` for all results; ``picture`` of a map: ``"basins"``, ``"times"``,
             ``"crossings"``, ``"characters"`` or ``"curves"``; ``show`` of an orbit: ``"path"``, ``"sali"``,
             ``"exponent"`` or ``"r2"``; ``measure`` of a sweep: a name of `MEASURES`, by default the first measure with a picture.
 

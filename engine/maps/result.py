@@ -248,7 +248,7 @@ class EscapeMap(MapResult):
             The file, which is replaced.
         options
             ``energies``: lowest and highest energy of the figure; ``starts``: (x, ordinate) of orbits, at most five; ``caption``;
-            ``link``: address of the view in an explorer; ``palette``: ``"paper"`` or ``"safe"``.
+            ``link``: address of the view in an explorer; ``palette``: ``"safe"`` or ``"paper"``.
 
         Raises
         ------

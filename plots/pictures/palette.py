@@ -220,9 +220,9 @@ PAPER = Palette(
 """Channels 1 to 4 are green, red, blue and orange, crossings light to dark blue, escape times light red to dark violet."""
 
 COLOUR_BLIND_SAFE = Palette(
-    name="colour-blind safe",
+    name="for everyone",
     of_kinds={
-        "exit": ("#009e73", "#d55e00", "#0072b2", "#f0e442", "#cc79a7", "#56b4e9", "#e69f00", "#3b3b3b"),
+        "exit": ("#009e73", "#d55e00", "#0072b2", "#e69f00", "#cc79a7", "#56b4e9", "#f0e442", "#3b3b3b"),
         "collision": ("#3000d8", "#a83000", "#607878", "#606048"),
         "escape": ("#90d8a8",),
     },
@@ -235,6 +235,12 @@ COLOUR_BLIND_SAFE = Palette(
 
 PALETTES = {"paper": PAPER, "safe": COLOUR_BLIND_SAFE}
 """Palettes by their names in links."""
+
+DEFAULT_PALETTE = "safe"
+"""Name of the palette of pages, figures and live figures for which none is chosen. Everyone can distinguish its exits."""
+
+DEFAULT_COLOURS = PALETTES[DEFAULT_PALETTE]
+"""The palette of this name."""
 
 MOST_CHANNELS = len(PAPER.channels)
 """Number of exit channels with individual colours."""

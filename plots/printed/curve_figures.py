@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from engine import Result
 from engine.results import EscapeStatistics
 from plots.pictures.charts import ONLY_POINTS, Chart, Series, Shape
-from plots.pictures.palette import PAPER, THRESHOLD
+from plots.pictures.palette import DEFAULT_COLOURS, THRESHOLD
 from plots.pictures.setting import Settings
 from plots.printed.figure_axes import Corner, add_panel_legend, new_figure, set_title, style_axes
 from plots.printed.figure_style import SCREEN, FigureStyle
@@ -42,7 +42,7 @@ def draw_study_figure(study: Study[Any], found: Result, style: FigureStyle, sett
     ValueError
         If there is nothing to draw yet.
     """
-    charts = study.charts(found, PAPER, settings)
+    charts = study.charts(found, DEFAULT_COLOURS, settings)
     if not charts:
         raise ValueError(f"{study.files}: there must be at least one point")
     columns = min(style.columns(2), len(charts))

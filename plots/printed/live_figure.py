@@ -28,7 +28,7 @@ from plots.layers.map_images import picture_pixels
 from plots.layers.picture import ShownMap
 from plots.layers.table import PICTURES, map_legend
 from plots.pictures.image_columns import pixel_coding
-from plots.pictures.palette import PAPER, Palette
+from plots.pictures.palette import DEFAULT_COLOURS, Palette
 from plots.pictures.provenance import program_version, provenance_line
 from plots.pictures.time_scale import fitted_scale
 from plots.printed.figure_files import map_figure_bytes
@@ -58,7 +58,7 @@ def live_figure(
     starts: Sequence[tuple[float, float]] = (),
     caption: str = "",
     link: str = "",
-    palette: Palette = PAPER,
+    palette: Palette = DEFAULT_COLOURS,
     execution: Execution = DEFAULT_EXECUTION,
 ) -> str:
     """Return the HTML of a live figure, which needs no server and makes no request.

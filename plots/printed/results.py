@@ -36,7 +36,7 @@ from plots.layers.table import LAYERS, map_legend
 from plots.pictures.charts import Chart, Frame, Series, Shape
 from plots.pictures.orbit_curves import compute_orbit_curves, well_energy
 from plots.pictures.orbit_quantities import ORBIT_QUANTITIES
-from plots.pictures.palette import LIGHT, MEASURED, PALETTES, PAPER, Entry, Palette, rgba
+from plots.pictures.palette import DEFAULT_COLOURS, DEFAULT_PALETTE, LIGHT, MEASURED, PALETTES, Entry, Palette, rgba
 from plots.pictures.periodic_marks import STABILITY_COLOURS
 from plots.printed.curve_figures import draw_chart
 from plots.printed.figure_axes import RENDER_LOCK, legend_handles, set_font, set_title, style_axes
@@ -72,7 +72,7 @@ class NoPictureError(TypeError):
     """The result has no picture."""
 
 
-def plot_result(result: Result, ax: Axes | None = None, *, palette: str = "paper", **options: Any) -> Axes:
+def plot_result(result: Result, ax: Axes | None = None, *, palette: str = DEFAULT_PALETTE, **options: Any) -> Axes:
     """Draw a result, as described in `engine.foundations.result.Result.plot`."""
     colours = _palette(palette)
     legal_options = list(inspect.signature(_draw.dispatch(type(result))).parameters)[_FIXED_PARAMETERS:]
@@ -107,7 +107,7 @@ def to_html(result: Result) -> str:
     )
 
 
-def to_live_html(found: EscapeMap, *, palette: str = "paper", **options: Any) -> str:
+def to_live_html(found: EscapeMap, *, palette: str = DEFAULT_PALETTE, **options: Any) -> str:
     """Return the HTML of a live figure, as described in `engine.maps.result.EscapeMap.to_html`."""
     return live_figure(found, palette=_palette(palette), **options)
 
@@ -121,7 +121,7 @@ def to_holoviews(result: Result) -> Any:
 
     if isinstance(result, EscapeMap | PixelAnalysis):
         return hv.Dataset(result.to_xarray()).to(hv.Image, list(result.spec.plane.axis_names))
-    if charts := _find_charts(result, PAPER):
+    if charts := _find_charts(result, DEFAULT_COLOURS):
         overlays = [hv.Overlay(chart_elements(chart)) for chart in charts]
         # Options need an extension of HoloViews, which notebooks load.
         if hv.Store.loaded_backends():
@@ -161,7 +161,7 @@ def _picture_html(result: Result) -> str:
     figure = Figure(figsize=_FIGURE_SIZE, dpi=_NOTEBOOK_DPI, layout="constrained")
     with RENDER_LOCK:
         try:
-            _draw(result, figure.subplots(), PALETTES["paper"])
+            _draw(result, figure.subplots(), DEFAULT_COLOURS)
         except NoPictureError:
             return ""
         except ModuleNotFoundError as error:

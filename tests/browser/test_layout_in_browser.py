@@ -15,7 +15,7 @@ from app.views.maps.well import TITLE
 from engine import CASES, MapSpec, Plane
 from plots.layers.table import PICTURES as PICTURE_ENTRIES
 from plots.layers.table import TITLES
-from plots.pictures.palette import PALETTES
+from plots.pictures.palette import DEFAULT_COLOURS, PALETTES
 from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 
@@ -279,9 +279,9 @@ def legend(explorer: ExplorerPage, picture: str) -> dict[str, str]:
 
 
 def test_the_legends_have_the_colours_of_the_palette(explorer: ExplorerPage) -> None:
-    colours = PALETTES["safe"]
+    colours = PALETTES["paper"]
     explorer.choose("Colours", colours.name)
-    explorer.wait_for_view("palette=safe")
+    explorer.wait_for_view("palette=paper")
     item = explorer.page.locator(".foot[data-picture=basins] .patch").first
     expect(item).to_have_attribute("style", f"--colour:{colours.channels[0]}")
     shown = legend(explorer, "basins")
@@ -299,7 +299,7 @@ def test_an_item_of_a_legend_lights_its_pixels(explorer: ExplorerPage) -> None:
     item = explorer.page.locator(".foot[data-picture=basins] .patch").first
     item.hover()
     lit = explorer.page.evaluate(palette)
-    colour = PALETTES["paper"].channels[0]
+    colour = DEFAULT_COLOURS.channels[0]
     assert [one for one in lit if len(one) == len(colour)] == [colour]
     explorer.page.mouse.move(5, 5)
     assert explorer.page.evaluate(palette) == before

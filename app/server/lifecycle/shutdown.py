@@ -15,7 +15,7 @@ from typing import Any
 from app.runtime.process_state import ProcessState
 from app.views.components.notice import show_lasting_notice
 
-RESTART_NOTICE = "The server is restarting. Reload this page in a minute: its address holds the view."
+RESTART_NOTICE = "The server is restarting. This page returns with its view when the server answers."
 
 # Time for messages to reach the pages, and for a proxy to notice that the server is not ready, in seconds.
 _GRACE_SECONDS = 0.5

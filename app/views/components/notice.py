@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from html import escape
+from pathlib import Path
 from typing import Any
 
 import panel as pn
@@ -11,21 +12,21 @@ from bokeh.document import Document
 from bokeh.models import CustomJS
 
 from app.views.components.texts import TextPane
+from plots.browser.javascript import callback_code
 
-CONNECTION_LOST = "The connection to the server is lost. Reload this page: its address holds the view."
+CONNECTION_LOST = "The connection to the server is lost. This page returns with its view when the server answers."
 """Message that the browser shows when the connection is lost."""
 
+RELOAD = "Reload"
+"""Label of the button below this message."""
+
 MODEL_NAME = "notice"
-"""Name by which the server and the browser find the Bokeh model of the pane in a document."""
+"""Name by which the server finds the Bokeh model of the pane in a document."""
 
 PASSING_SECONDS = 5.0
 """Duration of a passing message, in seconds."""
 
-# JavaScript that shows a message. The change is not sent to the server, because the connection is lost.
-_ON_CONNECTION_LOST = """
-const pane = Bokeh.documents[0].get_model_by_name(name)
-pane.setv({text: html}, {sync: false})
-"""
+_ON_CONNECTION_LOST = callback_code(Path(__file__).with_name("lost_connection.js"), "showLostConnection(sentence, label)")
 
 
 class _NamedPane(TextPane):
@@ -70,9 +71,8 @@ def show_passing_notice(document: Document, sentence: str) -> None:
 
 
 def watch_connection(document: Document) -> None:
-    """Make the browser show `CONNECTION_LOST` when the connection is lost."""
-    # The Bokeh model of the pane takes escaped HTML.
-    args = {"name": MODEL_NAME, "html": escape(_html(CONNECTION_LOST))}
+    """Make the browser show `CONNECTION_LOST` when the connection is lost, and load the page again when the server answers."""
+    args = {"sentence": CONNECTION_LOST, "label": RELOAD}
     document.js_on_event("connection_lost", CustomJS(args=args, code=_ON_CONNECTION_LOST))
 
 

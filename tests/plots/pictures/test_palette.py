@@ -12,6 +12,7 @@ from plots.layers.regularity import CODES, entries
 from plots.layers.trust import TONES
 from plots.pictures.palette import (
     DARK,
+    DEFAULT_COLOURS,
     LIGHT,
     PALETTES,
     Palette,
@@ -55,9 +56,13 @@ def test_colours_of_one_kind_differ_from_each_other(palette: Palette, vision: st
 
 
 @for_each_vision
-def test_channels_of_the_safe_palette_are_distinguishable(vision: str) -> None:
-    safe = PALETTES["safe"]
-    assert closest([*safe.channels[:4], safe.bounded], vision) > CLEAR
+def test_exits_have_clear_colours_by_default(vision: str) -> None:
+    assert closest([*DEFAULT_COLOURS.channels[:4], DEFAULT_COLOURS.bounded], vision) > CLEAR
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_exits_are_visible_on_the_page_by_default(page: str) -> None:
+    assert min(contrast(colour, PAGES[page]) for colour in DEFAULT_COLOURS.channels[:4]) > 2.0
 
 
 @of_each_palette

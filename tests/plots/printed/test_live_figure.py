@@ -17,7 +17,7 @@ from PIL import Image
 from engine import CASES, POTENTIALS, EscapeMap, MapSpec, Plane, System, compute_map
 from engine.slices.slice_text import read_slice
 from plots.layers.map_images import picture_pixels
-from plots.pictures.palette import PAPER
+from plots.pictures.palette import DEFAULT_COLOURS
 from plots.printed.live_figure import LIVE_PICTURES, live_figure, live_refusal
 
 
@@ -45,7 +45,7 @@ def test_the_pictures_are_those_of_the_map(found: EscapeMap, page: str) -> None:
     for picture in pictures:
         content = base64.b64decode(picture["image"].removeprefix("data:image/png;base64,"))
         pixels = np.asarray(Image.open(BytesIO(content)).convert("RGBA"))
-        np.testing.assert_array_equal(pixels, picture_pixels(found, picture["name"], PAPER))
+        np.testing.assert_array_equal(pixels, picture_pixels(found, picture["name"], DEFAULT_COLOURS))
 
 
 def test_the_view_is_that_of_the_map(found: EscapeMap, page: str) -> None:

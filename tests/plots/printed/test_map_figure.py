@@ -202,7 +202,8 @@ def test_ticks_of_a_deep_zoom_are_distinct(centre: float, width: float) -> None:
     assert max(map(len, labels)) <= 3
     offset, unit = name.removeprefix("(").split(" / ")
     middle = -number(offset.removeprefix("x").removesuffix(")").replace(" ", "") or "0")
-    values = [middle + number(label) * float(unit) for label in labels]
+    power = 10.0 ** int(unit.removeprefix("10").translate(str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")))
+    values = [middle + number(label) * power for label in labels]
     np.testing.assert_allclose(values, [low + place * (high - low) for place, _ in ticks], rtol=0, atol=1e-3 * width + 1e-16)
 
 
