@@ -11,6 +11,7 @@ from typing import Any
 from app.runtime.process_state import process_state
 from app.state.watched_starts import WatchedStarts
 from engine import MapSpec, Plane, Section, Slice, System, Window
+from engine.foundations.wording import format_number
 from engine.slices.axes import Energy
 from engine.systems.review.potential_review import SystemReview
 from plots.layers.table import LAYERS
@@ -130,7 +131,7 @@ class View:
     @property
     def title(self) -> str:
         """Describe system, slice and energy."""
-        energy = "" if self.known_energy is None else f", h = {self.known_energy:.6g}"
+        energy = "" if self.known_energy is None else f", h = {format_number(self.known_energy, 6)}"
         return f"{self.system.title}, {self.plane.title}{energy}"
 
     @property

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from engine.foundations.validation import LARGEST_NUMBER, check_type, checked_array, checked_number, short_repr
+from engine.foundations.wording import format_number
 from engine.integrator.kernels import slice_starts
 from engine.slices.axes import ANGLES, MOMENTA, POSITIONS, STATE, Axis, Coordinate, Direction, Energy, ParameterAxis
 from engine.slices.slice_starts import check_coordinates, compute_required_energy, compute_states, default_solved
@@ -128,7 +129,7 @@ class Slice:
     @property
     def title(self) -> str:
         """The name in texts, such as "(x, px)": axes, fixed values, and the determined momentum if it is not the usual one."""
-        conditions = [f"{coordinate.symbol} = {value:.6g}" for coordinate, value in self.fixed]
+        conditions = [f"{coordinate.symbol} = {format_number(value, 6)}" for coordinate, value in self.fixed]
         usual = default_solved(self.axes, [axis for axis in self.axes if isinstance(axis, Coordinate)])
         if self.sign < 0 or (self.decided is not usual and self.decided is not Coordinate.SPEED):
             conditions.append(f"{self.decided.symbol} {'>' if self.sign > 0 else '<'} 0")

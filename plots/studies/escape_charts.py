@@ -27,7 +27,7 @@ TIMES = Frame(
 PROBABILITIES = Frame(
     "probabilities",
     "Escapes after n crossings",
-    ("crossings n", "p"),
+    ("crossings n", "share that leaves"),
     "Of the orbits that have not escaped at their n-th crossing of the section, the share that escapes before the next one; "
     "n = 0 is the share of direct escapes. If the motion inside the well were well mixed, the probability would be the same for "
     "all n. Bounded orbits stay in the count, so if there are any, it tends to zero.",

@@ -48,7 +48,7 @@ def legend(entries: Iterable[Entry]) -> str:
 
 
 def picture_legend(content: Legend) -> str:
-    """Return HTML of the legend below a picture. The last entries are not seen if there is too little room."""
+    """Return HTML of the legend below a picture."""
     table = _table(content.table) if content.table is not None else ""
     entries = chips([] if table else content.entries)
     scale = _scale(content.scale) if content.scale is not None else ""

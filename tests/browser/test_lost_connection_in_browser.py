@@ -11,6 +11,7 @@ from app.views.components.notice import CONNECTION_LOST
 from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 
+
 def test_a_page_without_a_connection_is_inert_and_returns_when_the_server_answers(
     open_explorer: Callable[..., ExplorerPage],
 ) -> None:

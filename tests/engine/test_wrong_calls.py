@@ -169,7 +169,7 @@ WRONG_CALLS = (
     ),
     ("parse_formula(3)", "text=3: must be text"),
     ('parse_formula("")', "formula, character 1: the formula ends where a number, x, y, r or a bracket is expected"),
-    ('parse_formula("tanh(x)")', "formula, character 1: 'tan' is not understood; allowed are numbers, x, y, r"),
+    ('parse_formula("tanh(x)")', "formula, character 1: 'tanh' is not understood; write 1 − 2/(exp(2u) + 1) for tanh(u)"),
     ('parse_formula("a x² + y²", parameters=3)', "parameters=3: must be a mapping or None"),
     ('Potential("p", "abc")', "terms='abc': must be ((i, j, c), …)"),
     ("III.with_parameters(omega_1=0.0)", "omega_1=0.0: must be from 0.1 to 10"),

@@ -43,6 +43,8 @@ _HINT = (
 _TERMS = {"+ letter": " + a x y"}
 # Clauses that buttons add after all terms, by label of the button.
 _CLAUSES = {"+ body": "; centre (0, 0) 0.001", "+ escape radius": "; escape 10"}
+OUTDATED = "outdated"
+"""CSS class of properties of the formula before the last change."""
 NEW_INTEGRATOR = "Press Enter to use it: an integrator for its form and its outcomes is compiled first, which takes some seconds."
 """Note about a formula that the maps do not show before Enter is pressed."""
 
@@ -129,20 +131,29 @@ class PotentialPanel:
 
     def show(self, reviewed: PageReview, note: str = _HINT) -> None:
         """Show the properties of the system of the widgets. Add a note, or the reason why the maps cannot show the system."""
+        self._mark_outdated(outdated=False)
         self.typeset.object = reviewed.typeset
         self._write(_accepted(reviewed, note) if reviewed.problem is None else _alert(reviewed.problem))
         self._offer(None if reviewed.problem is None else reviewed.well)
         self.facts.object = _critical_points_table(reviewed) + _remark_paragraphs(reviewed)
 
     def wait(self) -> None:
-        """Show that the system of the widgets is being reviewed."""
+        """Show that the system of the widgets is being reviewed, and that the properties are not yet its own."""
         self._write("<p>Reviewing …</p>")
+        self._mark_outdated(outdated=True)
 
     def say(self, sentence: str) -> None:
         """Show why the system of the widgets has no properties."""
         self._write(_alert(sentence))
+        self._mark_outdated(outdated=False)
         self._offer(None)
         self.typeset.object = self.facts.object = ""
+
+    def _mark_outdated(self, *, outdated: bool) -> None:
+        """Grey out the formula and the facts, or show them normally."""
+        for pane in (self.typeset, self.facts):
+            others = [each for each in pane.css_classes if each != OUTDATED]
+            pane.css_classes = [*others, OUTDATED] if outdated else others
 
     def _write(self, message: str) -> None:
         """Show a message, and the system of the maps if the widgets have another system."""

@@ -24,7 +24,7 @@ from app.views.maps.overlays import Overlays
 from app.views.maps.picture_grid import PictureGrid
 from app.views.maps.two_fingers import TwoFingers
 from app.views.maps.well import WellView, well_spec
-from engine import EscapeMap, MapSpec, Window
+from engine import EscapeMap, Fate, MapSpec, Window
 from engine.foundations.wording import format_number
 from engine.slices.axes import highest_energy
 from plots.layers.map_images import LAYER_COLUMNS, result_columns
@@ -34,7 +34,7 @@ from plots.layers.table import PICTURES as PICTURE_ENTRIES
 from plots.pictures.image_columns import NO_LAYER
 from plots.pictures.palette import PALETTES
 from plots.pictures.time_scale import WITHOUT_ESCAPES, TimeScale, fitted_scale
-from plots.texts.legends import picture_legend
+from plots.texts.legends import legend_items, picture_legend
 
 MAPS = tuple(name for name in PICTURES if name != "well")
 """Names of the maps of starts: all pictures but the well."""
@@ -240,9 +240,7 @@ class MapsView:
         if spec is None:
             return
         offsets = label_axes(self.figures.values(), spec.plane.axis_symbols, spec.find_window())
-        magnification = self._store.magnification
-        is_enlarged = magnification > _LEAST_MAGNIFICATION
-        note = f"{format_number(float(f'{magnification:.2g}'))} times enlarged" if is_enlarged else ""
+        note = self._note()
         other = self.compared.other
         is_locked = self._state.lock_times is not None
         shown_map = ShownMap(spec, self._state.colours, self.times, self._fates, is_locked, self._results, other)
@@ -255,6 +253,14 @@ class MapsView:
                 legend, under_way = picture_legend(map_legend(name, shown_map)), self._under_way(name)
                 texts = PictureTexts(entry.title_for(spec), entry.short_title, axes, legend, offsets, note, under_way)
                 self.grid.write(name, texts)
+
+    def _note(self) -> str:
+        """Return HTML that the largest map has below it: an entry of the legend of previews, and the magnification."""
+        undecided = [] if Fate.NOT_COMPUTED in self._fates else [self._state.colours.outcomes[Fate.NOT_COMPUTED]]
+        preview = f"<span class='preview'>{legend_items(undecided)}</span>" if undecided else ""
+        magnification = float(f"{self._store.magnification:.2g}")
+        enlarged = f"<small>{format_number(magnification)} times enlarged</small>" if magnification > _LEAST_MAGNIFICATION else ""
+        return f"{preview}{enlarged}"
 
     def _under_way(self, picture: str) -> str:
         """Return what is being computed for a picture: the picture itself, or layers over the picture; empty if nothing is."""

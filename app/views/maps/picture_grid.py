@@ -141,7 +141,8 @@ class PictureGrid:
         kinds = {name: kind for name, kind in self._kinds.items() if kind in _WITH_STRIP and name in self._texts}
         arrangements = " ".join({"many", "crowded", "enlarged"}.intersection(self._column.css_classes))
         strips = (
-            f"<div class='foot legend {kind} {arrangements}' data-picture='{name}'>{self._texts[name].strip}</div>"
+            f"<div class='foot legend {kind} {arrangements}' data-picture='{name}'>"
+            f"{self._texts[name].below(is_largest=kind == 'picked')}</div>"
             for name, kind in kinds.items()
         )
         self.strips.object = "".join(strips)

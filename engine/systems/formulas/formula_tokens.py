@@ -25,7 +25,20 @@ _TOKEN = re.compile(
     r"|(?P<fraction>[½⅓⅔¼¾⅕⅙⅛⅒])|(?P<sign>[+\-−–])|(?P<operator>[*·×⋅∗/÷∕⁄])|(?P<root>√)|(?P<open>\()|(?P<close>\))"
 )
 # Names that would otherwise be read as letters or products, such as momenta, velocities, a third coordinate and time.
-_UNKNOWN = re.compile("tan|abs|pi|[pv][xyz]|z(?![0-9₀-₉])|t")
+_UNKNOWN = re.compile("sinh|cosh|tanh?|abs|pi|[pv][xyz]|z(?![0-9₀-₉])|t")
+# What to write instead of names and characters that are not understood.
+_REMEDIES = {
+    "sinh": "write (exp(u) − exp(−u))/2 for sinh(u)",
+    "cosh": "write (exp(u) + exp(−u))/2 for cosh(u)",
+    "tanh": "write 1 − 2/(exp(2u) + 1) for tanh(u)",
+    "tan": "write sin(u)/cos(u) for tan(u)",
+    "abs": "write √(u²) for abs(u)",
+    "|": "write √(u²) for |u|",
+    "pi": "write 3.141592653589793",
+    "e": "write exp(u) for a power of e",
+    "E": "write exp(u) for a power of e",
+    ",": "write decimals with a point, as in 0.5",
+}
 # "V =" or "V(x, y) =" in front of a formula.
 _PREFIX = re.compile(r"\s*V\s*(?:\(\s*x\s*,\s*y\s*\)\s*)?=")
 ALLOWED = (
@@ -75,11 +88,10 @@ def tokenize(text: str) -> list[Token]:
             position += 1
             continue
         unknown = _UNKNOWN.match(text, position)
-        if unknown is not None:
-            raise FormulaError(position, f"{unknown.group()!r} is not understood; {ALLOWED}")
-        match = _TOKEN.match(text, position)
+        match = _TOKEN.match(text, position) if unknown is None else None
         if match is None:
-            raise FormulaError(position, f"{text[position]!r} is not understood; {ALLOWED}")
+            found = unknown.group() if unknown is not None else text[position]
+            raise FormulaError(position, f"'{found}' is not understood; {_REMEDIES.get(found, ALLOWED)}")
         token_text = match.group()
         if match.lastgroup == "letter":
             token_text = token_text.translate(_FROM_SUBSCRIPT)

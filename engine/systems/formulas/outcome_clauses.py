@@ -24,6 +24,8 @@ SEPARATOR = ";"
 # At most 12 names of at most 21 characters.
 _EXITS = re.compile(r"\s*exits\s+(?P<names>\w[\w ]{0,20}(?:,\s*\w[\w ]{0,20}){0,11})$")
 _WELL = re.compile(r"\s*well\s*\((?P<x>[^,;]*),(?P<y>[^,;]*)\)\s*$")
+# A value of a letter, which is no clause.
+_VALUE = re.compile(r"\s*(?P<letter>\w+)\s*=")
 _MASSES = re.compile(r"\s*masses\s*\((?P<x>[^,;]*),(?P<y>[^,;]*)\)\s*$")
 
 
@@ -95,6 +97,8 @@ def split_clauses(text: str) -> Clauses:
             pairs[pair.re] = _part(pair, "x", position), _part(pair, "y", position)
         elif (exits_match := _EXITS.match(clause)) and not exits:
             exits = [name.strip() for name in exits_match["names"].split(",")]
+        elif value := _VALUE.match(clause):
+            raise FormulaError(position, f"the value of {value['letter']} is a parameter of the formula and no part of it")
         else:
             allowed = ", ".join(kind.syntax.format(kind.word) for kind in end_kinds())
             others = "one well (x, y), one masses (m, m), and once exits NAME, NAME"
@@ -108,11 +112,13 @@ def split_clauses(text: str) -> Clauses:
 
 
 def _end_clause(clause: str, position: int) -> EndClause | None:
-    """Return the clause of an end; None for any other clause."""
+    """Return the clause of an end, or None for any other clause; FormulaError if a number is missing."""
     for kind in end_kinds():
         if match := kind.match(clause):
             texts = match.groupdict()
             numbers = [key for key, text in texts.items() if key != "name" and text is not None]
+            if missing := next((key for key in numbers if not texts[key].strip()), ""):
+                raise FormulaError(position + match.start(missing), f"the {missing} is missing in {clause.strip()!r}")
             return EndClause(kind, {key: _part(match, key, position) for key in numbers}, texts.get("name", ""))
     return None
 

@@ -12,6 +12,7 @@ from app.session.context import History
 from app.session.potential_presenter import PotentialPresenter
 from app.state.system_review import review_for_page
 from app.state.view_state import ViewState
+from app.views.analysis.potential_panel import OUTDATED
 from engine import CASES, System
 from engine.jobs.manager import Jobs
 from engine.maps.warmup import prepare_for_maps
@@ -84,6 +85,14 @@ def test_a_text_is_used_while_it_is_typed_unless_it_needs_another_integrator(ses
     assert session.state.system.formula == WEAKER
     session.type(NEW)
     session.wait_for(lambda: session.state.system.formula == NEW)
+
+
+def test_properties_of_the_last_formula_are_grey_while_the_next_is_reviewed(session: Session) -> None:
+    panes = session.panel.typeset, session.panel.facts
+    session.panel.wait()
+    assert all(OUTDATED in pane.css_classes for pane in panes)
+    session.panel.show(session.panel.used)
+    assert not any(OUTDATED in pane.css_classes for pane in panes)
 
 
 def test_all_texts_are_used_in_turn_and_are_one_entry_of_the_history_until_enter(session: Session) -> None:

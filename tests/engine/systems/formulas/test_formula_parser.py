@@ -75,7 +75,12 @@ def test_operator_precedence(text: str, terms: tuple[tuple[int, int, float], ...
     ("text", "position", "reason"),
     [
         ("", 0, "ends"),
-        ("x + tan(x)", 4, "not understood"),
+        ("x + tan(x)", 4, "not understood; write sin(u)/cos(u) for tan(u)"),
+        ("x + sinh(x)", 4, "'sinh' is not understood; write (exp(u) − exp(−u))/2 for sinh(u)"),
+        ("0,5x + y", 1, "',' is not understood; write decimals with a point, as in 0.5"),
+        ("x\\y", 1, "'\\' is not understood; allowed are"),
+        ("a x² + y²; a=1.2", 10, "the value of a is a parameter of the formula and no part of it"),
+        ("1/r + x²; centre (0, 0)", 23, "the radius is missing in 'centre (0, 0)'"),
         ("½r² − x²y cos(3t)", 15, "'t' is not understood"),
         ("x + sin x", 8, "its argument in brackets"),
         ("x + log(1 − 1)", 4, "not a finite real number"),
