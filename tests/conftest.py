@@ -78,17 +78,23 @@ def _unlimited_compiled_code() -> Iterator[None]:
 
 
 @pytest.fixture(scope="session")
-def chromium() -> Iterator[Browser]:
-    """Yield a running Chromium. Without Chromium, skip browser tests, or fail in CI."""
+def chromium_path() -> str:
+    """The program of Chromium. Without Chromium, skip browser tests, or fail in CI."""
     path = next(filter(None, map(shutil.which, BROWSERS)), None)
     if path is None:
         message = f"no browser: none of {', '.join(BROWSERS)} is on PATH (Debian: apt-get install chromium-headless-shell)"
         if os.environ.get("CI"):
             pytest.fail(message)
         pytest.skip(message)
+    return path
+
+
+@pytest.fixture(scope="session")
+def chromium(chromium_path: str) -> Iterator[Browser]:
+    """Yield a running Chromium."""
     playwright: Playwright
     expect.set_options(timeout=TIMEOUT_MS)
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=path, args=["--no-sandbox"])
+        browser = playwright.chromium.launch(executable_path=chromium_path, args=["--no-sandbox"])
         yield browser
         browser.close()

@@ -43,8 +43,7 @@ def test_ticks_are_distances_from_a_stated_number_and_the_frame_stays_square(exp
     explorer.hover("basins", 0.5 * (window.x_low + window.x_high), 0.5 * (window.ordinate_low + window.ordinate_high))
     # Enough digits to distinguish neighbouring pixels.
     expect(explorer.text(re.compile(r"\(−?0\.\d{14,17}, −?0\.\d{14,17}\)"))).to_be_visible()
-    for place in range(3):
-        expect(explorer.text("x = 0.1149").nth(place)).to_be_visible()
+    expect(explorer.page.get_by_text("x = 0.1149")).to_have_count(3)
     width, height = explorer.page.evaluate(_FRAME)
     assert abs(width - height) <= 1
 

@@ -136,7 +136,8 @@ _COVERED = """() => {
         const [x0, y0, x1, y1] = [canvas.left + left, canvas.top + top, canvas.left + right, canvas.top + bottom]
         const covers = box => Math.min(box.right, x1) > Math.max(box.left, x0) + 1
             && Math.min(box.bottom, y1) > Math.max(box.top, y0) + 1
-        const parts = [...view.shadow_el.querySelectorAll("h2, .enlarge, .foot, .axis-name")]
+        const strips = [...Bokeh.index.all_views()].find(each => each.model.css_classes?.includes("strips"))
+        const parts = [view, strips].flatMap(each => [...each.shadow_el.querySelectorAll("h2, .enlarge, .foot, .axis-name")])
         return parts.filter(part => covers(part.getBoundingClientRect())).map(part => part.className || part.tagName)
     })
 }"""

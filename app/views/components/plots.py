@@ -124,9 +124,9 @@ class PictureTexts:
     def write_above(self, plot: figure, *, short: bool) -> None:
         """Write above the frame of a picture: the title, the name of the ordinate, and what is being computed."""
         enlarge = f"Enlarge, or show all: {self.title}"
-        title = self.short_title if short else self.title
+        title, under_way = (self.short_title, "…" if self.under_way else "") if short else (self.title, self.under_way)
         html = (
-            f"{title_with_help(title, plot.name, HELP_TEXTS[plot.name], self.under_way)}"
+            f"{title_with_help(title, plot.name, HELP_TEXTS[plot.name], under_way)}"
             f"<button type='button' class='enlarge' data-picture='{plot.name}' aria-label='{enlarge}' title='{enlarge}'></button>"
             f"<i class='axis-name ordinate'>{_axis_name(self.axes[1])} ↑</i>"
         )

@@ -102,6 +102,15 @@ function focusDrawer(tries) {
   } else if (tries > 0) setTimeout(() => focusDrawer(tries - 1), DRAWER_INTERVAL_MS)
 }
 
+/**
+ * Lay out the parts of the page again. Bokeh does so when the box of a root changes. In narrow windows the roots have no boxes, and
+ * pictures would keep the size of the former window.
+ */
+function layOutRootsWithoutBoxes() {
+  const roots = Bokeh.index.roots.filter(view => getComputedStyle(view.el).display === "contents")
+  requestAnimationFrame(() => roots.forEach(view => view.compute_layout()))
+}
+
 /** @param {{model: any, el: HTMLElement}} component */
 export function render({model, el}) {
   let lastKeyTime = -KEY_INTERVAL_MS
@@ -144,7 +153,7 @@ export function render({model, el}) {
     window.removeEventListener("resize", sendIfNarrow)
     model.send_msg({narrow: true})
   }
-  window.addEventListener("resize", sendIfNarrow)
+  for (const react of [sendIfNarrow, layOutRootsWithoutBoxes]) window.addEventListener("resize", react)
   // A button of a picture sends the name of the picture.
   const enlarge = (/** @type {Event} */ event) => {
     const button = event.composedPath().find(node => node instanceof HTMLElement && node.matches("button[data-picture]"))
@@ -160,7 +169,7 @@ export function render({model, el}) {
     document.removeEventListener("touchstart", preventScroll)
     document.removeEventListener("click", enlarge)
     window.removeEventListener("popstate", sendEntry)
-    window.removeEventListener("resize", sendIfNarrow)
+    for (const react of [sendIfNarrow, layOutRootsWithoutBoxes]) window.removeEventListener("resize", react)
     document.removeEventListener("keydown", sendKey)
     for (const name of ["focusin", "keydown"]) document.removeEventListener(name, updateFocusFrame)
   })
