@@ -99,7 +99,7 @@ class Settings:
     cores_per_page
         Processors that an active visitor uses; 0 to estimate them (see `app.runtime.capacity`).
     frame_ancestors
-        Origins that may embed the page in a frame; empty if no origin may.
+        Origins that may embed the page in a frame; see `ancestors_at`.
     bokeh_patches
         Whether faster functions replace two functions of Bokeh (see `app.browser.bokeh_patches`).
     """
@@ -119,6 +119,17 @@ class Settings:
     cores_per_page: float = _setting(0.0, _number(0.0, 1.0))
     frame_ancestors: tuple[str, ...] = _setting((), _ORIGINS)
     bokeh_patches: bool = _setting(True, _YES_OR_NO)
+
+    def ancestors_at(self, host: str) -> tuple[str, ...]:
+        """Return the origins that may embed the page in a frame when it has this host, without port; empty if no origin may.
+
+        These are `frame_ancestors`. If there are none, pages of this computer may embed the page of a server that is used on it.
+        """
+        return self.frame_ancestors or (_LOOPBACK_ORIGINS if host in _LOOPBACK_HOSTS else ())
+
+
+_LOOPBACK_HOSTS = ("127.0.0.1", "localhost")
+_LOOPBACK_ORIGINS = tuple(f"http://{host}:*" for host in _LOOPBACK_HOSTS)
 
 
 def variable_name(setting: str) -> str:

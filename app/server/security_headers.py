@@ -28,7 +28,7 @@ class SecurityHeaders(RequestHandler):
 
     def set_security_headers(self, nonce: str | None = None) -> None:
         """Set the headers for a response whose inline scripts have this nonce."""
-        for name, value in security_headers(process_state().settings.frame_ancestors, nonce).items():
+        for name, value in security_headers(process_state().settings.ancestors_at(self.request.host_name), nonce).items():
             self.set_header(name, value)
 
 

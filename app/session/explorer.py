@@ -36,7 +36,7 @@ from app.views.panels.analysis_choice import analysis_tabs
 from app.views.panels.browser_events import KEYS, PICTURE_KEYS, BrowserEvents
 from app.views.panels.controls import Controls
 from app.views.panels.downloads import Downloads
-from app.views.panels.embedding import embed_code, page_address
+from app.views.panels.embedding import embed_code, page_address, page_host
 from app.views.panels.gallery import Gallery
 from app.views.panels.help import help_panes
 from app.views.panels.slice_panel import SlicePanel
@@ -94,7 +94,9 @@ class Explorer:
     def _make_views(self) -> None:
         state, results, locked = self.state, self.results, self._locked
         self.statistics = StatisticsView(state, results, self._copy)
-        self.downloads = Downloads(state, results, partial(self._copy, None), self._copy_embed_code, locked(self._copied))
+        may_embed = bool(process_state().settings.ancestors_at(page_host(self._document.session_context.request)))
+        copy_link = partial(self._copy, None)
+        self.downloads = Downloads(state, results, copy_link, self._copy_embed_code, locked(self._copied), may_embed=may_embed)
         self.gallery = Gallery(state, locked(self._show_preset))
         keys = WINDOW_MOVES if self.links.embedded else KEYS
         self.browser = BrowserEvents(state, keys, locked, self._press, self.links.navigate, self._copied)

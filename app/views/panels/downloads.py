@@ -11,7 +11,6 @@ import panel as pn
 
 from app.browser.components.file_components import FileSaver
 from app.job_clients.shown_results import ShownResults
-from app.runtime.process_state import process_state
 from app.state.view_state import ViewState
 from app.views.components.texts import TextPane
 from app.views.components.widgets import button
@@ -44,6 +43,8 @@ class Downloads:
         Copy the address of the page, and the HTML of a frame with one picture.
     on_copied
         Handles whether the browser has copied an image.
+    may_embed
+        Whether other pages may show this page in a frame.
     """
 
     def __init__(
@@ -53,11 +54,13 @@ class Downloads:
         copy_link: Callable[[], None],
         copy_embed_code: Callable[[], None],
         on_copied: Callable[[bool], None],
+        *,
+        may_embed: bool,
     ) -> None:
         self._state, self._results = state, results
         self.saver = FileSaver()
         self.link = button("Copy link", copy_link)
-        self.embed = button("Copy embed code", copy_embed_code, disabled=not process_state().settings.frame_ancestors)
+        self.embed = button("Copy embed code", copy_embed_code, disabled=not may_embed)
         self.figure = FigureForm(state, results, self.saver, self._figure_name, on_copied)
         self.data = {
             label: button(label, partial(self._save, label))

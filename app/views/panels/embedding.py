@@ -9,10 +9,15 @@ from app.state.permalink import write_link
 from app.state.view_state import ViewState
 from app.views.components.texts import TextPane
 
-NOT_ALLOWED = "Embedding is switched off on this server."
+NOT_ALLOWED = "Frames in other pages are switched off. The operator of the server allows them with the setting FRAME_ANCESTORS."
 
 # Width and height of the frame, in pixels: pictures are square.
 _SIDE = 600
+
+
+def page_host(request: Any) -> str:
+    """Return the host of the page of a request, without port; empty for a page without a request."""
+    return str(getattr(request, "host_name", ""))
 
 
 def page_address(request: Any) -> str:

@@ -48,3 +48,11 @@ def test_invalid_values_are_rejected_by_name(name: str, text: str) -> None:
 
 def test_every_setting_has_a_parser() -> None:
     assert all("parser" in setting.metadata for setting in fields(Settings))
+
+
+@pytest.mark.parametrize(
+    ("host", "may_embed"), [("127.0.0.1", True), ("localhost", True), ("explorer.example", False), ("", False)]
+)
+def test_pages_of_this_computer_may_embed_the_page_of_a_server_on_it(host: str, may_embed: bool) -> None:
+    assert bool(Settings().ancestors_at(host)) == may_embed
+    assert Settings(frame_ancestors=("https://a.example",)).ancestors_at(host) == ("https://a.example",)
