@@ -168,7 +168,7 @@ def _describe_escape_without_chaos(orbit: Orbit) -> str:
     """Return a sentence for an escaping orbit without a sign of chaos."""
     # The first word: "escapes" of "escapes through exit 1".
     verb = outcome_of(orbit.fate, orbit.outcomes).present.partition(" ")[0]
-    return f"No sign of chaos before the orbit {verb} at t = {format_time(orbit.escape_time)}."
+    return f"Too short to tell: the orbit {verb} at t = {format_time(orbit.escape_time)}."
 
 
 def _describe_end(orbit: Orbit) -> str:

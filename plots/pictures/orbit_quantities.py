@@ -18,8 +18,8 @@ _LEAST_SALI = 1e-17
 _LARGEST_SALI = 10.0
 # Lower end of the axis of the Lyapunov exponent.
 _LEAST_EXPONENT = 1e-7
-# Upper end of the axis of the Lyapunov exponent.
-_LARGEST_EXPONENT = 1.0
+# Upper end of the axis of the Lyapunov exponent, unless an orbit has a larger one.
+_USUAL_EXPONENT = 1.0
 # Smallest upper end of the axis of R².
 _LEAST_R2 = 1e-3
 
@@ -79,9 +79,10 @@ def _sali_limits(histories: Sequence[History]) -> tuple[float, float]:
 
 
 def _exponent_limits(histories: Sequence[History]) -> tuple[float, float]:
-    """Return limits that begin at the power of ten below the last values, and have at least two labels."""
+    """Return limits from the power of ten below the last values to above all values, with at least two labels."""
     lowest = min(float(history.line[1][-1]) for history in histories)
-    return min(1e-2, logarithmic_limits(lowest, _LARGEST_EXPONENT)[0]), _LARGEST_EXPONENT
+    low, high = logarithmic_limits(lowest, max(history.highest for history in histories))
+    return min(1e-2, low), max(_USUAL_EXPONENT, high)
 
 
 def _r2_limits(histories: Sequence[History]) -> tuple[float, float]:

@@ -142,6 +142,8 @@ class OrbitControls:
             return
         chosen_orbit = orbits[chosen]
         self.x.value, self.ordinate.value = (f"{number!r}" for number in chosen_orbit.start)
+        # From a start without an orbit nothing can be searched.
+        self.divergent_start.disabled = self.periodic_orbit.disabled = bool(chosen_orbit.problem)
         self.text.object = escape(chosen_orbit.headline())
         self.reason.object = escape(chosen_orbit.describe())
         self.values.object = _value_table(chosen_orbit.orbit)
@@ -153,7 +155,7 @@ class OrbitControls:
         if orbit is None:
             return []
         start = dict(zip(("x", "y", "px", "py"), initial_state(orbit), strict=True))
-        verdicts = [(one.name, repr(one.value), str(one.conclusion or "no verdict")) for one in self._verdicts]
+        verdicts = [(one.name, repr(one.value), str(one.conclusion or one.sentence)) for one in self._verdicts]
         return [*number_rows("start", start), *number_rows("orbit", orbit.numbers()), *verdicts]
 
     def _choose(self, index: int) -> None:
@@ -178,7 +180,8 @@ def _indicator_rows(verdicts: Sequence[IndicatorVerdict]) -> str:
     rows = ""
     for (conclusion, sentence), group in groupby(verdicts, lambda one: (one.conclusion, one.sentence)):
         names = [f"<th scope=row>{one.name}<br>{_value(one.value)}</th>" for one in group]
-        cell = f"<td rowspan={len(names)}><b>{conclusion or 'no verdict'}</b><br>{escape(sentence)}</td>"
+        verdict = f"<b>{conclusion}</b><br>" if conclusion else ""
+        cell = f"<td rowspan={len(names)}>{verdict}{escape(sentence)}</td>"
         first, *others = names
         rows += f"<tr>{first}{cell}</tr>" + "".join(f"<tr>{name}</tr>" for name in others)
     return rows

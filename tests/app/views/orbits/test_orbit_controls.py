@@ -16,7 +16,7 @@ def test_indicators_with_the_same_verdict_share_its_sentence() -> None:
     controls.show_indicators([IndicatorVerdict("exponent", 0.5, Verdict.CHAOTIC, "The exponent is positive."), *too_short])
     table = controls.indicators.object
     assert table.count("The orbit is too short.") == 1
-    assert table.count("no verdict") == 1
+    assert "no verdict" not in table
     assert table.count("<tr>") == table.count("</tr>") == 3
     assert table.index("SALI") < table.index("<td rowspan=2>") < table.index("digits")
 
