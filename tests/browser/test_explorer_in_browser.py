@@ -16,8 +16,13 @@ from plots.pictures.image_columns import map_columns
 from tests.browser.explorer_page import ExplorerPage
 
 MAPS = ("basins", "times", "crossings")
-_AXIS_NAMES = """names => [...Bokeh.index.all_views()].filter(view => names.includes(view.model.name))
-    .map(view => [...view.shadow_el.querySelectorAll(".axis-name")].map(name => name.textContent).join(" "))"""
+# Names of the axes of each picture, below its frame and above it.
+_AXIS_NAMES = """names => {
+    const strips = [...Bokeh.index.all_views()].find(view => view.model.css_classes?.includes("strips")).shadow_el
+    const text = element => element.querySelector(".axis-name").textContent
+    return [...Bokeh.index.all_views()].filter(view => names.includes(view.model.name))
+        .map(view => `${text(strips.querySelector(`[data-picture=${view.model.name}]`))} ${text(view.shadow_el)}`)
+}"""
 
 
 def quick_map(energy: float, **options: object) -> EscapeMap:
