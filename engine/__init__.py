@@ -25,6 +25,7 @@ programs of this repository, and may change with any version.
 import types
 import typing
 
+from engine.exits.closed_orbit import Stability as Stability
 from engine.exits.lyapunov_orbit import LyapunovOrbit as LyapunovOrbit
 from engine.exits.lyapunov_orbits import find_lyapunov_orbits as find_lyapunov_orbits
 from engine.foundations.execution import Execution as Execution
@@ -59,7 +60,6 @@ from engine.periodic.jpl_table import write_jpl_table as write_jpl_table
 from engine.periodic.nearest_orbit import NoPeriodicOrbitError as NoPeriodicOrbitError
 from engine.periodic.nearest_orbit import find_periodic_orbit as find_periodic_orbit
 from engine.periodic.periodic_orbit import PeriodicOrbit as PeriodicOrbit
-from engine.periodic.periodic_orbit import Stability as Stability
 from engine.periodic.search import find_periodic_orbits as find_periodic_orbits
 from engine.periodic.symmetric.search import find_symmetric_families as find_symmetric_families
 from engine.propagation.fates import Evidence as Evidence

@@ -168,7 +168,7 @@ class PeriodicOrbitRequests(_StartSearch[PeriodicOrbit]):
             changes: Changes = {"start": origin}
         else:
             energy = float(state.plane.energies(state.energy, *origin))
-            changes = start_through(found.section, found.potential, found.state, energy)
+            changes = start_through(found.section, found.potential, found.start, energy)
         if not changes:
             self._notify(f"{found.describe()} It cannot be added: no slice contains its start.")
             return
@@ -179,4 +179,4 @@ class PeriodicOrbitRequests(_StartSearch[PeriodicOrbit]):
 
 def _is_at(orbit: PeriodicOrbit, state: tuple[float, ...] | None) -> bool:
     """Return whether an orbit starts at a state."""
-    return state is not None and bool(np.all(np.abs(orbit.state - state) <= _EQUAL * orbit.potential.units.state))
+    return state is not None and bool(np.all(np.abs(orbit.start - state) <= _EQUAL * orbit.potential.units.state))

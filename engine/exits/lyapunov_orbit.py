@@ -1,17 +1,17 @@
-"""A Lyapunov orbit: its path, its exit and its stability."""
+"""A Lyapunov orbit: a periodic orbit over a saddle, with its path and its exit."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
 
+from engine.exits.closed_orbit import ClosedOrbit, Nodes, stability_index
 from engine.exits.exit_shapes import line_points, mirrored_curve
-from engine.exits.saddle_orbits.orbit_parts import floquet_multipliers, monodromy_matrix, monodromy_of_brake_orbit
-from engine.foundations.arrays import read_only
-from engine.foundations.result import Result
+from engine.exits.saddle_orbits.orbit_parts import monodromy_of_brake_orbit
 from engine.integrator.kernels import exit_geometry as geometry
 from engine.systems.landscape.mirror_images import Signs
 from engine.systems.merged_channels import name_channels
@@ -20,7 +20,7 @@ from engine.systems.well_units import ENERGY, LENGTH, MOMENTUM, TIME, WellUnits
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class LyapunovOrbit(Result):
+class LyapunovOrbit(ClosedOrbit):
     """One Lyapunov orbit; all quantities are dimensionless. The arrays are read-only.
 
     Attributes
@@ -55,30 +55,43 @@ class LyapunovOrbit(Result):
     others: tuple[int, ...] = ()
     potential: Potential = field(kw_only=True, repr=False)
 
-    inner_names: ClassVar = Result.inner_names | {"mirrored", "restored", "symmetrized"}
-
-    def find_multipliers(self) -> np.ndarray:
-        """Return the Floquet multipliers: the eigenvalues of the monodromy matrix, in order of decreasing modulus.
-
-        The result is complex, of shape (4,): λ, 1, 1 and 1/λ. If the modulus of λ is not 1, the orbit is unstable. The double
-        eigenvalue 1 has only one eigenvector, so rounding changes it by the square root of the error of the matrix, 1e-8 to 1e-6.
-
-        Examples
-        --------
-        >>> from escape_explorer import CASES, find_lyapunov_orbits
-        >>> orbit = find_lyapunov_orbits(CASES["I"], 0.19)[0]
-        >>> round(float(abs(orbit.find_multipliers()[0])), 2)
-        93.85
-        """
-        units = self.potential.units
-        find_matrix = monodromy_matrix if self.potential.rotation else monodromy_of_brake_orbit
-        monodromy = find_matrix(self.potential.in_well_units, self.start / units.state, self.period / units.time)
-        return read_only(floquet_multipliers(monodromy))
+    inner_names: ClassVar = ClosedOrbit.inner_names | {"mirrored", "restored", "symmetrized"}
 
     @property
     def start(self) -> np.ndarray:
         """(4,) x, y, px and py at the first point."""
         return np.array([self.x[0], self.y[0], *self.velocity])
+
+    @property
+    def nodes(self) -> Nodes:
+        """See `ClosedOrbit.nodes`. In a frame at rest, the orbit is at rest again after half its period."""
+        units = self.potential.units
+        states, period = self.start[None], self.period / units.time
+        if not self._is_closed_curve:
+            states = np.vstack([states, [*self.half_path[-1], 0.0, 0.0]])
+        return Nodes(states / units.state, np.full(len(states), period / len(states)))
+
+    @cached_property
+    def stability_index(self) -> float:
+        """a = ½ (tr M − 2), with the monodromy matrix M of one period; nearby orbits leave an unstable orbit, abs(a) > 1.
+
+        Examples
+        --------
+        >>> from escape_explorer import CASES, find_lyapunov_orbits
+        >>> orbit = find_lyapunov_orbits(CASES["I"], 0.19)[0]
+        >>> round(orbit.stability_index, 3), round(orbit.multipliers[0].real, 2)
+        (46.928, 93.85)
+        """
+        well, nodes = self.potential.in_well_units, self.nodes
+        if self._is_closed_curve:
+            return nodes.stability_index(well)
+        return stability_index(monodromy_of_brake_orbit(well, nodes.states[0], nodes.durations[0]))
+
+    @cached_property
+    def action(self) -> float:
+        """J = ∮ p dq over one period, with the canonical momenta; dJ/dh = T along a family."""
+        units = self.potential.units
+        return self.nodes.action(self.potential.in_well_units) * units.length * units.momentum
 
     def provenance(self) -> dict[str, Any]:
         """Return the potential, the energy, the integrator and the version."""

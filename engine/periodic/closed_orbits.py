@@ -1,4 +1,4 @@
-"""Numbers of a closed orbit: its stability index, its action and the number of its returns, in units of the well."""
+"""Halves and returns of a closed orbit, in units of the well."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from engine.exits.saddle_orbits.orbit_parts import matrix_product, monodromy_matrix, trace_parts
+from engine.exits.closed_orbit import Nodes
+from engine.exits.saddle_orbits.orbit_parts import monodromy_matrix
 from engine.integrator.kernels.dense_output import sample_path, trace_steps
 from engine.periodic.shooting import Trial
 from engine.periodic.symmetries import Symmetry
@@ -19,22 +20,6 @@ SAME_POINT = 1e-7
 
 # Largest number of passages in a part of an orbit, and time within which two passages are the same.
 _MOST_PASSAGES, _SAME_TIME = 1000, 1e-6
-# Points of Gauss's quadrature in a step of the integrator, whose path is a polynomial.
-_GAUSS_POINTS = 20
-
-
-def transition_matrix(potential: Potential, orbit: Trial) -> np.ndarray:
-    """Return the monodromy matrix of a closed orbit, (4, 4), as the product of the matrices of its parts."""
-    parts = zip(orbit.states, orbit.part_durations.tolist(), strict=True)
-    return matrix_product(np.array([monodromy_matrix(potential, state, duration) for state, duration in parts]))
-
-
-def stability_index(potential: Potential, orbit: Trial) -> float:
-    """Return a = ½ (tr M − 2) of a closed orbit with monodromy matrix M (Hénon 1965, Ann. Astrophys. 28, 992).
-
-    Eigenvalues of M would have errors of the root of rounding, because 1 is a double eigenvalue.
-    """
-    return 0.5 * (float(np.trace(transition_matrix(potential, orbit))) - 2.0)
 
 
 def half_symmetry(potential: Potential, orbit: Trial, symmetries: Sequence[Symmetry]) -> Symmetry | None:
@@ -67,25 +52,6 @@ def _first_half(potential: Potential, orbit: Trial) -> tuple[np.ndarray, np.ndar
     return end, monodromy_matrix(potential, state, remaining) @ matrix
 
 
-def action(potential: Potential, orbit: Trial) -> float:
-    """Return the integral of the canonical momentum along a closed orbit, whose derivative by the energy is the period.
-
-    In a frame that rotates at the rate Ω, the canonical momentum is (px − Ω y, py + Ω x). NaN if the orbit cannot be integrated.
-    """
-    parts = trace_parts(potential, orbit.states, orbit.part_durations)
-    if parts is None:
-        return np.nan
-    nodes, weights = np.polynomial.legendre.leggauss(_GAUSS_POINTS)
-    total = 0.0
-    for steps, duration in zip(parts.steps, orbit.part_durations, strict=True):
-        sizes = np.diff(steps[:, 4], append=duration)
-        times = steps[:, 4, None] + 0.5 * (nodes + 1.0) * sizes[:, None]
-        x, y, vx, vy = sample_path(potential.well.kernels, steps, times.ravel()).reshape(4, *times.shape)
-        integrand = vx * vx + vy * vy + potential.rotation * (x * vy - y * vx)
-        total += float(np.sum(0.5 * sizes[:, None] * weights * integrand))
-    return total
-
-
 def primitive_returns(orbit: Trial) -> int:
     """Return the number of returns after which a closed orbit repeats itself."""
     states = orbit.states[orbit.returns]
@@ -93,38 +59,31 @@ def primitive_returns(orbit: Trial) -> int:
     return next(m for m in range(1, n + 1) if n % m == 0 and np.abs(states - np.roll(states, -m, axis=0)).max() < SAME_POINT)
 
 
+def passages_of(potential: Potential, section: Section, orbit: Nodes) -> np.ndarray:
+    """Return the crossings of a section by a closed orbit, in units of the well, as rows x, y, px, py, t of shape (n, 5)."""
+    begins = np.cumsum(orbit.durations) - orbit.durations
+    passages = []
+    for state, begin, duration in zip(orbit.states, begins, orbit.durations.tolist(), strict=True):
+        found = find_passages_of_orbit(potential, state, _MOST_PASSAGES, duration, section.numbers)
+        passages.append(np.column_stack([found[:, :4], begin + found[:, 4]]))
+    return np.concatenate(passages)
+
+
 def with_all_returns(potential: Potential, section: Section, orbit: Trial) -> Trial:
     """Return a closed orbit with all its returns to a section, in units of the well; it is unchanged if none is missing."""
     durations = orbit.part_durations
-    begins = np.cumsum(durations) - durations
-    known, period = begins[orbit.returns], float(durations.sum())
-    passages = []
-    for state, begin, duration in zip(orbit.states, begins, durations.tolist(), strict=True):
-        found = find_passages_of_orbit(potential, state, _MOST_PASSAGES, duration, section.numbers)
-        passages.append(np.column_stack([found[:, :4], begin + found[:, 4]]))
-    points = np.concatenate(passages)
+    known, period = (np.cumsum(durations) - durations)[orbit.returns], float(durations.sum())
+    points = passages_of(potential, section, orbit.nodes)
     # A return at a node can be found at the end of a part.
     distances = np.abs((points[:, 4, None] - known + 0.5 * period) % period - 0.5 * period)
     further = points[distances.min(axis=1) > _SAME_TIME]
     if not len(further):
         return orbit
     everything = np.vstack([np.column_stack([orbit.states[orbit.returns], known]), further])
-    everything = everything[np.argsort(everything[:, 4])]
-    times = everything[:, 4]
-    return Trial(everything[:, :4], np.diff(times, append=times[0] + period), orbit.value, (1,) * len(times))
+    return orbit_through(everything[np.argsort(everything[:, 4])], period, orbit.value)
 
 
-def sampled_path(potential: Potential, orbit: Trial, points: int) -> np.ndarray:
-    """Return a closed orbit at about this number of times, evenly spaced within each part, as rows t, x, y, px, py."""
-    parts = trace_parts(potential, orbit.states, orbit.part_durations)
-    if parts is None:
-        return np.empty((5, 0))
-    durations = orbit.part_durations
-    begins = np.cumsum(durations) - durations
-    counts = np.maximum(np.ceil(points * durations / durations.sum()), 2).astype(int)
-    pieces = []
-    for steps, begin, duration, count in zip(parts.steps, begins, durations, counts, strict=True):
-        times = np.arange(count) * (duration / count)
-        pieces.append(np.vstack([begin + times, sample_path(potential.well.kernels, steps, times)]))
-    last = np.append(durations.sum(), orbit.states[0])
-    return np.column_stack([*pieces, last])
+def orbit_through(returns: np.ndarray, period: float, value: float) -> Trial:
+    """Return the closed orbit with some returns, rows x, y, px, py, t of shape (n, 5), in the order of time."""
+    times = returns[:, 4]
+    return Trial(returns[:, :4], np.diff(times, append=times[0] + period), value, (1,) * len(times))

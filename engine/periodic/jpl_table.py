@@ -12,10 +12,10 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
+from engine.exits.closed_orbit import ClosedOrbit
 from engine.foundations.arrays import read_only
 from engine.foundations.output_lock import output_named_in_errors
 from engine.foundations.validation import checked_items, checks_types
-from engine.periodic.periodic_orbit import PeriodicOrbit
 from engine.systems.potential import Potential
 
 _STATE_COLUMNS = ("x", "y", "z", "vx", "vy", "vz")
@@ -27,7 +27,7 @@ _COLUMNS = (*_READ_COLUMNS, "period", "stability")
 _PLANE, _SAME_SYSTEM = 1e-9, 1e-4
 
 
-def write_jpl_table(orbits: PeriodicOrbit | Iterable[PeriodicOrbit], path: str | os.PathLike[str]) -> None:
+def write_jpl_table(orbits: ClosedOrbit | Iterable[ClosedOrbit], path: str | os.PathLike[str]) -> None:
     """Write periodic orbits of a rotating system as a CSV table with the columns of the catalogue of JPL.
 
     The columns are x, y, z, vx, vy, vz, from the axis of the frame, jacobi, C as in `Potential.jacobi_constant`, period, and
@@ -37,8 +37,8 @@ def write_jpl_table(orbits: PeriodicOrbit | Iterable[PeriodicOrbit], path: str |
     Parameters
     ----------
     orbits
-        A `PeriodicOrbit`, or several, as an `OrbitFamily` or the result of `find_periodic_orbits`. Each has a row, with its first
-        return.
+        A `PeriodicOrbit` or `LyapunovOrbit`, or several, as an `OrbitFamily` or the result of `find_periodic_orbits` or
+        `find_lyapunov_orbits`. Each has a row, with its start.
     path
         The file; an existing file is replaced.
 
@@ -62,17 +62,17 @@ def write_jpl_table(orbits: PeriodicOrbit | Iterable[PeriodicOrbit], path: str |
     """
     import pandas as pd
 
-    members = checked_items("orbits", [orbits] if isinstance(orbits, PeriodicOrbit) else orbits, PeriodicOrbit)
+    members = checked_items("orbits", [orbits] if isinstance(orbits, ClosedOrbit) else orbits, ClosedOrbit)
     table = pd.DataFrame([_row(orbit) for orbit in members], columns=_COLUMNS)
     with output_named_in_errors(path):
         table.to_csv(path, index=False)
 
 
-def _row(orbit: PeriodicOrbit) -> Sequence[float]:
+def _row(orbit: ClosedOrbit) -> Sequence[float]:
     potential = orbit.potential
     constant = potential.jacobi_constant(orbit.energy)
-    x, y = orbit.state[:2] - potential.rotation_axis
-    vx, vy = orbit.state[2:] / potential.mass
+    x, y = orbit.start[:2] - potential.rotation_axis
+    vx, vy = orbit.start[2:] / potential.mass
     return x, y, 0.0, vx, vy, 0.0, constant, orbit.period, max(abs(orbit.stability_index), 1.0)
 
 

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from enum import StrEnum
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from engine.exits.closed_orbit import ClosedOrbit, Nodes
 from engine.foundations.arrays import read_only
 from engine.foundations.result import Result
-from engine.foundations.validation import checked_count
 from engine.foundations.wording import format_count, format_number
-from engine.periodic.closed_orbits import action, sampled_path, stability_index
 from engine.periodic.shooting import Trial, divided
 from engine.slices.sections.section import Section
 from engine.slices.sections.section_text import section_of_file
@@ -27,23 +25,6 @@ DIGITS = 6
 
 STATE_COLUMNS = ("x", "y", "px", "py")
 """Names of the columns of states."""
-
-
-class Stability(StrEnum):
-    """The motion near a periodic orbit, from its stability index a = ½ (tr M − 2) with the monodromy matrix M.
-
-    Nearby orbits stay near a stable orbit, abs(a) ≤ 1. They leave an unstable orbit along two curves: on the same side, a > 1, or
-    on alternating sides (with reflection), a < −1.
-    """
-
-    STABLE = "stable"
-    UNSTABLE = "unstable"
-    REFLECTING = "unstable with reflection"
-
-    @classmethod
-    def of(cls, index: float) -> Stability:
-        """Return the stability that belongs to a stability index, a finite number."""
-        return cls.STABLE if abs(index) <= 1.0 else cls.UNSTABLE if index > 1.0 else cls.REFLECTING
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -73,7 +54,7 @@ class ResultOnSection(Result):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class PeriodicOrbit(ResultOnSection):
+class PeriodicOrbit(ResultOnSection, ClosedOrbit):
     """A periodic orbit with its n returns to a section in a period; all quantities are dimensionless, and arrays are read-only.
 
     Attributes
@@ -106,7 +87,7 @@ class PeriodicOrbit(ResultOnSection):
     px: np.ndarray
     py: np.ndarray
     row_dimension: ClassVar = "return"
-    inner_names: ClassVar = Result.inner_names | {"from_trial", "trial"}
+    inner_names: ClassVar = ClosedOrbit.inner_names | {"from_trial", "trial"}
 
     @classmethod
     def from_trial(
@@ -126,9 +107,10 @@ class PeriodicOrbit(ResultOnSection):
         units, well = potential.units, potential.in_well_units
         times = np.concatenate([[0.0], np.cumsum(orbit.durations)]) * units.time
         states = section.settle(orbit.states[orbit.returns] * units.state)
+        index = orbit.nodes.stability_index(well) if known_index is None else known_index
+        action = orbit.nodes.action(well) * units.length * units.momentum if known_action is None else known_action
         return cls(
-            orbit.value * units.energy, float(times[-1]), stability_index(well, orbit) if known_index is None else known_index,
-            action(well, orbit) * units.length * units.momentum if known_action is None else known_action,
+            orbit.value * units.energy, float(times[-1]), index, action,
             read_only(times[:-1]), *map(read_only, states.T.copy()), section=section, potential=potential,
         )  # fmt: skip
 
@@ -146,9 +128,14 @@ class PeriodicOrbit(ResultOnSection):
         return np.column_stack([self.x, self.y, self.px, self.py])
 
     @property
-    def state(self) -> np.ndarray:
+    def start(self) -> np.ndarray:
         """(4,) x, y, px, py at the first return, from which the orbit starts."""
         return self.states[0]
+
+    @property
+    def nodes(self) -> Nodes:
+        """See `ClosedOrbit.nodes`."""
+        return self.trial.nodes
 
     @property
     def returns(self) -> int:
@@ -159,38 +146,6 @@ class PeriodicOrbit(ResultOnSection):
     def points(self) -> np.ndarray:
         """(n, 2) returns in the coordinates in which the section is drawn."""
         return self.section.axes.points(self.states)
-
-    @property
-    def stability(self) -> Stability:
-        """The motion near the orbit."""
-        return Stability.of(self.stability_index)
-
-    @property
-    def residue(self) -> float:
-        """Greene's residue R = ½ (1 − a): stable from 0 to 1, unstable below 0, unstable with reflection above 1."""
-        return 0.5 * (1.0 - self.stability_index)
-
-    @property
-    def rotation_number(self) -> float:
-        """Turns of a nearby orbit around a stable orbit in a period, arccos(a)/2π, 0 to ½; NaN for an unstable orbit."""
-        return float(np.arccos(self.stability_index) / (2.0 * np.pi)) if abs(self.stability_index) <= 1.0 else np.nan
-
-    @property
-    def multipliers(self) -> np.ndarray:
-        """(2,) complex eigenvalues λ and 1/λ of the return map at a return, abs(λ) ≥ 1; the other two multipliers are 1."""
-        index = complex(self.stability_index)
-        root = np.sqrt(index * index - 1.0)
-        larger = index + root if self.stability_index >= 0.0 else index - root
-        return read_only(np.array([larger, 1.0 / larger]))
-
-    def find_path(self, points: int = 400) -> np.ndarray:
-        """Return the path of one period, of shape (5, m): t, x, y, px and py at about this number of times, 2 to 1e6.
-
-        The last point is the first one. Integration over several periods would leave an unstable orbit.
-        """
-        path = sampled_path(self.potential.in_well_units, self.trial, checked_count("points", points, 2, 10**6))
-        units = self.potential.units
-        return path * np.array([units.time, *units.state])[:, None]
 
     def describe(self) -> str:
         """Describe the orbit in a sentence."""

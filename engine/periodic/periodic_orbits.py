@@ -8,11 +8,12 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from engine.exits.closed_orbit import Stability
 from engine.foundations.arrays import read_only
 from engine.foundations.result import Result
 from engine.foundations.wording import format_count, format_number
 from engine.maps.spec import MapSpec
-from engine.periodic.periodic_orbit import DIGITS, STATE_COLUMNS, PeriodicOrbit, Stability
+from engine.periodic.periodic_orbit import DIGITS, STATE_COLUMNS, PeriodicOrbit
 from engine.slices.sections.section import Section
 
 

@@ -212,7 +212,7 @@ class _Search:
         """Add the images of the orbit that was added last, unless they are known."""
         first, spec = len(self._orbits), self._spec
         for symmetry in self._symmetries:
-            state = orbit.state * symmetry.factors
+            state = orbit.start * symmetry.factors
             point = first_point(spec.potential, spec.section, state, spec.t_max)
             if point is None or self._is_known(point, orbit.returns):
                 continue

@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from engine.exits.closed_orbit import Nodes
 from engine.exits.saddle_orbits.orbit_parts import Parts, trace_parts, velocities
 from engine.integrator.kernels.dense_output import sample_path
 from engine.periodic.family_parameter import Conditions, FamilyParameter, NoPotentialError
@@ -74,6 +75,11 @@ class Trial(NamedTuple):
     def part_durations(self) -> np.ndarray:
         """(nodes,) durations of the parts."""
         return np.repeat(self.durations / self.parts, self.parts)
+
+    @property
+    def nodes(self) -> Nodes:
+        """The states at the nodes, with the durations of the parts."""
+        return Nodes(self.states, self.part_durations)
 
     @property
     def vector(self) -> np.ndarray:

@@ -120,7 +120,7 @@ def _special(family: OrbitFamily, values: np.ndarray, label: str = "") -> list[S
 def _changes(subject: Subject, axis: str, family: OrbitFamily, x: float, y: float) -> Changes:
     """Return the system and the energy of the member nearest to the click, and the start of this member."""
     member = family[int(np.argmin(np.abs(family.value - x)))]
-    changes = {"energy": member.energy, **start_through(family.section, member.potential, member.state, member.energy)}
+    changes = {"energy": member.energy, **start_through(family.section, member.potential, member.start, member.energy)}
     if axis == ENERGY:
         return changes
     starts = (changes.pop("start"),) if "start" in changes else ()

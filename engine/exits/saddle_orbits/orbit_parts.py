@@ -84,12 +84,6 @@ def velocities(potential: Potential, states: np.ndarray) -> np.ndarray:
     return np.column_stack([vx, vy, coriolis * vy - slope_x, -coriolis * vx - slope_y])
 
 
-def floquet_multipliers(matrix: np.ndarray) -> np.ndarray:
-    """Return the complex eigenvalues of a monodromy matrix, of shape (4,), in order of decreasing modulus."""
-    eigenvalues = np.linalg.eigvals(matrix).astype(complex)
-    return eigenvalues[np.argsort(-np.abs(eigenvalues), kind="stable")]
-
-
 def monodromy_matrix(potential: Potential, start: np.ndarray, period: float) -> np.ndarray:
     """Return the monodromy matrix, (4, 4), of an orbit that begins at a state (4,), in units of the well."""
     matrix: np.ndarray = transition_matrices_of(potential, start[None], np.array([period]))[0]
@@ -109,12 +103,12 @@ def transition_matrices_of(potential: Potential, starts: np.ndarray, durations: 
     return np.array([matrix_product(part) for part in np.split(matrices, stops)])
 
 
-def monodromy_of_brake_orbit(potential: Potential, start: np.ndarray, period: float) -> np.ndarray:
+def monodromy_of_brake_orbit(potential: Potential, start: np.ndarray, half_period: float) -> np.ndarray:
     """Return the monodromy matrix, (4, 4), of an orbit that begins at rest in a frame at rest, in units of the well.
 
     The orbit is at rest again after half a period, and returns on the same path. Errors thus grow over half a period only.
     """
-    half = monodromy_matrix(potential, start, 0.5 * period)
+    half = monodromy_matrix(potential, start, half_period)
     (a, b), (c, d) = (np.hsplit(rows, 2) for rows in np.vsplit(half, 2))
     # The matrix of the way back: that of the symplectic inverse, with reversed momenta before and after.
     way_back = np.block([[d.T, b.T], [c.T, a.T]])

@@ -8,15 +8,17 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from engine.exits.lyapunov_orbit import LyapunovOrbit
 from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.validation import checked_count, checked_number, checks_types, short_repr
 from engine.foundations.wording import format_number
-from engine.periodic.closed_orbits import half_symmetry, sampled_path
+from engine.periodic.closed_orbits import half_symmetry
 from engine.periodic.families.family import NUMBERS, OrbitFamily, SpecialPoint
 from engine.periodic.families.following import Member, Segment, first_member, follow_family
 from engine.periodic.families.special_points import Located, find_special_points, numbers_of
 from engine.periodic.family_parameter import ENERGY, FamilyParameter, parameter_of_family
+from engine.periodic.orbit_over_saddle import returns_of_lyapunov_orbit
 from engine.periodic.periodic_orbit import PeriodicOrbit
 from engine.periodic.shooting import Trial, close_orbit
 from engine.systems.potential import Potential
@@ -40,9 +42,9 @@ _GROWTH = 1.1
 
 
 @shows_progress("family")
-@checks_types(orbit=PeriodicOrbit, along=str, execution=Execution)
+@checks_types(orbit=(PeriodicOrbit, LyapunovOrbit), along=str, execution=Execution)
 def continue_family(
-    orbit: PeriodicOrbit,
+    orbit: PeriodicOrbit | LyapunovOrbit,
     until: Any,
     *,
     along: str = ENERGY,
@@ -55,7 +57,7 @@ def continue_family(
     Parameters
     ----------
     orbit
-        The `PeriodicOrbit`.
+        The `PeriodicOrbit`, or a `LyapunovOrbit`, whose returns to the line through its saddle along the channel are followed.
     until
         An energy above or below that of the orbit, dimensionless: the family is followed in this direction, while its energy is
         between both. Or a pair (low, high): it is followed in both directions, while its energy is between these. Along a
@@ -77,6 +79,8 @@ def continue_family(
 
     Raises
     ------
+    NoPeriodicOrbitError
+        If a Lyapunov orbit is too unstable to be closed by its returns.
     ValueError
         If `until` is not finite, not legal or not beyond the value of the orbit, the system of the potential has no parameter
         `along`, or `most_members` is out of range.
@@ -97,6 +101,8 @@ def continue_family(
     >>> [(point.name, round(point.value, 9)) for point in family.special if point.kind != "resonance"]
     [('touching', 2.177884386), ('branching', 2.908398718)]
     """
+    if isinstance(orbit, LyapunovOrbit):
+        orbit = returns_of_lyapunov_orbit(orbit)
     value = _value_of(orbit, along)
     bounds = _checked_bounds(until, along, value)
     parameter = parameter_of_family(orbit.potential, orbit.section, along, bounds, orbit.energy)
@@ -255,7 +261,7 @@ def _is_closed(first: Trial, segment: Segment) -> bool:
 def _reason(parameter: FamilyParameter, member: Member) -> str:
     """Return why no further member is found after a member."""
     potential = parameter.at(member.orbit.value).potential
-    x, y = sampled_path(potential, member.orbit, _PATH_POINTS)[1:3]
+    x, y = member.orbit.nodes.sampled_path(potential, _PATH_POINTS)[1:3]
     if max(np.ptp(x), np.ptp(y)) < _SMALL_ORBIT:
         return "the orbits shrink to an equilibrium"
     if any(np.hypot(x - centre.x, y - centre.y).min() < 2.0 * centre.radius for centre in potential.centres):
@@ -267,7 +273,7 @@ def _reason(parameter: FamilyParameter, member: Member) -> str:
 
 def _slowness(potential: Potential, orbit: Trial) -> float:
     """Return the smallest sum of speed and force along an orbit, which is 0 at an equilibrium."""
-    x, y, vx, vy = sampled_path(potential, orbit, _PATH_POINTS)[1:]
+    x, y, vx, vy = orbit.nodes.sampled_path(potential, _PATH_POINTS)[1:]
     return float(np.hypot(np.hypot(vx, vy), np.hypot(*potential.gradient(x, y))).min())
 
 

@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from engine.exits.closed_orbit import Stability
 from engine.foundations.arrays import read_only
 from engine.foundations.validation import checked_count, checked_number
 from engine.foundations.wording import format_count, format_number
 from engine.periodic.families.special_points import SpecialKind
 from engine.periodic.families.switching import first_orbits_of_branches
 from engine.periodic.family_parameter import ENERGY, FamilyParameter, parameter_of_family
-from engine.periodic.periodic_orbit import DIGITS, STATE_COLUMNS, PeriodicOrbit, ResultOnSection, Stability
+from engine.periodic.periodic_orbit import DIGITS, STATE_COLUMNS, PeriodicOrbit, ResultOnSection
 from engine.periodic.shooting import Trial, close_orbit, with_parts
 from engine.slices.sections.section_text import section_of_file
 from engine.systems.formulas.formula_parser import read_potential

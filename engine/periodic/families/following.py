@@ -12,7 +12,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from engine.periodic.closed_orbits import stability_index
 from engine.periodic.family_parameter import FamilyParameter
 from engine.periodic.shooting import Equations, Trial, close_orbit, crosses_section, divided, linearise
 
@@ -38,7 +37,7 @@ class Member(NamedTuple):
         """Return a closed orbit as a member. Its direction is on the side of a previous direction."""
         null_vector = np.linalg.svd(equations.jacobian)[2][-1]
         direction = null_vector if null_vector @ previous >= 0.0 else -null_vector
-        return cls(orbit, stability_index(parameter.at(orbit.value).potential, orbit), direction)
+        return cls(orbit, orbit.nodes.stability_index(parameter.at(orbit.value).potential), direction)
 
 
 def first_member(parameter: FamilyParameter, orbit: Trial, *, rising: bool) -> Member | None:

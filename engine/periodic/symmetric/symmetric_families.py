@@ -6,10 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from engine.exits.closed_orbit import Stability
 from engine.foundations.wording import format_count, format_number
 from engine.maps.spec import MapSpec
 from engine.periodic.nearest_orbit import find_periodic_orbit
-from engine.periodic.periodic_orbit import DIGITS, PeriodicOrbit, Stability
+from engine.periodic.periodic_orbit import DIGITS, PeriodicOrbit
 from engine.periodic.periodic_orbits import PointsOfOrbits
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from engine import CASES, Potential, find_lyapunov_orbits, parse_formula
+from engine import CASES, Potential, Stability, find_lyapunov_orbits, parse_formula
 from engine.exits.exit_rows import exit_curves
 from engine.integrator.kernels.exit_geometry import REACH, exit_distance
 from engine.systems.known_potentials import POTENTIALS
@@ -20,6 +20,7 @@ ENERGIES = [
 ESCAPE_ENERGY = {"I": 1 / 8, "II": 1 / 6, "III": 1 / 4}
 # ω_q² is the positive eigenvalue of the saddle's Hessian: the frequency of oscillations across the channel.
 OMEGA = {"I": np.sqrt(2), "II": np.sqrt(3), "III": np.sqrt(2)}
+SYSTEMS = {**CASES, **POTENTIALS}
 each_energy = pytest.mark.parametrize(("name", "energy"), ENERGIES)
 each_case = pytest.mark.parametrize("name", CASES)
 
@@ -42,6 +43,31 @@ def test_period_converges_to_that_of_the_linearized_saddle(name: str) -> None:
     for above, tolerance in ((1e-3, 1e-2), (1e-5, 1e-4), (1e-7, 1e-6)):
         periods = [o.period for o in find_lyapunov_orbits(CASES[name], ESCAPE_ENERGY[name] + above)]
         np.testing.assert_allclose(periods, 2 * np.pi / OMEGA[name], atol=tolerance)
+
+
+@pytest.mark.parametrize(("name", "energy"), [("I", 0.2), ("II", 0.3), ("III", 0.5), ("Hill", -2.0)])
+def test_the_slope_of_the_action_is_the_period(name: str, energy: float) -> None:
+    step = 1e-4
+    below, orbit, above = (find_lyapunov_orbits(SYSTEMS[name], energy + change)[0] for change in (-step, 0.0, step))
+    assert (above.action - below.action) / (2.0 * step) == pytest.approx(orbit.period, rel=1e-6)
+
+
+@pytest.mark.parametrize(("name", "energy"), [("II", 0.3), ("Hill", -2.0)])
+def test_the_path_with_its_momenta_is_a_solution_that_closes(name: str, energy: float) -> None:
+    orbit = find_lyapunov_orbits(SYSTEMS[name], energy)[0]
+    path = orbit.find_path(4000)
+    assert path[0, -1] == pytest.approx(orbit.period)
+    np.testing.assert_allclose(path[1:, -1], path[1:, 0], rtol=0, atol=1e-9)
+    np.testing.assert_allclose(SYSTEMS[name].energy(path[1:].T), energy, rtol=0, atol=1e-10)
+    speeds = (path[1:3, 2:] - path[1:3, :-2]) / (path[0, 2:] - path[0, :-2])
+    np.testing.assert_allclose(speeds, path[3:, 1:-1], rtol=0, atol=1e-4)
+
+
+def test_an_orbit_over_a_saddle_is_unstable() -> None:
+    orbit = find_lyapunov_orbits(CASES["I"], 0.19)[0]
+    assert orbit.stability is Stability.UNSTABLE
+    assert orbit.residue == pytest.approx(0.5 - 0.25 * np.sum(orbit.multipliers).real)
+    assert np.isnan(orbit.rotation_number)
 
 
 @each_case

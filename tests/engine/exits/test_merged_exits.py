@@ -65,7 +65,7 @@ def test_orbits_that_have_crossed_do_not_come_back() -> None:
     potential = SYMMETRIC
     energy = above(potential)
     orbit = next(orbit for orbit in find_lyapunov_orbits(potential, energy) if orbit.others)
-    assert abs(orbit.find_multipliers()[0]) > 10.0
+    assert abs(orbit.multipliers[0]) > 10.0
     exits, no_gates = orbit.curve[None], np.array([[0.0, 0.0, -1.0]])
     random = np.random.default_rng(3)
     farthest = 3.0 * np.hypot(*potential.saddles.T).max()

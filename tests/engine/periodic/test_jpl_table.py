@@ -55,8 +55,7 @@ def write(folder: Path, *lines: str) -> Path:
 def lyapunov_orbit(name: str, constant: float) -> PeriodicOrbit:
     """Return the orbit around a Lagrange point at a Jacobi constant below 3.16."""
     (exit_orbit,) = (each for each in find_lyapunov_orbits(MOON, MOON.jacobi_energy(3.16)) if each.name == name)
-    first = find_periodic_orbit(MOON, exit_orbit.start, returns=1)
-    family = continue_family(first, MOON.jacobi_energy(constant))
+    family = continue_family(exit_orbit, MOON.jacobi_energy(constant))
     return family[len(family) - 1]
 
 
@@ -65,7 +64,7 @@ def test_an_orbit_of_the_catalogue_closes_after_its_period(potential: Potential,
     (start,) = read_jpl_table(potential, write(tmp_path, HEADER, DISTANT))
     orbit = find_periodic_orbit(potential, start, returns=1)
     assert orbit.period == pytest.approx(3.2014543457713667, rel=1e-11)
-    np.testing.assert_allclose(orbit.state, start, atol=1e-11)
+    np.testing.assert_allclose(orbit.start, start, atol=1e-11)
 
 
 @pytest.mark.parametrize(("name", "constant", "period", "stability"), LYAPUNOV)
@@ -93,6 +92,15 @@ def test_a_family_has_a_row_for_each_member_that_is_read_exactly(tmp_path: Path)
     starts = read_jpl_table(MOON, tmp_path / "family.csv")
     np.testing.assert_allclose(starts, family.states[:, 0], rtol=0.0, atol=1e-15)
     assert pd.read_csv(tmp_path / "family.csv")["stability"].tolist() == [1.0] * len(family)
+
+
+def test_lyapunov_orbits_of_exits_are_read_as_they_were_written(tmp_path: Path) -> None:
+    orbits = find_lyapunov_orbits(MOON, MOON.jacobi_energy(3.16))
+    write_jpl_table(orbits, tmp_path / "exits.csv")
+    starts = read_jpl_table(MOON, tmp_path / "exits.csv")
+    np.testing.assert_allclose(starts, [orbit.start for orbit in orbits], rtol=0.0, atol=1e-15)
+    table = pd.read_csv(tmp_path / "exits.csv")
+    assert table["stability"].tolist() == pytest.approx([orbit.stability_index for orbit in orbits])
 
 
 @pytest.mark.parametrize(

@@ -76,7 +76,7 @@ def test_a_lyapunov_orbit_is_found_as_a_periodic_orbit() -> None:
     # Half a quarter of the period later, at which the section is crossed.
     orbit = find_periodic_orbit(CASES["II"], [*path[0], 0.0, 0.0], 1, section=section_through_middle(lyapunov))
     assert orbit.period == pytest.approx(lyapunov.period, abs=1e-10)
-    multiplier = abs(lyapunov.find_multipliers()[0])
+    multiplier = abs(lyapunov.multipliers[0])
     assert abs(orbit.multipliers[0]) == pytest.approx(multiplier, rel=1e-7)
 
 
@@ -110,11 +110,11 @@ SYSTEMS = {
 def test_another_integrator_finds_the_orbit_closed_and_the_same_stability(name: str) -> None:
     potential, start = SYSTEMS[name]
     orbit = find_periodic_orbit(potential, start)
-    begin = np.concatenate([orbit.state, np.eye(4).ravel()])
+    begin = np.concatenate([orbit.start, np.eye(4).ravel()])
     end = solve_ivp(
         lambda t, values: derivatives(potential, t, values), (0.0, orbit.period), begin, "DOP853", rtol=1e-13, atol=1e-13
     ).y[:, -1]
-    np.testing.assert_allclose(end[:4], orbit.state, atol=1e-9)
+    np.testing.assert_allclose(end[:4], orbit.start, atol=1e-9)
     index = 0.5 * (np.trace(end[4:].reshape(4, 4)) - 2.0)
     assert orbit.stability_index == pytest.approx(index, rel=1e-8, abs=1e-8)
 
@@ -179,7 +179,7 @@ def test_a_message_says_why_no_orbit_is_found() -> None:
 def test_an_orbit_may_start_so_near_to_a_body_that_a_step_takes_less_than_a_thousandth() -> None:
     start = (0.5022683168764797, 0.0, 0.0, 20.975474325478434)
     orbit = find_periodic_orbit(POTENTIALS["Copenhagen"], start, 1, t_max=20.0)
-    np.testing.assert_allclose(orbit.state, start, rtol=1e-8, atol=1e-12)
+    np.testing.assert_allclose(orbit.start, start, rtol=1e-8, atol=1e-12)
     assert orbit.period == pytest.approx(7.640735009, abs=1e-8)
 
 

@@ -73,8 +73,8 @@ def test_family_g_of_hills_problem_loses_its_stability_where_henon_found_it() ->
 
 def test_members_are_closed_orbits_of_their_energy(straight_in_hh: OrbitFamily) -> None:
     for member in list(straight_in_hh)[::7]:
-        assert HH.energy(member.state) == pytest.approx(member.energy, abs=1e-11)
-        again = find_periodic_orbit(HH, member.state, 1)
+        assert HH.energy(member.start) == pytest.approx(member.energy, abs=1e-11)
+        again = find_periodic_orbit(HH, member.start, 1)
         assert again.period == pytest.approx(member.period, abs=1e-9)
 
 
@@ -96,7 +96,7 @@ def test_a_family_is_followed_through_its_fold() -> None:
     assert len(family.at(0.58)) >= 2
     for member in family.at(0.58):
         assert member.energy == pytest.approx(0.58, abs=1e-12)
-        assert III.energy(member.state) == pytest.approx(0.58, abs=1e-11)
+        assert III.energy(member.start) == pytest.approx(0.58, abs=1e-11)
 
 
 def test_a_doubled_orbit_has_twice_the_returns_and_period(straight_in_hh: OrbitFamily) -> None:
@@ -137,7 +137,7 @@ def test_bifurcations_of_case_i_accumulate_at_its_escape_energy_and_their_famili
 def test_at_finds_the_orbits_between_members_of_an_unstable_family() -> None:
     moon = POTENTIALS["Earth-Moon"]
     (exit_orbit,) = (orbit for orbit in find_lyapunov_orbits(moon, moon.jacobi_energy(3.16)) if orbit.name == "L1")
-    family = continue_family(find_periodic_orbit(moon, exit_orbit.start, 1), moon.jacobi_energy(2.91))
+    family = continue_family(exit_orbit, moon.jacobi_energy(2.91))
     middles = 0.5 * (family.energy[1:] + family.energy[:-1])[::12]
     periods = [[orbit.period for orbit in family.at(float(h))] for h in middles]
     assert [len(found) for found in periods] == [1] * len(middles)
