@@ -86,6 +86,17 @@ class Trial(NamedTuple):
         """(4 nodes + n + 1,) all unknowns."""
         return np.concatenate([self.states.ravel(), self.durations, [self.value]])
 
+    @property
+    def is_of_returns(self) -> np.ndarray:
+        """(4 nodes + n + 1,) whether an unknown is not that of a node between two returns."""
+        is_return = np.isin(np.arange(len(self.states)), self.returns)
+        return np.concatenate([np.repeat(is_return, 4), np.ones(len(self.durations) + 1, bool)])
+
+    @property
+    def numbers(self) -> np.ndarray:
+        """(5 n + 1,) the unknowns without those of nodes between two returns."""
+        return self.vector[self.is_of_returns]
+
     def moved(self, vector: np.ndarray) -> Trial:
         """Return the trial orbit with other unknowns."""
         size = self.states.size

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from functools import partial
-from typing import Any, NamedTuple
+import itertools
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from types import NoneType
+from typing import Any
 
 import numpy as np
 
@@ -13,41 +15,26 @@ from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.validation import checked_count, checked_number, checks_types, short_repr
 from engine.foundations.wording import format_number
-from engine.periodic.closed_orbits import half_symmetry
-from engine.periodic.families.family import NUMBERS, OrbitFamily, SpecialPoint
-from engine.periodic.families.following import Member, Segment, first_member, follow_family
-from engine.periodic.families.special_points import Located, find_special_points, numbers_of
-from engine.periodic.family_parameter import ENERGY, FamilyParameter, parameter_of_family
+from engine.periodic.families.branch import Branch, Entry
+from engine.periodic.families.family import COLUMNS, OrbitFamily, SpecialPoint
+from engine.periodic.family_parameter import ENERGY, parameter_of_family
 from engine.periodic.orbit_over_saddle import returns_of_lyapunov_orbit
 from engine.periodic.periodic_orbit import PeriodicOrbit
-from engine.periodic.shooting import Trial, close_orbit
-from engine.systems.potential import Potential
 
 MOST_MEMBERS = 10_000
 """Largest number of members of a family."""
 
-# Largest distance of neighbouring members in the space of states, times and the parameter.
-_LONGEST_STEP = 0.05
-# Sizes of the path of an orbit near an equilibrium, and speed and force near a saddle, in units of the well.
-_SMALL_ORBIT, _SLOW = 0.02, 0.02
-# Change of the parameter between members that no longer counts, and speed and force of orbits so near an equilibrium.
-_SMALLEST_CHANGE, _SLOWEST = 1e-9, 1e-3
-# Points of the path on which the end of a family is judged.
-_PATH_POINTS = 2000
-_HOMOCLINIC = "the period grows without limit, because the orbits tend to an equilibrium"
-# Members after which a family can close.
-_FEWEST_MEMBERS = 10
 # Growth of a family from one frame to the next. Each frame has all members.
 _GROWTH = 1.1
 
 
 @shows_progress("family")
-@checks_types(orbit=(PeriodicOrbit, LyapunovOrbit), along=str, execution=Execution)
+@checks_types(orbit=(PeriodicOrbit, LyapunovOrbit, OrbitFamily), along=(str, NoneType), execution=Execution)
 def continue_family(
-    orbit: PeriodicOrbit | LyapunovOrbit,
+    orbit: PeriodicOrbit | LyapunovOrbit | OrbitFamily,
     until: Any,
     *,
-    along: str = ENERGY,
+    along: str | None = None,
     most_members: int = 1000,
     execution: Execution = DEFAULT_EXECUTION,
     on_frame: Callable[[OrbitFamily], None] | None = None,
@@ -57,15 +44,18 @@ def continue_family(
     Parameters
     ----------
     orbit
-        The `PeriodicOrbit`, or a `LyapunovOrbit`, whose returns to the line through its saddle along the channel are followed.
+        The `PeriodicOrbit`; or a `LyapunovOrbit`, whose returns to the line through its saddle along the channel are followed; or
+        an `OrbitFamily`, for instance a cancelled one, which goes on from its ends.
     until
         An energy above or below that of the orbit, dimensionless: the family is followed in this direction, while its energy is
         between both. Or a pair (low, high): it is followed in both directions, while its energy is between these. Along a
-        parameter of the system, values of this parameter.
+        parameter of the system, values of this parameter. A family goes on from its last member if `until` is above this member,
+        from its first one if `until` is below it, and from both for a pair around all its values.
     along
-        What changes along the family: the energy, "h", or the name of a parameter of the system, at the energy of the orbit.
+        What changes along the family: the energy, "h", or the name of a parameter of the system, at the energy of the orbit. None
+        for the energy, or for that along which a given family was continued.
     most_members
-        Largest number of members in each direction, 2 to 10 000, without special points.
+        Largest number of members found in each direction, 2 to 10 000, without special points.
     execution
         How the computation runs. When it is cancelled, the family ends at the last member found.
     on_frame
@@ -75,15 +65,16 @@ def continue_family(
     -------
     The `OrbitFamily`, from the side of lower energies, or values of the parameter, to that of higher ones, through folds. Each
     member closes to 1e-10 in units of the well, and special points are located to about 1e-12 in energy. The returns of `orbit`
-    are followed; if further crossings of the section appear along the family, they are not counted.
+    are followed; if further crossings of the section appear along the family, they are not counted. A family that goes on is
+    returned as a whole.
 
     Raises
     ------
     NoPeriodicOrbitError
         If a Lyapunov orbit is too unstable to be closed by its returns.
     ValueError
-        If `until` is not finite, not legal or not beyond the value of the orbit, the system of the potential has no parameter
-        `along`, or `most_members` is out of range.
+        If `until` is not finite, not legal or not beyond the values of the orbit or of the family, the system of the potential
+        has no parameter `along`, a given family was continued along another one, or `most_members` is out of range.
 
     Notes
     -----
@@ -94,33 +85,43 @@ def continue_family(
     --------
     >>> from escape_explorer import CASES, continue_family, find_periodic_orbit
     >>> orbit = find_periodic_orbit(CASES["III"], [0.0, 0.0, 0.0, 0.4**0.5], returns=1)
-    >>> family = continue_family(orbit, until=0.6)
+    >>> family = continue_family(orbit, until=0.5)
+    >>> family = continue_family(family, until=0.6)
     >>> [(point.name, round(point.energy, 9)) for point in family.special if point.kind != "resonance"]
     [('touching', 0.435576877), ('branching', 0.581679744)]
     >>> family = continue_family(orbit, until=3.0, along="epsilon")
     >>> [(point.name, round(point.value, 9)) for point in family.special if point.kind != "resonance"]
     [('touching', 2.177884386), ('branching', 2.908398718)]
     """
+    family = _family_of(orbit, along)
+    bounds, sides = _checked_bounds(until, family)
+    parameter = parameter_of_family(family.potential, family.section, family.along, bounds, float(family.energy[0]))
+    most_members = checked_count("most_members", most_members, 2, MOST_MEMBERS)
+    branches = {rising: Branch(parameter, family, bounds, most_members, rising=rising) for rising in sides}
+    shown = 0
+    for number, branch in enumerate(branches.values()):
+        for _ in branch.grow(execution.part(number, len(branches))):
+            members = len(family) + sum(len(each.entries) - 1 for each in branches.values())
+            if on_frame is not None and members >= _GROWTH * shown:
+                on_frame(_joined(family, branches, complete=False))
+                shown = members
+    return _joined(family, branches, complete=not execution.is_cancelled)
+
+
+def _family_of(orbit: PeriodicOrbit | LyapunovOrbit | OrbitFamily, along: str | None) -> OrbitFamily:
+    """Return a family, or the family with an orbit as its only member; ValueError if it cannot be continued along a parameter."""
+    if isinstance(orbit, OrbitFamily):
+        if along not in (None, orbit.along):
+            raise ValueError(f"along={short_repr(along)}: the family was continued along {orbit.along}")
+        return orbit
     if isinstance(orbit, LyapunovOrbit):
         orbit = returns_of_lyapunov_orbit(orbit)
-    value = _value_of(orbit, along)
-    bounds = _checked_bounds(until, along, value)
-    parameter = parameter_of_family(orbit.potential, orbit.section, along, bounds, orbit.energy)
-    most_members = checked_count("most_members", most_members, 2, MOST_MEMBERS)
-    start = _Entry(orbit, value, [])
-    branches = [
-        _Branch(parameter, start, bounds, most_members, rising=rising)
-        for rising, bound in zip((False, True), bounds, strict=True)
-        if bound != value
-    ]
-    shown = 0
-    for number, branch in enumerate(branches):
-        for _ in branch.grow(execution.part(number, len(branches))):
-            members = sum(len(each.entries) for each in branches)
-            if on_frame is not None and members >= _GROWTH * shown:
-                on_frame(_joined(start, branches, along, complete=False))
-                shown = members
-    return _joined(start, branches, along, complete=not execution.is_cancelled)
+    along = ENERGY if along is None else along
+    columns: dict[str, Any] = {
+        name: read_only(np.array(rows)) for name, rows in _rows([Entry(orbit, _value_of(orbit, along), [])]).items()
+    }
+    ends = ("it was continued from this orbit",) * 2
+    return OrbitFamily(**columns, ends=ends, along=along, section=orbit.section, potential=orbit.potential)
 
 
 def _value_of(orbit: PeriodicOrbit, along: str) -> float:
@@ -135,169 +136,53 @@ def _value_of(orbit: PeriodicOrbit, along: str) -> float:
     return system.value_of(along)
 
 
-def _checked_bounds(until: Any, along: str, value: float) -> tuple[float, float]:
-    """Return the lowest and the highest value of a family; one of them is that of the orbit if `until` is one value."""
+def _checked_bounds(until: Any, family: OrbitFamily) -> tuple[tuple[float, float], list[bool]]:
+    """Return the lowest and the highest value of a family that goes on, and on which sides it does: False below, True above."""
     given = np.asarray(until, dtype=object).ravel()
     if given.size not in (1, 2):
-        raise ValueError(f"until={until!r}: must be a value of {along} or a pair of values")
+        raise ValueError(f"until={until!r}: must be a value of {family.along} or a pair of values")
     bounds = [checked_number("until", bound) for bound in given]
-    low, high = sorted([bounds[0], value]) if len(bounds) == 1 else bounds
-    if not (low <= value <= high and low < high):
-        own = format_number(value, 8)
+    low, high = min(bounds[0], family.value.min()), max(bounds[-1], family.value.max())
+    goes_on = (bounds[0] < family.value[0], bounds[0] > family.value[-1])
+    if len(bounds) == 2:
+        goes_on = (bounds == [low, high] and low < high,) * 2
+    if not any(goes_on):
+        first, last = (format_number(float(family.value[k]), 8) for k in (0, -1))
         raise ValueError(
-            f"until={until!r}: must be another value of {along} than that of the orbit, {own}, or (low, high) around it"
+            f"until={until!r}: must be a value of {family.along} below {first} or above {last}, or (low, high) around all values"
         )
-    return low, high
+    return (float(low), float(high)), [side for side in (False, True) if goes_on[side]]
 
 
-class _Entry(NamedTuple):
-    """A member of a family, the value of its parameter, and the special points that are located at it, or after it."""
+def _joined(family: OrbitFamily, branches: Mapping[bool, Branch], *, complete: bool) -> OrbitFamily:
+    """Return a family with the branches below and above its ends, by whether they are above."""
+    below, above = (branches[side].entries if side in branches else [] for side in (False, True))
+    # The first entry of a branch is the end of the family.
+    before, after = below[:0:-1], above[1:]
+    earlier, later = _rows(before), _rows(after)
+    columns: dict[str, Any] = {
+        name: read_only(np.array([*earlier[name], *getattr(family, name), *later[name]])) for name in earlier
+    }
+    special = [
+        *_special_points(below, len(before), -1),
+        *(replace(point, member=point.member + len(before)) for point in family.special),
+        *_special_points(above, len(before) + len(family) - 1, 1),
+    ]
+    ends = (branches[side].end if side in branches else family.ends[side] for side in (False, True))
+    special.sort(key=lambda point: point.member)
+    return replace(family, **columns, special=tuple(special), ends=tuple(ends), complete=complete)
 
-    orbit: PeriodicOrbit
-    value: float
-    special: list[Located]
+
+def _rows(entries: Sequence[Entry]) -> dict[str, list[Any]]:
+    """Return the values of each column of a family at some members."""
+    columns = {name: [getattr(entry.orbit, name) for entry in entries] for name in COLUMNS}
+    return {"value": [entry.value for entry in entries], **columns}
 
 
-class _Branch:
-    """The members of a family on one side of an orbit, found in units of the well and of the parameter."""
-
-    def __init__(
-        self, parameter: FamilyParameter, start: _Entry, bounds: tuple[float, float], most_members: int, *, rising: bool
-    ) -> None:
-        self._parameter, self._most = parameter, most_members
-        self._bounds = bounds[0] / parameter.unit, bounds[1] / parameter.unit
-        self.rising, self.entries = rising, [start._replace(special=[])]
-        self.end = "the search has not ended"
-
-    def grow(self, execution: Execution) -> Iterator[None]:
-        """Find the members one after the other, and yield after each."""
-        parameter = self._parameter
-        trial = self.entries[0].orbit.trial._replace(value=self.entries[0].value / parameter.unit)
-        symmetry = half_symmetry(parameter.at(trial.value).potential, trial, parameter.symmetries_at(trial.value))
-        first = first_member(parameter, trial, rising=self.rising)
-        if first is None:
-            self.end = "the orbit cannot be integrated"
-            return
-        numbers, last = numbers_of(parameter, symmetry, first), first
-        for count, whole in enumerate(follow_family(parameter, first, _LONGEST_STEP), 2):
-            segment, is_last = self._limited(whole)
-            last = segment.after
-            before, numbers = numbers, numbers_of(parameter, symmetry, last)
-            ends = before._replace(slope=float(segment.before.direction[-1])), numbers
-            self._add(find_special_points(parameter, segment, symmetry, ends), last)
-            execution.report(partial(self._share, count))
-            yield
-            if is_last or self._has_ended(first, segment, count, execution):
-                return
-        self.end = _reason(parameter, last)
-
-    def _add(self, special: list[Located], member: Member) -> None:
-        """Add the special points of a segment, and its last member."""
+def _special_points(entries: Sequence[Entry], first: int, step: int) -> Iterator[SpecialPoint]:
+    """Yield the special points of entries, with the number of the first member and the step to the next one."""
+    for member, (orbit, value, special) in zip(itertools.count(first, step), entries):
         for located in special:
-            if located.converged:
-                self.entries.append(self._restored(located.member)._replace(special=[located]))
-            else:
-                self.entries[-1].special.append(located)
-        self.entries.append(self._restored(member))
-
-    def _restored(self, member: Member) -> _Entry:
-        """Return a member in the units of the potential and of the parameter."""
-        parameter, value = self._parameter, member.orbit.value
-        orbit = member.orbit._replace(value=parameter.energy_at(value))
-        restored = PeriodicOrbit.from_trial(parameter.potential_at(value), parameter.section, orbit, member.stability_index)
-        return _Entry(restored, value * parameter.unit, [])
-
-    def _share(self, count: int) -> float:
-        """Return the share of the range that is done, or of the members, whichever is larger."""
-        first, last = (self.entries[k].value / self._parameter.unit for k in (0, -1))
-        return min(max((last - first) / (self._bounds[self.rising] - first), count / self._most, 0.0), 1.0)
-
-    def _limited(self, segment: Segment) -> tuple[Segment, bool]:
-        """Return a segment within the range of the parameter, and whether it is the last one."""
-        (begin, end), noun = segment, self._parameter.noun
-        if self._bounds[0] < end.orbit.value < self._bounds[1]:
-            return segment, False
-        bound = float(np.clip(end.orbit.value, *self._bounds))
-        is_asked_for = bound != self._bounds[not self.rising]
-        self.end = f"the {noun} asked for is reached" if is_asked_for else f"it turns back to the lowest or highest {noun}"
-        if bound == end.orbit.value:
-            return segment, True
-        share = (bound - begin.orbit.value) / (end.orbit.value - begin.orbit.value)
-        guess = begin.orbit.moved(begin.orbit.vector + share * (end.orbit.vector - begin.orbit.vector))
-        closed = close_orbit(self._parameter, guess._replace(value=bound))
-        if closed is None:
-            self.end = f"its member at the last {noun} is not found"
-            return segment, True
-        return Segment(begin, Member.of(self._parameter, *closed, end.direction)), True
-
-    def _has_ended(self, first: Member, segment: Segment, count: int, execution: Execution) -> bool:
-        """Return whether no further member is wanted, and keep the reason."""
-        if execution.is_cancelled:
-            self.end = "the search was cancelled"
-        elif count == self._most:
-            self.end = "the largest number of members is reached"
-        elif self._has_stopped(segment):
-            self.end = _reason(self._parameter, segment.after)
-        elif count > _FEWEST_MEMBERS and _is_closed(first.orbit, segment):
-            self.end = "it is closed and returns to its first member"
-        else:
-            return False
-        return True
-
-    def _has_stopped(self, segment: Segment) -> bool:
-        """Return whether the parameter hardly changes any more, because the orbits tend to an equilibrium."""
-        change, orbit = abs(segment.after.orbit.value - segment.before.orbit.value), segment.after.orbit
-        return change < _SMALLEST_CHANGE and _slowness(self._parameter.at(orbit.value).potential, orbit) < _SLOWEST
-
-
-def _is_closed(first: Trial, segment: Segment) -> bool:
-    """Return whether a segment ends nearer to an orbit than its length."""
-    begin, end = segment.before.orbit, segment.after.orbit
-    length = float(np.linalg.norm(end.vector - begin.vector))
-    steps = end.states[end.returns] - first.states[first.returns], end.durations - first.durations, end.value - first.value
-    return all(bool(np.abs(step).max() < length) for step in steps)
-
-
-def _reason(parameter: FamilyParameter, member: Member) -> str:
-    """Return why no further member is found after a member."""
-    potential = parameter.at(member.orbit.value).potential
-    x, y = member.orbit.nodes.sampled_path(potential, _PATH_POINTS)[1:3]
-    if max(np.ptp(x), np.ptp(y)) < _SMALL_ORBIT:
-        return "the orbits shrink to an equilibrium"
-    if any(np.hypot(x - centre.x, y - centre.y).min() < 2.0 * centre.radius for centre in potential.centres):
-        return "the orbits collide with a body"
-    if _slowness(potential, member.orbit) < _SLOW:
-        return _HOMOCLINIC
-    return "no further member is found: the returns to the section change, or the orbits are too unstable"
-
-
-def _slowness(potential: Potential, orbit: Trial) -> float:
-    """Return the smallest sum of speed and force along an orbit, which is 0 at an equilibrium."""
-    x, y, vx, vy = orbit.nodes.sampled_path(potential, _PATH_POINTS)[1:]
-    return float(np.hypot(np.hypot(vx, vy), np.hypot(*potential.gradient(x, y))).min())
-
-
-def _joined(start: _Entry, branches: list[_Branch], along: str, *, complete: bool) -> OrbitFamily:
-    """Return the family of branches on one or both sides of an orbit, from its lower to its higher end."""
-    entries = [start._replace(special=[located for branch in branches for located in branch.entries[0].special])]
-    ends = ["it was continued from this orbit"] * 2
-    for branch in branches:
-        ends[branch.rising] = branch.end
-        # The first entry of a branch is the orbit itself.
-        entries = [*entries, *branch.entries[1:]] if branch.rising else [*branch.entries[:0:-1], *entries]
-    special = [_special_point(k, entry, located) for k, entry in enumerate(entries) for located in entry.special]
-    columns = (np.array([getattr(entry.orbit, name) for entry in entries]) for name in NUMBERS)
-    energy, period, stability_index, action = map(read_only, columns)
-    states, time = (read_only(np.array([getattr(entry.orbit, name) for entry in entries])) for name in ("states", "time"))
-    value = read_only(np.array([entry.value for entry in entries]))
-    return OrbitFamily(
-        value, energy, period, stability_index, action, states, time, tuple(special), (ends[0], ends[1]), complete, along,
-        section=start.orbit.section, potential=start.orbit.potential,
-    )  # fmt: skip
-
-
-def _special_point(member: int, entry: _Entry, located: Located) -> SpecialPoint:
-    orbit = entry.orbit
-    return SpecialPoint(
-        located.kind, member, entry.value, orbit.energy, orbit.period, *located.resonance, converged=located.converged
-    )
+            yield SpecialPoint(
+                located.kind, member, value, orbit.energy, orbit.period, *located.resonance, converged=located.converged
+            )

@@ -31,6 +31,9 @@ if TYPE_CHECKING:
 NUMBERS = ("energy", "period", "stability_index", "action")
 """Attributes that are numbers of each member."""
 
+COLUMNS = (*NUMBERS, "states", "time")
+"""Attributes that have the values of an attribute of each member."""
+
 # Periods of the family after which the orbits of a branch close; a resonance m : n has its own number n.
 _PERIODS_OF_BRANCHES = {SpecialKind.BRANCHING: 1, SpecialKind.DOUBLING: 2, SpecialKind.TOUCHING: 2}
 # Kinds of points at which all orbits near the orbit close, to first order in their distance.
@@ -118,6 +121,7 @@ class OrbitFamily(ResultOnSection):
     along: str = ENERGY
     row_dimension: ClassVar = "member"
     held_as: ClassVar = ResultOnSection.held_as | {"states": "x", "time": "time"}
+    inner_names: ClassVar = ResultOnSection.inner_names | {"trial"}
 
     def __len__(self) -> int:
         return len(self.energy)
@@ -233,12 +237,15 @@ class OrbitFamily(ResultOnSection):
         bounds = float(self.value.min()), float(self.value.max())
         return parameter_of_family(self.potential, self.section, self.along, bounds, float(self.energy[0]))
 
-    def _trial(self, member: int) -> Trial:
-        """Return a member in the units of the well of the family and of its parameter."""
+    def trial(self, member: int, parameter: FamilyParameter) -> Trial:
+        """Return a member in the units of the well of the family and of a parameter."""
         orbit = self[member]
         if orbit.potential is not self.potential:
             orbit = replace(orbit, potential=with_well_of(orbit.potential, self.potential))
-        return orbit.trial._replace(value=float(self.value[member]) / self._parameter.unit)
+        return orbit.trial._replace(value=float(self.value[member]) / parameter.unit)
+
+    def _trial(self, member: int) -> Trial:
+        return self.trial(member, self._parameter)
 
     def _restored(self, orbit: Trial) -> PeriodicOrbit:
         """Return an orbit in the units of the well of the family and of its parameter as one of its own potential."""

@@ -40,17 +40,17 @@ class Member(NamedTuple):
         return cls(orbit, orbit.nodes.stability_index(parameter.at(orbit.value).potential), direction)
 
 
-def first_member(parameter: FamilyParameter, orbit: Trial, *, rising: bool) -> Member | None:
-    """Return the first member of a family, from a closed orbit, in the direction of higher or lower values of the parameter.
+def first_member(parameter: FamilyParameter, orbit: Trial, towards: np.ndarray) -> Member | None:
+    """Return the first member of a family, from a closed orbit, in a direction; None if the orbit cannot be integrated.
 
-    None if the orbit cannot be integrated.
+    The direction has the numbers of the returns, see `Trial.numbers`.
     """
     equations = linearise(parameter, orbit)
     if equations is None:
         return None
-    upward = np.zeros(orbit.vector.size)
-    upward[-1] = 1.0 if rising else -1.0
-    return Member.of(parameter, orbit, equations, upward)
+    previous = np.zeros(orbit.vector.size)
+    previous[orbit.is_of_returns] = towards
+    return Member.of(parameter, orbit, equations, previous)
 
 
 class Segment(NamedTuple):

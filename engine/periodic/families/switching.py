@@ -43,7 +43,7 @@ def first_orbits_of_branches(
         The distance, in units of the well.
     """
     trial = orbit.repeated(periods)
-    secant = _numbers(neighbours[1].repeated(periods)) - _numbers(neighbours[0].repeated(periods))
+    secant = neighbours[1].repeated(periods).numbers - neighbours[0].repeated(periods).numbers
     found: list[Trial] = []
     across = _null_vectors_across(parameter, trial, secant, dimensions)
     for direction in _directions(across, periods):
@@ -91,11 +91,6 @@ def _is_same(orbit: Trial, other: Trial, distance: float) -> bool:
     return any(bool(np.abs(states - np.roll(others, k, axis=0)).max() < distance) for k in range(len(states)))
 
 
-def _numbers(orbit: Trial) -> np.ndarray:
-    """Return the unknowns of an orbit without those of nodes between its returns."""
-    return np.concatenate([orbit.states[orbit.returns].ravel(), orbit.durations, [orbit.value]])
-
-
 def _null_vectors_across(parameter: FamilyParameter, trial: Trial, secant: np.ndarray, dimensions: int) -> np.ndarray:
     """Return null vectors of the equations that are orthogonal to each other and to the family; none without equations."""
     equations = linearise(parameter, trial)
@@ -103,9 +98,7 @@ def _null_vectors_across(parameter: FamilyParameter, trial: Trial, secant: np.nd
         return np.empty((0, trial.vector.size))
     null_vectors = np.linalg.svd(equations.jacobian)[2][-1 - dimensions :]
     # The secant has no numbers for nodes between returns.
-    is_return = np.isin(np.arange(len(trial.states)), trial.returns)
-    is_in_secant = np.concatenate([np.repeat(is_return, 4), np.ones(len(trial.durations) + 1, bool)])
-    shares = np.linalg.lstsq(null_vectors[:, is_in_secant].T, secant, rcond=None)[0]
+    shares = np.linalg.lstsq(null_vectors[:, trial.is_of_returns].T, secant, rcond=None)[0]
     across: np.ndarray = np.linalg.svd(shares[None])[2][1:] @ null_vectors
     return across
 

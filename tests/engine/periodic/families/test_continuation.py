@@ -219,7 +219,7 @@ def test_a_stable_and_an_unstable_orbit_are_born_at_a_resonance(straight_in_hh: 
     assert max(excess) == pytest.approx(-min(excess), rel=0.2)
     for orbit in branches:
         assert orbit.period == pytest.approx(returns * point.period, rel=0.01)
-        assert find_periodic_orbit(HH, orbit.state, returns).period == pytest.approx(orbit.period, rel=1e-9)
+        assert find_periodic_orbit(HH, orbit.start, returns).period == pytest.approx(orbit.period, rel=1e-9)
 
 
 def test_the_orbits_of_a_branch_approach_the_special_point(straight_in_hh: OrbitFamily) -> None:

@@ -120,8 +120,8 @@ def test_members_are_closed_orbits_of_one_energy_in_their_own_potentials() -> No
         member = family[number]
         other = System("Earth-Moon", parameters={"m": float(family.value[number])}).potential
         assert member.potential == other
-        assert other.energy(member.state) == pytest.approx(orbit.energy, abs=1e-11)
-        again = find_periodic_orbit(other, member.state, 1)
+        assert other.energy(member.start) == pytest.approx(orbit.energy, abs=1e-11)
+        again = find_periodic_orbit(other, member.start, 1)
         assert (again.period, again.stability_index) == pytest.approx((member.period, member.stability_index), abs=1e-9)
 
 
@@ -149,7 +149,7 @@ def test_what_is_no_parameter_of_the_system_is_refused() -> None:
         continue_family(STRAIGHT, 2.0, along="m")
     with pytest.raises(ValueError, match=r"parameter omega_1 from 1 to 20: must be between 0\.1 and 10"):
         continue_family(STRAIGHT, 20.0, along="omega_1")
-    unknown = find_periodic_orbit(parse_formula("½(x² + y²) − x²y²"), STRAIGHT.state, 1)
+    unknown = find_periodic_orbit(parse_formula("½(x² + y²) − x²y²"), STRAIGHT.start, 1)
     with pytest.raises(ValueError, match=r"along='c': must be one of h; the parameters of .* are not known"):
         continue_family(unknown, 2.0, along="c")
 
@@ -161,8 +161,8 @@ def test_branches_of_a_family_along_a_parameter_move_in_their_own_potentials(in_
     assert len(branches) == 2
     for orbit in branches:
         assert orbit.potential != in_epsilon[point.member].potential
-        assert orbit.potential.energy(orbit.state) == pytest.approx(in_epsilon.energy[0], abs=1e-10)
-        assert find_periodic_orbit(orbit.potential, orbit.state, 1).period == pytest.approx(orbit.period, rel=1e-10)
+        assert orbit.potential.energy(orbit.start) == pytest.approx(in_epsilon.energy[0], abs=1e-10)
+        assert find_periodic_orbit(orbit.potential, orbit.start, 1).period == pytest.approx(orbit.period, rel=1e-10)
     one, other = branches
     np.testing.assert_allclose(one.states * [-1.0, 1.0, -1.0, 1.0], other.states, atol=1e-9)
 
@@ -173,7 +173,7 @@ def test_branches_along_a_parameter_are_those_along_the_energy(in_epsilon: Orbit
     numbers = [[point.kind for point in family.special].index(SpecialKind.BRANCHING) for family in (in_epsilon, along_h)]
     orbit = in_epsilon.switch(numbers[0])[0]
     epsilon = orbit.potential.system.value_of("epsilon")
-    scaled = find_periodic_orbit(III, orbit.state * np.sqrt(epsilon), 1)
+    scaled = find_periodic_orbit(III, orbit.start * np.sqrt(epsilon), 1)
     branch = continue_family(along_h.switch(numbers[1])[0], (scaled.energy - 1e-3, scaled.energy + 0.05))
     assert scaled.stability_index == pytest.approx(orbit.stability_index, abs=1e-9)
     assert min(abs(each.period - scaled.period) for each in branch.at(scaled.energy)) < 1e-9
