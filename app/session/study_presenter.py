@@ -8,7 +8,7 @@ from app.job_clients.latest_request import LatestRequest
 from app.session.context import SessionContext
 from app.views.analysis.study_view import StudyView
 from engine.jobs.job import Job
-from plots.studies.study import Study, Subject
+from plots.studies.study import Click, Study, Subject
 
 
 class _Run(NamedTuple):
@@ -99,8 +99,8 @@ class StudyPresenter:
         others = {name: known for name, known in getattr(self._results, kind).items() if name != self._study.name}
         setattr(self._results, kind, others if value is None else {**others, self._study.name: value})
 
-    def click(self, x: float, y: float) -> None:
-        """Change the view as the study says for a click at a place of a chart."""
+    def click(self, click: Click) -> None:
+        """Change the view as the study says for a click on a chart."""
         if self.view.shown is None or self._shown_run is None:
             return
-        self._change(self._study.changes(*self._shown_run, self.view.shown, x, y))
+        self._change(self._study.changes(*self._shown_run, self.view.shown, click))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import groupby
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,13 +12,13 @@ from engine import OrbitFamily, PeriodicOrbit, SpecialKind, Stability, continue_
 from engine.foundations.wording import format_number
 from engine.jobs.job import Job, Queue
 from engine.results import SpecialPoint
-from plots.pictures.charts import Chart, Frame, Series, Shape
+from plots.pictures.charts import Chart, Frame, Limits, Series, Shape
 from plots.pictures.palette import THRESHOLD, Palette
 from plots.pictures.periodic_marks import SPECIAL, STABILITY_COLOURS
 from plots.pictures.setting import NO_SETTINGS, Settings
 from plots.studies.axes import ENERGY, energy_and_parameters, usual_range, value_on
 from plots.studies.section import start_through
-from plots.studies.study import Changes, Study, Subject
+from plots.studies.study import Changes, Click, Study, Subject
 
 # The range of the stability index in its chart.
 _INDEX_LIMITS = (-2.5, 2.5)
@@ -63,35 +64,62 @@ def _job(subject: Subject, axis: str) -> Job[OrbitFamily]:
     return Job(continue_family, (near, bounds), (("along", axis),), queue=Queue.LONG_CALL)
 
 
+class _Curves(NamedTuple):
+    """The values of one chart against what changes along the family.
+
+    Attributes
+    ----------
+    frame
+        The frame of the chart.
+    values
+        (members, n) the values of n curves at each member.
+    limits
+        The limits of the axis of the values; None to fit it to them.
+    """
+
+    frame: Frame
+    values: np.ndarray
+    limits: Limits | None = None
+
+    @property
+    def height(self) -> float:
+        """The height of the chart in the units of its values."""
+        low, high = self.limits or (float(self.values.min()), float(self.values.max()))
+        return high - low or 1.0
+
+
+def _curves_of(family: OrbitFamily) -> list[_Curves]:
+    """Return the curves of all charts. Those of the returns are the coordinate that changes most."""
+    # Without rounding errors, which would fill the chart of returns that are all 0.
+    returns = np.round(family.points, _RETURN_DECIMALS)
+    axis = int(np.argmax(np.ptp(returns, axis=(0, 1))))
+    frame = replace(_RETURNS, labels=("", family.section.axes.symbols[axis]))
+    numbers = (values[:, None] for values in (family.stability_index, family.period, family.action))
+    limits = (_INDEX_LIMITS, None, None)
+    return [_Curves(frame, returns[..., axis]), *map(_Curves, (_INDEX, _PERIOD, _ACTION), numbers, limits)]
+
+
 def family_charts(family: OrbitFamily, palette: Palette, settings: Settings = NO_SETTINGS) -> list[Chart]:
     """Return the charts of the returns, the stability index, the period and the action against what changes along the family.
 
     Empty for a family with one member only.
     """
-    if len(family) < 2:
-        return []
-    # Without rounding errors, which would fill the chart of returns that are all 0.
-    returns = np.round(family.points, _RETURN_DECIMALS)
-    axis = int(np.argmax(np.ptp(returns, axis=(0, 1))))
-    curves = [one for k in range(family.returns) for one in _curves(family, returns[:, k, axis], labelled=k == 0)]
+    return [_chart(family, curves, labelled=k == 0) for k, curves in enumerate(_curves_of(family))] if len(family) > 1 else []
+
+
+def _chart(family: OrbitFamily, curves: _Curves, *, labelled: bool) -> Chart:
+    """Return a chart; in the chart of the stability index, with the limits of stable orbits."""
+    frame, columns = curves.frame, curves.values.T
+    lines = [one for k, values in enumerate(columns) for one in _lines(family, values, labelled=labelled and k == 0)]
+    special = _special(family, columns[0], "special points" if labelled else "")
     bounds = np.array([family.value.min(), family.value.max()])
-    levels = [Series("", THRESHOLD, bounds, np.full(2, level), Shape.DASHED) for level in (-1.0, 1.0)]
-    index = [*_curves(family, family.stability_index), *_special(family, family.stability_index), *levels]
-    charts = [
-        Chart(
-            replace(_RETURNS, labels=("", family.section.axes.symbols[axis])),
-            [*curves, *_special(family, returns[:, 0, axis], "special points")],
-        ),
-        Chart(_INDEX, index, (None, _INDEX_LIMITS)),
-        *(
-            Chart(frame, [*_curves(family, values), *_special(family, values)])
-            for frame, values in ((_PERIOD, family.period), (_ACTION, family.action))
-        ),
-    ]
-    return [replace(chart, frame=replace(chart.frame, labels=(family.symbol, chart.frame.labels[1]))) for chart in charts]
+    levels = (-1.0, 1.0) if frame is _INDEX else ()
+    dashed = [Series("", THRESHOLD, bounds, np.full(2, level), Shape.DASHED) for level in levels]
+    frame = replace(frame, labels=(family.symbol, frame.labels[1]))
+    return Chart(frame, [*lines, *special, *dashed], (None, curves.limits))
 
 
-def _curves(family: OrbitFamily, values: np.ndarray, *, labelled: bool = False) -> list[Series]:
+def _lines(family: OrbitFamily, values: np.ndarray, *, labelled: bool) -> list[Series]:
     """Return the curve of values along the family: thick where the orbits are stable."""
     middles = 0.5 * (family.stability_index[1:] + family.stability_index[:-1])
     kinds = [Stability.of(index) for index in middles.tolist()]
@@ -108,7 +136,7 @@ def _curves(family: OrbitFamily, values: np.ndarray, *, labelled: bool = False) 
     return series
 
 
-def _special(family: OrbitFamily, values: np.ndarray, label: str = "") -> list[Series]:
+def _special(family: OrbitFamily, values: np.ndarray, label: str) -> list[Series]:
     """Return the special points of a family on the curve of values."""
     if not family.special:
         return []
@@ -117,10 +145,17 @@ def _special(family: OrbitFamily, values: np.ndarray, label: str = "") -> list[S
     return [Series(label, SPECIAL, family.value[rows], values[rows], Shape.RINGS, notes=notes)]
 
 
-def _changes(subject: Subject, axis: str, family: OrbitFamily, x: float, y: float) -> Changes:
-    """Return the system and the energy of the member nearest to the click, and the start of this member."""
-    member = family[int(np.argmin(np.abs(family.value - x)))]
-    changes = {"energy": member.energy, **start_through(family.section, member.potential, member.start, member.energy)}
+def _changes(subject: Subject, axis: str, family: OrbitFamily, click: Click) -> Changes:
+    """Return the system and the energy of the member nearest to the click, and its start at the return nearest to it.
+
+    With folds, several members have the same energy, so the member depends on the chart and on the height of the click.
+    """
+    curves = next(each for each in _curves_of(family) if each.frame.name == click.chart)
+    across = (family.value - click.x)[:, None] / (np.ptp(family.value) or 1.0)
+    distances = np.hypot(across, (curves.values - click.y) / curves.height)
+    number, start = np.unravel_index(np.argmin(distances), distances.shape)
+    member = family[int(number)]
+    changes = {"energy": member.energy, **start_through(family.section, member.potential, member.states[start], member.energy)}
     if axis == ENERGY:
         return changes
     starts = (changes.pop("start"),) if "start" in changes else ()

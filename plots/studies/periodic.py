@@ -14,7 +14,7 @@ from plots.pictures.palette import Palette
 from plots.pictures.periodic_marks import RETURNS, STABILITY_COLOURS, periodic_job
 from plots.pictures.setting import NO_SETTINGS, Setting, Settings
 from plots.studies.section import start_through
-from plots.studies.study import Changes, Study, Subject
+from plots.studies.study import Changes, Click, Study, Subject
 
 FRAME = Frame(
     "periodic",
@@ -73,9 +73,9 @@ def note_of(orbit: PeriodicOrbit) -> str:
     return orbit.describe().removesuffix(".")
 
 
-def _changes(subject: Subject, axis: str, found: PeriodicOrbits, x: float, y: float) -> Changes:
+def _changes(subject: Subject, axis: str, found: PeriodicOrbits, click: Click) -> Changes:
     """Return the start of the orbit with the return nearest to the click, at this return."""
-    point = found.nearest_point(x, y)
+    point = found.nearest_point(click.x, click.y)
     return {} if point is None else start_through(found.section, subject.potential, found.states[point], subject.energy)
 
 

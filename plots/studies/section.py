@@ -12,7 +12,7 @@ from engine.results import OrbitReturns, Returns
 from plots.pictures.charts import Chart, Frame, Limits, Series, Shape
 from plots.pictures.palette import Palette, value_colours
 from plots.pictures.setting import NO_SETTINGS, Setting, Settings
-from plots.studies.study import Changes, Study, Subject
+from plots.studies.study import Changes, Click, Study, Subject
 
 RETURNS = 100
 """Number of returns of each orbit."""
@@ -125,12 +125,12 @@ def _density_label(k: int) -> str:
     return "1 point in a cell" if k == 0 else f"{low}–{high - 1}"
 
 
-def _changes(subject: Subject, axis: str, found: Returns, x: float, y: float) -> Changes:
+def _changes(subject: Subject, axis: str, found: Returns, click: Click) -> Changes:
     """Return the start of the return nearest to the click, on a slice on the section, if there is one."""
     section, states = found.spec.section, found.states[np.isfinite(found.time)]
     points = section.axes.points(states)
     extents = np.ptp(points, axis=0)
-    steps = (points - [x, y]) / np.where(extents > 0.0, extents, 1.0)
+    steps = (points - [click.x, click.y]) / np.where(extents > 0.0, extents, 1.0)
     return start_through(section, subject.potential, states[np.argmin(np.hypot(*steps.T))], subject.energy)
 
 

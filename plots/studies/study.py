@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 from engine import Potential, Result, Section, Slice, System
 from engine.jobs.job import Job
@@ -20,6 +20,22 @@ from plots.pictures.setting import Setting, Settings
 
 Changes = Mapping[str, Any]
 """New values of fields of a view, by name. A new `system` is reviewed before it is shown; `start` is added to the starts."""
+
+
+class Click(NamedTuple):
+    """A click on a chart.
+
+    Attributes
+    ----------
+    chart
+        Name of the frame of the chart.
+    x, y
+        The place, in the coordinates of the chart.
+    """
+
+    chart: str
+    x: float
+    y: float
 
 
 @dataclass(frozen=True)
@@ -97,7 +113,7 @@ class Study[Found: Result]:
     settings
         Settings of how the charts are drawn.
     changes
-        Returns the changes of the view at a click, given the subject and the axis of the shown result, the result, and x and y.
+        Returns the changes of the view at a click, given the subject and the axis of the shown result, and the result.
     files
         The part of file names that identifies the study, and the label of its table.
     figure
@@ -113,7 +129,7 @@ class Study[Found: Result]:
     sentence: Callable[[Found], str]
     frames: Sequence[Frame]
     charts: Callable[[Found, Palette, Settings], Sequence[Chart]]
-    changes: Callable[[Subject, str, Found, float, float], Changes]
+    changes: Callable[[Subject, str, Found, Click], Changes]
     files: str
     figure: str
     caption: Callable[[Found], str]

@@ -36,7 +36,7 @@ def orbit_controls() -> OrbitControls:
 
 def test_quoted_text_is_escaped() -> None:
     notice, controls, panel = Notice(), orbit_controls(), PotentialPanel(review_catalogue_entry("I"), lambda system, done: None)
-    curves = StudyView(AGAINST, ViewState(), lambda: None, lambda x, y: None)
+    curves = StudyView(AGAINST, ViewState(), lambda: None, lambda click: None)
     measures = BasinMeasuresView(ViewState(), lambda name: None, lambda text: None)
     says: list[tuple[Callable[[str], None], pn.pane.HTML]] = [
         (notice.warn, notice.layout()),

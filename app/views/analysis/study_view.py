@@ -23,7 +23,7 @@ from engine import Result, System
 from engine.foundations.wording import format_whole
 from engine.systems.parameters import symbol_of
 from plots.studies.axes import ENERGY, value_on
-from plots.studies.study import Study
+from plots.studies.study import Click, Study
 
 STOP = "Stop"
 """Label of the button while a study is computed."""
@@ -44,7 +44,7 @@ class StudyView:
     on_button
         Starts or stops the computation when the button is pressed.
     on_click
-        Called with x and y of a click on a chart.
+        Called with a click on a chart.
     later
         Wraps a function that makes a figure, so that it runs in a later iteration of the event loop.
     """
@@ -54,7 +54,7 @@ class StudyView:
         study: Study[Any],
         state: ViewState,
         on_button: Callable[[], None],
-        on_click: Callable[[float, float], None],
+        on_click: Callable[[Click], None],
         later: Later = at_once,
     ) -> None:
         self._study, self._state, self._on_click = study, state, on_click
@@ -157,7 +157,7 @@ class StudyView:
         return [*self._choices, *(each for each in (self.against, self.button) if each.visible)]
 
     def _build_chart(self, chart: ChartView) -> list[pn.viewable.Viewable]:
-        view = chart.build({Tap: lambda event: self._on_click(event.x, event.y)})
+        view = chart.build({Tap: lambda event: self._on_click(Click(chart.frame.name, event.x, event.y))})
         assert chart.plot is not None
         if self._shown_axis:
             chart.plot.add_layout(self._mark_line)

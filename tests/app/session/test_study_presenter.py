@@ -16,7 +16,7 @@ from engine import CASES, MapSpec, Plane, System, compute_map, find_lyapunov_orb
 from engine.jobs.manager import Jobs
 from plots.studies.against import AGAINST, REFINED_VALUES, SWEPT_VALUES
 from plots.studies.section import SECTION_STUDY
-from plots.studies.study import Study
+from plots.studies.study import Click, Study
 from tests.app.session.session_lock import context_of
 from tests.plots.studies.study_example import study_of_periods
 from tests.waiting import SECONDS
@@ -79,7 +79,7 @@ def test_a_study_of_one_entry_is_computed_stored_and_opens_the_clicked_energy(be
     energy = float(found.h[-1])
     assert session.context.results.calls["periods"].arguments == (session.state.potential, tuple(found.h))
     assert found.longest[-1] == max(orbit.period for orbit in find_lyapunov_orbits(session.state.potential, energy))
-    session.presenter.click(energy + 0.3, 5.0)
+    session.presenter.click(Click("", energy + 0.3, 5.0))
     assert (session.state.energy, session.state.plane) == (energy, Plane.X_PX)
     session.state.param.update(system=System("III"), energy=0.4)
     assert session.context.results.studies == session.context.results.calls == {}
@@ -125,11 +125,11 @@ def test_curves_arrive_one_by_one_and_stop_at_a_click_or_with_another_case(begin
     assert session.jobs.in_flight == 0
     assert f"of {SWEPT_VALUES + REFINED_VALUES}" in session.view.text.object
     energies = np.sort(session.values())
-    session.presenter.click(float(energies[1]) + 1e-4, 0.0)
+    session.presenter.click(Click("", float(energies[1]) + 1e-4, 0.0))
     assert (session.state.energy, session.state.plane) == (energies[1], Plane.X_PX)
     session.state.param.update(system=System("III"), energy=0.4)
     assert session.view.shown is None
-    session.presenter.click(0.3, 0.0)
+    session.presenter.click(Click("", 0.3, 0.0))
     assert session.state.energy == 0.4
 
 
@@ -144,7 +144,7 @@ def test_a_click_opens_the_plane_of_the_shown_curves_after_another_sweep_was_sto
         session.press()
         session.press()
     value = float(np.max(session.values()))
-    session.presenter.click(value, 0.0)
+    session.presenter.click(Click("", value, 0.0))
     assert (session.state.energy, session.state.plane) == (value, Plane.X_PX)
 
 
@@ -158,6 +158,6 @@ def test_a_click_on_a_curve_against_a_parameter_opens_its_system(begin: Callable
     session.wait_for_values(2)
     session.press()
     value = float(np.max(session.values()))
-    session.presenter.click(value, 0.0)
+    session.presenter.click(Click("", value, 0.0))
     assert session.opened[0] == System("II", parameters={"epsilon": value})
     assert session.opened[1]["energy"] == 0.25

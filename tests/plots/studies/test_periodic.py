@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from app.views.components.charts import ChartView
-from engine import Execution, OrbitFamily, Plane, SpecialKind, System, integrate_orbit
+from engine import Execution, OrbitFamily, Plane, SpecialKind, System, continue_family, integrate_orbit
 from engine.jobs.job import run_job
 from engine.results import PeriodicOrbits
 from engine.systems.review.potential_review import review_system
@@ -18,7 +18,7 @@ from plots.pictures.periodic_marks import STABILITY_COLOURS
 from plots.pictures.setting import NO_SETTINGS
 from plots.studies.family import FAMILY_STUDY
 from plots.studies.periodic import PERIODIC_STUDY, UP_TO
-from plots.studies.study import Subject
+from plots.studies.study import Click, Subject
 
 SYSTEM = System("III")
 SUBJECT = Subject(SYSTEM, SYSTEM.potential, Plane.X_PX, 0.3, review_system(SYSTEM).energies, 1e3)
@@ -68,7 +68,7 @@ def test_the_number_of_returns_is_a_choice(found: PeriodicOrbits) -> None:
 def test_a_click_on_a_return_starts_its_orbit(found: PeriodicOrbits) -> None:
     orbit = next(orbit for orbit in found if orbit.returns == 2)
     x, px = orbit.points[1].tolist()
-    changes = PERIODIC_STUDY.changes(SUBJECT, "", found, x + 1e-4, px)
+    changes = PERIODIC_STUDY.changes(SUBJECT, "", found, Click("periodic", x + 1e-4, px))
     assert changes["start"] == pytest.approx((x, px), abs=1e-9)
     (start,) = SUBJECT.plane.states(SUBJECT.potential, 0.3, *np.array(changes["start"])[:, None])
     path = integrate_orbit(SUBJECT.potential, start, t_max=orbit.period)
@@ -98,9 +98,38 @@ def test_stable_parts_of_a_curve_are_thick(family: OrbitFamily) -> None:
 
 
 def test_a_click_on_a_family_opens_the_member_of_that_energy(family: OrbitFamily) -> None:
-    changes = FAMILY_STUDY.changes(CHOSEN, "h", family, 0.45, 0.0)
+    changes = FAMILY_STUDY.changes(CHOSEN, "h", family, Click("family_returns", 0.45, 0.0))
     assert abs(changes["energy"] - 0.45) <= np.abs(family.energy - 0.45).min()
     assert changes["start"] == pytest.approx((0.0, 0.0), abs=1e-9)
+
+
+@pytest.fixture(scope="module")
+def folded(family: OrbitFamily) -> OrbitFamily:
+    number = [point.kind for point in family.special].index(SpecialKind.BRANCHING)
+    return continue_family(family.switch(number)[0], (0.5, 0.7))
+
+
+@pytest.mark.parametrize(
+    ("chart", "name"), [("family_index", "stability_index"), ("family_period", "period"), ("family_action", "action")]
+)
+def test_a_click_opens_the_member_at_its_height_where_a_fold_has_two_of_one_energy(
+    folded: OrbitFamily, chart: str, name: str
+) -> None:
+    assert len(folded.at(0.58)) > 1
+    heights = getattr(folded, name)
+    for k in np.flatnonzero(np.abs(heights) < 2.5 if chart == "family_index" else np.isfinite(heights))[::5]:
+        changes = FAMILY_STUDY.changes(CHOSEN, "h", folded, Click(chart, float(folded.energy[k]), float(heights[k])))
+        assert changes["energy"] == folded.energy[k]
+        assert changes["start"] == pytest.approx(folded.points[k, 0], abs=1e-9)
+
+
+def test_a_click_on_a_return_of_a_family_starts_the_member_at_this_return(found: PeriodicOrbits) -> None:
+    orbit = next(orbit for orbit in found if np.ptp(orbit.points[:, 0]) > 0.1)
+    family = continue_family(orbit, 0.31)
+    assert np.argmax(np.ptp(family.points, axis=(0, 1))) == 0
+    for number, (x, px) in enumerate(family.points[0]):
+        changes = FAMILY_STUDY.changes(CHOSEN, "h", family, Click("family_returns", float(family.energy[0]), float(x)))
+        assert changes["start"] == pytest.approx((x, px), abs=1e-9), number
 
 
 @pytest.fixture(scope="module")
@@ -119,7 +148,7 @@ def test_a_family_can_be_followed_along_a_parameter_of_the_system(along_epsilon:
 
 
 def test_a_click_on_a_family_along_a_parameter_opens_the_system_of_the_member(along_epsilon: OrbitFamily) -> None:
-    changes = FAMILY_STUDY.changes(CHOSEN, "epsilon", along_epsilon, 1.4, 0.0)
+    changes = FAMILY_STUDY.changes(CHOSEN, "epsilon", along_epsilon, Click("family_returns", 1.4, 0.0))
     system = changes["system"]
     assert abs(system.value_of("epsilon") - 1.4) == np.abs(along_epsilon.value - 1.4).min()
     assert changes["energy"] == along_epsilon.energy[0]

@@ -17,7 +17,7 @@ from plots.pictures.charts import Series, Shape
 from plots.pictures.palette import PAPER, value_colours
 from plots.pictures.setting import NO_SETTINGS
 from plots.studies.section import COLOURS, RETURNS, SECTION_STUDY
-from plots.studies.study import Subject
+from plots.studies.study import Click, Subject
 
 SYSTEM = System("II")
 SUBJECT = Subject(SYSTEM, SYSTEM.potential, Plane.X_Y, 0.15, review_system(SYSTEM).energies, 1e4)
@@ -50,7 +50,7 @@ def test_every_return_is_a_dot_of_the_page_and_inside_the_limiting_curve(found: 
 
 def test_a_click_starts_the_orbit_through_the_point_on_the_section(found: Returns) -> None:
     x, px = found.points()[7][3].tolist()
-    changes = SECTION_STUDY.changes(SUBJECT, "", found, x + 1e-6, px - 1e-6)
+    changes = SECTION_STUDY.changes(SUBJECT, "", found, Click("", x + 1e-6, px - 1e-6))
     assert changes == {"plane": Plane.X_PX, "energy": 0.15, "start": (x, px)}
 
 
@@ -130,7 +130,7 @@ def test_another_section_has_its_own_axes_and_starts() -> None:
     assert chart.frame.labels == ("y", "py")
     assert "upward crossings of x = 0" in SECTION_STUDY.sentence(found)
     y, py = found.points()[5][2].tolist()
-    assert SECTION_STUDY.changes(SUBJECT, "", found, y, py) == {"plane": Plane.Y_PY, "energy": 0.15, "start": (y, py)}
+    assert SECTION_STUDY.changes(SUBJECT, "", found, Click("", y, py)) == {"plane": Plane.Y_PY, "energy": 0.15, "start": (y, py)}
 
 
 @pytest.mark.parametrize("text", ["y = 0 both", "angle = 30°", "x + y = 0.1 both", "px = 0 both", "apsis"])
@@ -141,7 +141,7 @@ def test_a_click_starts_the_orbit_of_the_point_in_every_direction(text: str) -> 
     assert "Click" in SECTION_STUDY.sentence(found)
     assert "Click" in chart.frame.text
     for state in states:
-        changes = SECTION_STUDY.changes(SUBJECT, "", found, *found.spec.section.axes.points(state))
+        changes = SECTION_STUDY.changes(SUBJECT, "", found, Click("", *found.spec.section.axes.points(state)))
         (start,) = changes["plane"].states(CASES["II"], 0.15, *np.array(changes["start"])[:, None])
         np.testing.assert_allclose(start, state, atol=1e-8)
 
@@ -151,4 +151,4 @@ def test_points_that_are_no_starts_of_a_slice_cannot_be_clicked() -> None:
     assert found.count.any()
     (chart,) = SECTION_STUDY.charts(found, PAPER, NO_SETTINGS)
     assert "Click" not in SECTION_STUDY.sentence(found) + chart.frame.text
-    assert SECTION_STUDY.changes(SUBJECT, "", found, 0.0, 0.0) == {}
+    assert SECTION_STUDY.changes(SUBJECT, "", found, Click("", 0.0, 0.0)) == {}

@@ -17,7 +17,7 @@ from plots.pictures.palette import PAPER
 from plots.pictures.setting import NO_SETTINGS
 from plots.printed.figure_files import study_figure_bytes
 from plots.printed.figure_style import FigureFormat, FigureStyle
-from plots.studies.study import Study, Subject
+from plots.studies.study import Click, Study, Subject
 from plots.studies.table import STUDIES
 from plots.texts.exports import table_csv
 from tests.plots.studies.study_example import study_of_periods
@@ -58,5 +58,5 @@ def test_the_study_of_the_example_has_a_table_a_figure_and_a_file(tmp_path: Path
 def test_a_click_beside_the_curves_opens_the_nearest_energy() -> None:
     study = study_of_periods()
     found = run_job(study.job(SUBJECT, "h"), Execution(), {})
-    changes = study.changes(SUBJECT, "h", found, float(found.h[3]) + 1e-4, 1.0)
+    changes = study.changes(SUBJECT, "h", found, Click("periods", float(found.h[3]) + 1e-4, 1.0))
     assert changes == {"energy": float(found.h[3]), "plane": Plane.X_PX}

@@ -24,7 +24,7 @@ def curves(*energies: float) -> Sweep:
 
 
 def test_there_are_no_axes_before_the_first_curves() -> None:
-    view = StudyView(AGAINST, ViewState(), lambda: None, lambda x, y: None)
+    view = StudyView(AGAINST, ViewState(), lambda: None, lambda click: None)
     *_, plots = view.build()
     assert not plots.visible
     assert plots.objects == []
