@@ -19,11 +19,11 @@ needs_node = pytest.mark.skipif(shutil.which("node") is None, reason="Node.js is
 
 
 def run_node(script: str, data: dict[str, Any], folder: Path) -> Any:
-    """Return what a script prints as JSON, given data as JSON. Data with the module of a system also get the kernels.
+    """Return what a script prints as JSON, given data as JSON. Data with a module and without kernels get the kernels.
 
     Bytes are written to files in `folder`, and replaced by the paths.
     """
-    if "module" in data:
+    if "module" in data and "kernels" not in data:
         data["kernels"] = kernel_module()
     for name, value in data.items():
         if isinstance(value, bytes):

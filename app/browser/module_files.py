@@ -13,7 +13,8 @@ from typing import Any
 from tornado.ioloop import IOLoop
 from tornado.web import RequestHandler, StaticFileHandler
 
-from engine.integrator.portable_kernels import kernel_module, module_digest
+from engine.integrator.portable_kernels import module_digest
+from plots.browser.compiled_files import browser_kernels
 
 _ROOT = Path(__file__).parents[2]
 # Folders of the modules: those that need the page, and those that do not.
@@ -66,11 +67,11 @@ class ModuleHandler(StaticFileHandler):
 
 
 class KernelsHandler(RequestHandler):
-    """Serves the kernels. The first start of a version compiles them."""
+    """Serves the kernels."""
 
     async def get(self) -> None:
         """Answer with the kernels, compressed if the browser accepts gzip."""
-        module = await IOLoop.current().run_in_executor(None, kernel_module)
+        module = await IOLoop.current().run_in_executor(None, browser_kernels)
         self.set_header("Content-Type", "application/wasm")
         self.set_header("Cache-Control", f"public, max-age={StaticFileHandler.CACHE_MAX_AGE}")
         self.set_header("Vary", "Accept-Encoding")

@@ -85,9 +85,9 @@ class MapPresenter:
         self.show_window(window)
 
     def _go_to_window(self, *events: Any) -> None:
-        """Show the window of the state at once."""
+        """Show the window of the state at once. The map of another system or plane arrives with its own window."""
         if any(event.name != "window" for event in events):
-            # The map of another system or plane arrives with its own window.
+            self.engine.leave_window()
             return
         try:
             self.engine.go_to(self._state.find_window())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import json
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,8 +11,9 @@ import numpy as np
 
 from engine import Execution, Plane, Potential, Section, Slice, Window
 from engine.slices.default_window import default_window
-from engine.slices.portable_system import PortableSystem, make_portable_system
+from engine.slices.portable_system import make_portable_system
 from engine.slices.slice_text import write_slice
+from plots.browser.compiled_files import has_compiled, read_compiled
 
 EXIT_NUMBER_DISTANCE = 0.86
 """Distance of the number of an exit from the origin, as a share of the distance of the middle of the exit."""
@@ -23,38 +25,29 @@ WINDOW_EDGES = ("xLow", "xHigh", "ordinateLow", "ordinateHigh")
 _ENERGIES_BELOW = 5
 # Number of energies with a tabulated window above the escape energy.
 _ENERGIES_ABOVE = 13
-# Approximate size of key and windows, in bytes.
-_TABLE_BYTES = 4096
 
 
 @dataclass(frozen=True)
 class BrowserSystem:
-    """A system for the browser.
+    """A system for the browser: its data as a line of JSON, then its module, as in the files compiled in advance.
 
     Attributes
     ----------
-    key
-        Hash that is different for each system.
-    portable
-        Data from which the browser integrates orbits of the system.
-    windows
-        Default windows by energy, for each plane without an axis of energy: {key of the plane: {"energies": […],
-        "windows": [[x_low, x_high, ordinate_low, ordinate_high], …]}}. The energies are in ascending order.
+    content
+        The line and the module.
     """
 
-    key: str
-    portable: PortableSystem
-    windows: dict[str, dict[str, Any]]
+    content: bytes
 
     @property
     def nbytes(self) -> int:
-        """Approximate size in bytes."""
-        return self.portable.nbytes + _TABLE_BYTES
+        """Size in bytes."""
+        return len(self.content)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the system in the form of `System` in modules/engine/system.js, with its module and its windows."""
-        page_data = {"windows": self.windows, "numberDistance": EXIT_NUMBER_DISTANCE}
-        return {**self.portable.to_dict(), "key": self.key, "module": self.portable.module, **page_data}
+        """Return the system in the form of `System` in modules/engine/system.js, with its module."""
+        data, module = self.content.split(b"\n", 1)
+        return {**json.loads(data), "module": module}
 
 
 def slice_name(plane: Slice) -> str:
@@ -84,17 +77,41 @@ def system_key(potential: Potential, section: Section = Section.Y_UP) -> str:
     return hashlib.sha256(repr(definition).encode()).hexdigest()[:16]
 
 
+def file_name(potential: Potential, low: float, high: float, section: Section = Section.Y_UP) -> str:
+    """Return the name of the file with the compiled system of `make_browser_system`."""
+    energies = hashlib.sha256(repr((float(low), float(high))).encode()).hexdigest()
+    return f"{system_key(potential, section)}-{energies[:8]}.system"
+
+
+def is_system_compiled(potential: Potential, low: float, high: float, section: Section = Section.Y_UP) -> bool:
+    """Whether `make_browser_system` reads a file, which takes milliseconds."""
+    return has_compiled(file_name(potential, low, high, section))
+
+
 def make_browser_system(
+    potential: Potential, low: float, high: float, section: Section = Section.Y_UP, *, execution: Execution
+) -> BrowserSystem:
+    """Return the system of `compile_browser_system`, from a file if it is compiled in advance."""
+    content = read_compiled(file_name(potential, low, high, section))
+    if content is not None:
+        return BrowserSystem(content)
+    return compile_browser_system(potential, low, high, section, execution=execution)
+
+
+def compile_browser_system(
     potential: Potential, low: float, high: float, section: Section = Section.Y_UP, *, execution: Execution
 ) -> BrowserSystem:
     """Compile the module of a system, and tabulate its exits and windows for energies from `low` to `high`, dimensionless.
 
-    Crossings are counted at the section.
+    Crossings are counted at the section. The windows are the default windows by energy, for each plane without an axis of energy:
+    {key of the plane: {"energies": […], "windows": [[x_low, x_high, ordinate_low, ordinate_high], …]}}. The energies rise.
     """
     planes: dict[str, Slice] = {slice_name(plane): plane for plane in Plane if plane.energy_axis is None}
     planes |= {slice_name(section.slice_of_starts): section.slice_of_starts}
     windows = {name: _tabulate_windows(potential, plane, (low, high), execution) for name, plane in planes.items()}
-    return BrowserSystem(system_key(potential, section), make_portable_system(potential, high, section), windows)
+    portable = make_portable_system(potential, high, section)
+    page_data = {"key": system_key(potential, section), "windows": windows, "numberDistance": EXIT_NUMBER_DISTANCE}
+    return BrowserSystem(json.dumps(portable.to_dict() | page_data).encode() + b"\n" + portable.module)
 
 
 def _tabulate_windows(potential: Potential, plane: Slice, energies: tuple[float, float], execution: Execution) -> dict[str, Any]:

@@ -20,9 +20,9 @@ from engine import CASES, EscapeMap, Fate, MapSpec
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.foundations.validation import checked_number
 from engine.foundations.wording import format_number
-from engine.integrator.portable_kernels import kernel_module
 from engine.systems.review.potential_review import review_potential
 from plots.browser.browser_system import describe_slice, make_browser_system, slice_name, window_in_browser
+from plots.browser.compiled_files import browser_kernels
 from plots.browser.javascript import script_code
 from plots.layers.map_images import picture_pixels
 from plots.layers.picture import ShownMap
@@ -154,7 +154,7 @@ def _data(
     system = make_browser_system(spec.potential, low, high, spec.section, execution=execution).to_dict()
     return {
         "module": _base64(system.pop("module")),
-        "kernels": _base64(kernel_module()),
+        "kernels": _base64(browser_kernels()),
         "system": system,
         "slice": describe_slice(spec.plane, spec.potential, spec.section),
         "plane": slice_name(spec.plane),

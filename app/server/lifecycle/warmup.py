@@ -15,7 +15,6 @@ from app.views.components import histograms
 from app.views.orbits import orbit_plots
 from engine import CASES, Potential, integrate_orbit, start_states
 from engine.foundations.execution import DEFAULT_EXECUTION
-from engine.integrator.portable_kernels import kernel_module
 from engine.jobs.job import run_job
 from engine.maps.warmup import (
     call_after_maps,
@@ -25,6 +24,7 @@ from engine.maps.warmup import (
     small_map,
 )
 from engine.slices.planes import SECTION
+from plots.browser.compiled_files import browser_kernels
 from plots.layers.table import LAYERS
 
 # A child of Bokeh's logger, so that `panel serve` shows the messages.
@@ -68,7 +68,7 @@ def _prepare_cases(*purposes: str) -> dict[str, Callable[[], object]]:
 
 STEPS: Mapping[str, Callable[[], object]] = {
     **_prepare_cases("maps"),
-    "the kernels of browsers": kernel_module,
+    "the kernels of browsers": browser_kernels,
     **_prepare_cases("evidence", "orbits", "layers"),
     "the panes of an orbit": orbit_plots.prepare,
     "the histograms": histograms.prepare,

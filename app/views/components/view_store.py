@@ -41,7 +41,7 @@ class ViewStore(JSComponent):
     """
 
     energy = param.Dict(default={}, doc="see `CountedInput.shown`")
-    window = param.Dict(default={"value": None, "count": 0}, doc="likewise; the value is None before the first map")
+    window = param.Dict(default={"value": None, "count": 0}, doc="likewise; the value is None while the server does not know it")
 
     def __init__(
         self, state: ViewState, locked: Locked, on_zoom: Callable[[Window | None], None], on_rest: Callable[[], None]
@@ -65,6 +65,11 @@ class ViewStore(JSComponent):
         A window that is shown already, apart from rounding, changes nothing.
         """
         self._show(window, self.window["count"] + 1)
+
+    def leave_window(self) -> None:
+        """Leave the window to the browser until the map of another view arrives, and drop a move that is not sent yet."""
+        self._shown_window = self._home_window = None
+        self.window = {"value": None, "count": self.window["count"] + 1}
 
     def _show(self, window: Window, count: int) -> None:
         # Rounding differences alone show nothing.

@@ -14,10 +14,18 @@ from app.job_clients.latest_request import LatestRequest, Locked
 from app.job_clients.shown_results import ShownResults
 from app.state.view_state import ViewState
 from app.views.components.view_store import ViewStore
-from engine import EscapeMap, Window
+from engine import Window
 from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job, Queue
-from plots.browser.browser_system import BrowserSystem, describe_slice, make_browser_system, slice_name, system_key
+from plots.browser.browser_system import (
+    BrowserSystem,
+    describe_slice,
+    is_system_compiled,
+    make_browser_system,
+    slice_name,
+    system_key,
+    window_in_browser,
+)
 from plots.browser.javascript import component_code
 from plots.layers.map_images import LAYER_COLUMNS
 from plots.pictures.image_columns import pixel_coding
@@ -33,7 +41,7 @@ class BrowserEngine(ViewStore):
     state
         View state, which the engine follows.
     results
-        The results of the session, whose first frame follows the compilation of the kernels.
+        The results of the session. The frame of a map follows the compilation of the kernels.
     jobs, locked
         See `LatestRequest`.
     on_zoom, on_rest
@@ -61,13 +69,15 @@ class BrowserEngine(ViewStore):
         self._command_numbers = count()
         self._end_animation = locked(lambda: self.param.update(playing=False))
         self._system_request = LatestRequest(jobs, self._show_system, lambda sentence: None, locked)
-        results.param.watch(lambda event: self._request_system(event.new), "frame")
+        self._results = results
+        results.param.watch(lambda event: self._request_system(), "frame")
         shown_fields = ["system", "plane", "section", "energy", "resolution", "window", "palette"]
         state.param.watch(lambda *events: self.show_view(), shown_fields)
 
     def show_view(self) -> None:
-        """Send the view to the browser."""
+        """Send the view to the browser, and request its system."""
         self.view = describe_view(self._state)
+        self._request_system()
 
     def play(self) -> None:
         """Animate the energy up to its highest value; from there, begin at the lowest. Stop a running animation."""
@@ -95,12 +105,16 @@ class BrowserEngine(ViewStore):
             case _:
                 super()._handle_msg(message)
 
-    def _request_system(self, frame: EscapeMap | None) -> None:
-        """Request the system for the browser once a frame has arrived, because the system needs the compiled kernels."""
-        state = self._state
-        if frame is not None and frame.spec.potential == state.potential:
-            arguments = state.potential, state.energies.low, state.energies.high, state.section
-            self._system_request.submit(Job(make_browser_system, arguments, queue=Queue.LONG_CALL))
+    def _request_system(self) -> None:
+        """Request the system for the browser, at once if it is compiled in advance.
+
+        Otherwise its compilation would delay the map, so it is requested when the first frame has arrived.
+        """
+        state, frame = self._state, self._results.frame
+        system = state.potential, state.energies.low, state.energies.high, state.section
+        has_frame = frame is not None and (frame.spec.potential, frame.spec.section) == (state.potential, state.section)
+        if has_frame or is_system_compiled(*system):
+            self._system_request.submit(Job(make_browser_system, system, queue=Queue.LONG_CALL))
 
     def _show_system(self, system: BrowserSystem) -> None:
         self.system = system.to_dict()
@@ -114,7 +128,7 @@ def describe_view(state: ViewState) -> dict[str, Any]:
         "plane": slice_name(state.plane),
         # Only the server knows the potentials along a parameter.
         "slice": describe_slice(state.plane, state.potential, state.section) if state.plane.parameter is None else None,
-        "home": state.window is None,
+        "window": None if state.window is None else window_in_browser(state.window),
         "resolution": state.resolution,
         "colours": [entry.colour for entry in state.colours.end_entries(outcomes)],
         "labels": [end.label for end in outcomes],

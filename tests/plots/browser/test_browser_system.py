@@ -15,8 +15,8 @@ from plots.browser.browser_system import make_browser_system, system_key
 
 
 def test_windows_between_tabulated_energies_are_nearly_default_windows() -> None:
-    system = make_browser_system(CASES["III"], 0.2, 1.0, execution=Execution(cancel=threading.Event()))
-    table = system.windows[Plane.X_PX.key]
+    system = make_browser_system(CASES["III"], 0.21, 1.0, execution=Execution(cancel=threading.Event()))
+    table = system.to_dict()["windows"][Plane.X_PX.key]
     for energy in (0.3, 0.45, 0.8):
         window = default_window(CASES["III"], Plane.X_PX, energy)
         edge = np.interp(energy, table["energies"], [edges[1] for edges in table["windows"]])
@@ -43,7 +43,7 @@ def test_frames_centres_and_escape_radii_change_the_key_and_names_of_potentials_
 
 def test_windows_of_a_system_with_an_escape_radius_are_tabulated_up_to_the_highest_energy() -> None:
     potential = CASES["I"].with_outcomes((), 3.0)
-    table = make_browser_system(potential, -0.5, 0.3, execution=Execution()).windows[Plane.X_PX.key]
+    table = make_browser_system(potential, -0.5, 0.3, execution=Execution()).to_dict()["windows"][Plane.X_PX.key]
     energies, windows = table["energies"], table["windows"]
     assert len(energies) == len(windows) > 5
     assert energies[-1] == 0.3

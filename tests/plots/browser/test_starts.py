@@ -24,11 +24,11 @@ ACCURACY = 1e-14
 @pytest.mark.parametrize("name", POTENTIALS)
 def test_starts_and_windows_are_those_of_the_library(name: str, tmp_path: Path) -> None:
     potential: Potential = POTENTIALS[name]
-    system = make_browser_system(potential, LOW, HIGH, execution=Execution())
+    system = make_browser_system(potential, LOW, HIGH, execution=Execution()).to_dict()
     points = np.random.default_rng(1).uniform(-1.0, 1.0, (2, 500))
     points[:, 0] = 0.0
     energies = np.linspace(0.5 * LOW, 1.1 * HIGH, 50)
-    data: dict[str, Any] = {"system": {**system.portable.to_dict(), "windows": system.windows}, "module": system.portable.module}
+    data: dict[str, Any] = {"module": system.pop("module"), "system": system}
     data |= {"slices": [plane.to_dict(potential.units) for plane in SLICES], "points": points.tolist()}
     found = run_node("run_starts.js", data | {"energy": ENERGY, "windows": energies.tolist()}, tmp_path)
     for plane, each in zip(SLICES, found["starts"], strict=True):
@@ -37,7 +37,7 @@ def test_starts_and_windows_are_those_of_the_library(name: str, tmp_path: Path) 
         forbidden = ~np.isfinite(expected).all(axis=1)
         np.testing.assert_array_equal(np.isnan(states).any(axis=1), forbidden, err_msg=plane.title)
         np.testing.assert_allclose(states[~forbidden], expected[~forbidden], rtol=0.0, atol=ACCURACY, err_msg=plane.title)
-    table = system.windows["x_px"]
+    table = system["windows"]["x_px"]
     for energy, window in zip(energies.tolist(), found["windows"], strict=True):
         assert (window is not None) == (table["energies"][0] <= energy <= table["energies"][-1])
         if window is not None:

@@ -20,7 +20,7 @@ import {LEAST_SIDE} from "../../../../plots/browser/modules/workers/frames.js"
  * @property {string} system  key of the system
  * @property {string} plane  name of the slice
  * @property {import("../../../../plots/browser/modules/engine/system.js").Slice | null} slice  null for a slice that only the server can compute
- * @property {boolean} home  whether the window is the default window of its energy
+ * @property {import("../../../../plots/browser/modules/engine/starts.js").Window | null} window  null for the default window of the energy
  * @property {string[]} colours  of the outcomes, exits first
  * @property {string[]} labels  of the outcomes
  * @property {import("../../../../plots/browser/modules/painting/columns.js").Coding} coding
@@ -51,7 +51,9 @@ export class Preview {
     this.#maps = new Local(find("maps"), ["data"], () => this.#follow())
     this.#outlines = new Outlines(name => findSource("basins", name))
     this.#well = new Outlines(name => findSource("well", name))
-    this.#status = new LocalWhenPresent(findStatus, ["text", "css_classes"])
+    const {x_range: x, y_range: y} = find("well")
+    this.#wellRanges = [x, y]
+    this.#status = new LocalWhenPresent(() => findByClass("status")?.model, ["text", "css_classes"])
   }
 
   #find
@@ -62,6 +64,7 @@ export class Preview {
   #maps
   #outlines
   #well
+  #wellRanges
   #status
   #mapCurves = new LimitingCurves()
   #wellCurves = new LimitingCurves()
@@ -105,19 +108,23 @@ export class Preview {
     return {slice: view.slice, energy, window, mostPixels: view.resolution}
   }
 
-  /** Whether the window is the default window of an energy that the server has not received yet. */
-  get #followsDefault() {
-    return this.#view?.home && this.#view.system === this.#system?.key && this.#energy.isNewer && !this.#window.isNewer
+  /** Whether the server has not sent the window of the view yet. */
+  get #findsWindow() {
+    const [view, shown] = [this.#view, this.#window.value]
+    if (!view || view.system !== this.#system?.key) return false
+    return !shown || (!view.window && this.#energy.isNewer && !this.#window.isNewer)
   }
 
   /** The window on the page, or to be shown with the pixels. @returns {import("../../../../plots/browser/modules/engine/starts.js").Window | null} */
   get #sceneWindow() {
     const [view, integrator, shown] = [this.#view, this.#integrator, this.#window.value]
-    if (!this.#followsDefault || !view || !integrator || !shown) return shown
-    if (sameEnergy(this.#energy.value, this.#energy.model.shown.value)) return this.#window.model.shown.value
+    if (!this.#findsWindow || !view || !integrator) return shown
+    if (view.window) return view.window
+    const served = this.#window.model.shown.value
+    if (served && sameEnergy(this.#energy.value, this.#energy.model.shown.value)) return served
     const window = windowAt(integrator, view.plane, this.#energy.value)
     // Painting axes takes longer than painting pixels, so the window follows only larger changes.
-    return window && !isNearWindow(window, shown) ? window : shown
+    return window && !(shown && isNearWindow(window, shown)) ? window : shown
   }
 
   /** Columns of the other view, if the server compares two views pixel by pixel; otherwise null. */
@@ -162,11 +169,12 @@ export class Preview {
     const exits = showsPositions(view.slice) ? coloured : []
     const well = this.#traceWell(integrator, view)
     // Each change of a range repaints all pictures, so the window changes only together with the pixels.
-    if (this.#followsDefault) this.#window.show(view.window)
+    if (this.#findsWindow) this.#window.show(view.window)
     // The text of a stopped map stays.
     if (!this.#status.server.css_classes?.includes("stopped")) {
       this.#status.show({text: `Preview up to t = ${view.horizon * system.units.time}`})
     }
+    markPreview(true)
     if (isMoving && this.#energy.isUnsent) {
       this.#overlay.show({
         energy: view.energy,
@@ -179,7 +187,7 @@ export class Preview {
     }
     this.#maps.show({data: columns})
     this.#outlines.show(limit, exits)
-    if (well) this.#well.show(well.limit, coloured)
+    if (well) this.#showWell(well.window, well.limit, coloured)
     this.#overlay.hide()
   }
 
@@ -195,19 +203,39 @@ export class Preview {
     return window && {window, limit: this.#wellCurves.trace(integrator, {slice: system.space, window, energy})}
   }
 
+  /**
+   * Show the well in its window.
+   *
+   * @param {import("../../../../plots/browser/modules/engine/starts.js").Window} window
+   * @param {import("../painting/outlines.js").Line[]} limit
+   * @param {import("../painting/outlines.js").Exit[]} exits
+   */
+  #showWell(window, limit, exits) {
+    this.#well.show(limit, exits)
+    const [x, y] = this.#wellRanges
+    x.setv({start: window.xLow, end: window.xHigh}, {sync: false})
+    y.setv({start: window.ordinateLow, end: window.ordinateHigh}, {sync: false})
+  }
+
   /** Show what the server shows. */
   #restore() {
     this.#frames.stop()
     this.#shownView = null
     delete document.documentElement.dataset.preview
     this.#overlay.hide()
+    markPreview(false)
     for (const local of [this.#maps, this.#outlines, this.#well, this.#status]) local.restore()
+    // The server sets the range of the reset tool too.
+    for (const range of this.#wellRanges) range.setv({start: range.reset_start, end: range.reset_end}, {sync: false})
     if (this.#window.value !== this.#window.model.shown.value) this.#window.follow()
   }
 }
 
-/** The status line, which has no name in the document. */
-const findStatus = () => [...Bokeh.index.all_views()].find(view => view.model.css_classes?.includes("status"))?.model
+/** Return a view by a CSS class: of the status line or of the grid of maps, which have no names in the document. @param {string} name */
+const findByClass = name => [...Bokeh.index.all_views()].find(view => view.model.css_classes?.includes(name))
+
+/** Mark the maps as a preview, which belongs to the controls also before the server's map of a new system. @param {boolean} on */
+const markPreview = on => findByClass("maps")?.el.toggleAttribute("data-preview", on)
 
 /**
  * Return the scene of a view.

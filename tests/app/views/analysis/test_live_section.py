@@ -71,7 +71,7 @@ def test_the_window_of_the_slice_is_tabulated_for_the_browser() -> None:
     section = read_section("y = 0.1 down")
     live = LiveSection(ViewState(section=section), ShownResults(), at_once, ignore)
     system = make_browser_system(CASES["III"], 0.3, 0.4, section, execution=Execution())
-    (x_low, x_high, *_), *_ = system.windows[live.plane]["windows"]
+    (x_low, x_high, *_), *_ = system.to_dict()["windows"][live.plane]["windows"]
     expected = MapSpec(CASES["III"], section.slice_of_starts, 0.3).find_window()
     assert (x_low, x_high) == pytest.approx((expected.x_low, expected.x_high), rel=0.02)
 

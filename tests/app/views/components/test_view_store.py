@@ -101,6 +101,15 @@ def test_a_refused_move_is_undone_with_a_larger_number() -> None:
     assert page.shown == shown(page.home, 2)
 
 
+def test_a_window_that_the_browser_finds_is_replaced_by_that_of_the_map_even_if_it_was_shown_before() -> None:
+    page = Shown()
+    page.store.leave_window()
+    assert page.shown == (None, 1)
+    assert page.store.magnification == 1.0
+    page.store.follow(page.home)
+    assert page.shown == shown(page.home, 1)
+
+
 def test_the_window_of_an_earlier_map_does_not_hide_a_move_that_is_on_its_way() -> None:
     page, moved = Shown(), Window(-0.2, 0.2, -0.1, 0.1)
     page.store.follow(Window(-0.3, 0.3, -0.3, 0.3))
