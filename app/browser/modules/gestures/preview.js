@@ -225,8 +225,9 @@ export class Preview {
     this.#overlay.hide()
     markPreview(false)
     for (const local of [this.#maps, this.#outlines, this.#well, this.#status]) local.restore()
-    // The server sets the range of the reset tool too.
-    for (const range of this.#wellRanges) range.setv({start: range.reset_start, end: range.reset_end}, {sync: false})
+    // The range of the reset tool is that of the server, and null before its first map.
+    for (const range of this.#wellRanges)
+      range.setv({start: range.reset_start ?? range.start, end: range.reset_end ?? range.end}, {sync: false})
     if (this.#window.value !== this.#window.model.shown.value) this.#window.follow()
   }
 }
