@@ -8,6 +8,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from escape_explorer.plots.browser.compiled_files import KERNELS, has_compiled
+
 import escape_explorer
 from escape_explorer import CASES, MapSpec, Plane, SweepSpec, compute_map, compute_sweep, integrate_orbit, open_result
 
@@ -50,6 +52,8 @@ def main() -> None:
         lambda: compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.3,), (9, 9), t_max=10.0), "sweep.zarr"), "zarr", "files"
     )
     assert "pip install 'escape-explorer[page]'" in run_program("serve")
+    # The files compiled in advance are those of the installed sources.
+    assert has_compiled(KERNELS)
 
 
 if __name__ == "__main__":
