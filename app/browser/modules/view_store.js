@@ -8,7 +8,7 @@ import {SharedValue} from "./counted_value.js"
  *
  * @typedef {object} ViewStore
  * @property {SharedValue} energy
- * @property {SharedValue} window  an `engine/starts.Window`; null before the first map
+ * @property {SharedValue} window  an `engine/starts.Window`; null until it is known
  * @property {(message: object) => void} send  set by the component, before any message
  */
 

@@ -1,5 +1,5 @@
 // @ts-check
-/** Loads the modules of the engine, which the server serves as files, when the page is idle after the first pixels. */
+/** Loads the modules of the engine, which the server serves as files, when the page has a system and is idle. */
 
 import {connectStore} from "../components/view_store.js"
 
@@ -13,7 +13,7 @@ export function render({model, el}) {
   const load = () => void import(new URL(model.address, document.baseURI).href).then(({start}) => start(model, el))
   // Safari has no requestIdleCallback.
   const rest = globalThis.requestIdleCallback ?? setTimeout
-  // The server sends a system after the first frame of a map.
+  // The server sends a system with the view, or after the first frame of a map.
   let loading = false
   const begin = () => {
     if (loading || !model.system.key) return
