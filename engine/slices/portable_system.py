@@ -58,11 +58,6 @@ class PortableSystem:
     exits: tuple[ExitTable, ...]
     section: Section = Section.Y_UP
 
-    @property
-    def nbytes(self) -> int:
-        """Approximate size in bytes, with 2048 for everything except the module and the arrays."""
-        return len(self.module) + 2 * self.table.nbytes + sum(table.rows.nbytes for table in self.exits) + 2048
-
     def to_dict(self) -> dict[str, object]:
         """Return everything except the module as lists and numbers."""
         scaled_potential, units = self.potential.in_well_units, self.potential.units
