@@ -162,7 +162,6 @@ export class Preview {
     if (!integrator || !server) return
     const {system} = integrator
     this.#shownView = view
-    document.documentElement.dataset.preview = ""
     const columns = pixelColumns(server.coding, view, pixels, this.#maps.server.data, this.#compared)
     const limit = this.#mapCurves.trace(integrator, view)
     const coloured = exitLines(integrator, view.energy).map(exit => ({...exit, colour: server.colours[exit.channel - 1]}))
@@ -221,7 +220,6 @@ export class Preview {
   #restore() {
     this.#frames.stop()
     this.#shownView = null
-    delete document.documentElement.dataset.preview
     this.#overlay.hide()
     markPreview(false)
     for (const local of [this.#maps, this.#outlines, this.#well, this.#status]) local.restore()
