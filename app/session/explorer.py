@@ -94,7 +94,7 @@ class Explorer:
     def _make_views(self) -> None:
         state, results, locked = self.state, self.results, self._locked
         self.statistics = StatisticsView(state, results, self._copy)
-        may_embed = bool(process_state().settings.ancestors_at(page_host(self._document.session_context.request)))
+        may_embed = bool(process_state().settings.ancestors_at(page_host(self._document)))
         copy_link = partial(self._copy, None)
         self.downloads = Downloads(state, results, copy_link, self._copy_embed_code, locked(self._copied), may_embed=may_embed)
         self.gallery = Gallery(state, locked(self._show_preset))

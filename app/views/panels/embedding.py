@@ -5,6 +5,8 @@ from __future__ import annotations
 from html import escape
 from typing import Any
 
+from bokeh.document import Document
+
 from app.state.permalink import write_link
 from app.state.view_state import ViewState
 from app.views.components.texts import TextPane
@@ -15,9 +17,9 @@ NOT_ALLOWED = "Frames in other pages are switched off. The operator of the serve
 _SIDE = 600
 
 
-def page_host(request: Any) -> str:
-    """Return the host of the page of a request, without port; empty for a page without a request."""
-    return str(getattr(request, "host_name", ""))
+def page_host(document: Document) -> str:
+    """Return the host of the page of a document, without port; empty for a page without a request."""
+    return str(getattr(getattr(document.session_context, "request", None), "host_name", ""))
 
 
 def page_address(request: Any) -> str:
