@@ -24,7 +24,7 @@ from engine.slices.slice_text import AXIS_NAMES, read_slice
 from engine.slices.window import GivenWindow
 from engine.sweeps.spec import MOST_VALUES
 from engine.systems.system import TYPED
-from plots.pictures.palette import DEFAULT_PALETTE, PALETTES, Palette
+from plots.pictures.palette import DEFAULT_PALETTE, PALETTES, Palette, find_palette
 from plots.pictures.setting import Settings
 from plots.texts.accepted_potentials import page_refusal
 
@@ -196,11 +196,9 @@ def _describe_excess(option: str, value: object) -> str:
     return "" if value is None else f", not {option}"
 
 
-def find_palette(palette: Annotated[str, typer.Option(help=PALETTE_HELP)] = DEFAULT_PALETTE) -> Palette:
+def read_palette(palette: Annotated[str, typer.Option(help=PALETTE_HELP)] = DEFAULT_PALETTE) -> Palette:
     """Return the palette with a name; ValueError for an unknown name."""
-    if palette not in PALETTES:
-        raise ValueError(f"palette={palette!r}: must be one of {', '.join(PALETTES)}")
-    return PALETTES[palette]
+    return find_palette(palette)
 
 
 def read_resolution(text: str) -> tuple[int, int]:
@@ -247,7 +245,7 @@ READERS: Mapping[Any, Callable[..., Any]] = {
     Energy: choose_energy,
     GivenEnergy: find_energy,
     OneEnergy: require_energy,
-    Palette: find_palette,
+    Palette: read_palette,
     LayerOptions: read_layers,
     Settings: read_study_settings,
 }

@@ -6,13 +6,15 @@ Examples:
 
 escape-explorer live III --plane x_px --energy 0.45 --output figure
 
-escape-explorer live II --energy 0.2 --start 0.1 -0.2 --caption "An orbit of case II."
+escape-explorer live II --energy 0.2 --start 0.1,-0.2 --start 0.3,0 --caption "Two orbits of case II."
+
+escape-explorer live I --energy 0.19 --picture times
 """
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 import typer
 
@@ -23,12 +25,28 @@ from cli.options import with_options
 from cli.output_files import Stem, add_ending, reserve_output, split_ending, write_files
 from cli.printing import AsJson, print_result
 from engine import MapSpec, compute_map
+from plots.live.live_figure import live_figure
+from plots.live.live_view import LiveView
 from plots.pictures.palette import Palette
-from plots.printed.live_figure import live_figure, live_refusal
 from plots.texts.exports import file_stem
 
-Energies = Annotated[tuple[float, float] | None, typer.Option(metavar="LOW HIGH"), DocumentedBy(live_figure, "energies")]
+Energies = Annotated[tuple[float, float] | None, typer.Option(metavar="LOW HIGH"), DocumentedBy(LiveView, "energies")]
 """Type of the option for the energies that a reader can choose."""
+
+
+class Point(NamedTuple):
+    """A point of the plane."""
+
+    x: float
+    ordinate: float
+
+
+def read_point(text: str) -> Point:
+    """Return the point of the plane from ``X,ORDINATE``."""
+    try:
+        return Point(*map(float, text.split(",")))
+    except (TypeError, ValueError):
+        raise typer.BadParameter(f"{text!r} must be X,ORDINATE, two numbers") from None
 
 
 @with_options
@@ -37,9 +55,10 @@ def run(
     case: Case,
     spec: MapSpec,
     shown_energies: Energies = None,
-    start: Annotated[tuple[float, float] | None, typer.Option(metavar="X ORDINATE")] = None,
-    caption: Annotated[str, DocumentedBy(live_figure)] = "",
-    link: Annotated[str, DocumentedBy(live_figure)] = "",
+    start: Annotated[list[Point] | None, typer.Option(metavar="X,ORDINATE", parser=read_point)] = None,
+    picture: Annotated[str, DocumentedBy(LiveView)],
+    caption: Annotated[str, DocumentedBy(LiveView)],
+    link: Annotated[str, DocumentedBy(LiveView)],
     palette: Palette,
     output: Stem = None,
     place: Place,
@@ -50,18 +69,14 @@ def run(
     Parameters
     ----------
     start
-        Start of a chosen orbit on the plane.
+        Start of a chosen orbit on the plane; can be repeated, for at most five orbits.
     """
-    if refusal := live_refusal(spec):
-        raise ValueError(f"plane: {refusal}")
+    view = LiveView(spec, shown_energies, start or [], picture, caption, link, palette)
     stem = Path(file_stem(spec, file_name_part(case)))
     if output is not None:
         stem, _ = split_ending(output, ["html"], ["html"])
     with reserve_output(stem):
         with place.run() as context:
-            found = compute_map(spec, execution=context.start_stage("map"))
-        page = live_figure(
-            found, energies=shown_energies, starts=[] if start is None else [start], caption=caption, link=link, palette=palette,
-        )  # fmt: skip
+            page = live_figure(view, compute_map(spec, execution=context.start_stage("map")))
         files = write_files({add_ending(stem, "html"): page})
-    print_result(as_json, {"request": found.provenance(), "bytes": len(page.encode())}, files=files)
+    print_result(as_json, {"request": spec.provenance(), "bytes": len(page.encode())}, files=files)

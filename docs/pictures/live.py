@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import NamedTuple
 
 from docs.pictures.panels import CASE, ENERGY
 from engine import CASES, MapSpec, Plane, compute_map
-from plots.printed.live_figure import live_figure
+from plots.live.live_figure import live_figure
+from plots.live.live_view import LiveView
 from reproduction.rotating.paper_maps import PAPER_MAPS
 
 FOLDER = "_live"
@@ -18,21 +18,17 @@ FOLDER = "_live"
 _SIDE = 224
 
 
-class LiveView(NamedTuple):
-    """The first view of a live figure, with the starts of orbits and a caption."""
-
-    spec: MapSpec
-    starts: tuple[tuple[float, float], ...] = ()
-    caption: str = ""
-
-
 LIVE: Mapping[str, LiveView] = {
-    "maps": LiveView(MapSpec(CASE, Plane.X_PX, ENERGY, t_max=1e4), ((-0.2, -0.1),), "Neighbours part: move over the map."),
-    "energies": LiveView(MapSpec(CASE, Plane.X_PX, 0.13, t_max=1e4), (), "Drag the energy from the saddles upward, or play it."),
+    "maps": LiveView(
+        MapSpec(CASE, Plane.X_PX, ENERGY, t_max=1e4), starts=((-0.2, -0.1),), caption="Neighbours part: move over the map."
+    ),
+    "energies": LiveView(
+        MapSpec(CASE, Plane.X_PX, 0.13, t_max=1e4), caption="Drag the energy from the saddles upward, or play it."
+    ),
     "periodic": LiveView(
         MapSpec(CASES["III"], Plane.X_PX, 0.3, t_max=1e3),
-        ((0.0, 0.0), (0.59611, 0.0)),
-        "A stable and an unstable orbit.",
+        starts=((0.0, 0.0), (0.59611, 0.0)),
+        caption="A stable and an unstable orbit.",
     ),
     "earth-moon": LiveView(PAPER_MAPS["Earth–Moon system"][2].spec),
     "copenhagen": LiveView(PAPER_MAPS["Copenhagen problem"][1].spec),
@@ -46,5 +42,5 @@ def write_live_figures(site: Path) -> None:
     folder = site / FOLDER
     folder.mkdir(parents=True, exist_ok=True)
     for name, view in LIVE.items():
-        found = compute_map(replace(view.spec, resolution=(_SIDE, _SIDE)))
-        (folder / f"{name}.html").write_text(live_figure(found, starts=view.starts, caption=view.caption), encoding="utf-8")
+        fine = replace(view, spec=replace(view.spec, resolution=(_SIDE, _SIDE)))
+        (folder / f"{name}.html").write_text(live_figure(fine, compute_map(fine.spec)), encoding="utf-8")

@@ -4,11 +4,18 @@ from __future__ import annotations
 
 import functools
 import importlib.util
+import os
+from collections.abc import Mapping
 from importlib.metadata import entry_points
+from pathlib import Path
 from types import ModuleType
+from typing import Any
+
+from engine.foundations.output_lock import output_named_in_errors
 
 GROUP = "escape_explorer.pictures"
-"""Entry point group of the module that draws results, which has the functions plot_result, to_html and to_holoviews."""
+"""Entry point group of the module that draws results, which has the functions plot_result, to_html, to_holoviews and
+to_live_html."""
 
 
 def require_package(package: str, extra: str) -> None:
@@ -42,3 +49,10 @@ def load_pictures(group: str = GROUP) -> ModuleType:
     for entry in entry_points(group=group):
         return entry.load()
     raise RuntimeError(f"no installed package draws results: entry point {group!r} is missing; install escape-explorer")
+
+
+def write_live_figure(shown: object, path: str | os.PathLike[str], options: Mapping[str, Any]) -> None:
+    """Write the live figure of a map, or of the request for one. Its options are those of `MapSpec.to_html`."""
+    content = load_pictures().to_live_html(shown, **options)
+    with output_named_in_errors(Path(path)):
+        Path(path).write_text(content, encoding="utf-8")

@@ -5,13 +5,11 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from engine.foundations.extras import load_pictures
-from engine.foundations.output_lock import output_named_in_errors
+from engine.foundations.extras import write_live_figure
 from engine.foundations.result import MapResult, Result
 from engine.foundations.stored_fields import checked_dataset
 from engine.foundations.validation import checked_flag
@@ -247,8 +245,9 @@ class EscapeMap(MapResult):
         path
             The file, which is replaced.
         options
-            ``energies``: lowest and highest energy of the figure; ``starts``: (x, ordinate) of orbits, at most five; ``caption``;
-            ``link``: address of the view in an explorer; ``palette``: ``"safe"`` or ``"paper"``.
+            ``energies``: lowest and highest energy of the figure; ``starts``: (x, ordinate) of orbits, at most five; ``picture``
+            shown first: ``"basins"``, ``"times"`` or ``"crossings"``; ``caption``; ``link``: address of the view in an explorer;
+            ``palette``: ``"safe"`` or ``"paper"``.
 
         Raises
         ------
@@ -257,9 +256,7 @@ class EscapeMap(MapResult):
         ValueError
             If the map is not complete, has an axis that is a parameter, runs backward in time, or an option is not legal.
         """
-        content = load_pictures().to_live_html(self, **options)
-        with output_named_in_errors(Path(path)):
-            Path(path).write_text(content, encoding="utf-8")
+        write_live_figure(self, path, options)
 
     def provenance(self) -> dict[str, Any]:
         """Return the provenance of the map in plain values: request, integrator, version, worst energy error, pixels per fate."""

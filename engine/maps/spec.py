@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import operator
+import os
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from engine.foundations.extras import write_live_figure
 from engine.foundations.validation import check_type, checked_flag, replace_unchecked, short_repr
 from engine.slices.axes import Energy, common_energy, scaled_energy
 from engine.slices.default_window import map_window
@@ -223,6 +225,16 @@ class MapSpec:
             backward=int(self.backward),
             section=self.section.text,
         )
+
+    def to_html(self, path: str | os.PathLike[str], **options: Any) -> None:
+        """Compute the map and write it as a live figure, as `EscapeMap.to_html` does, with the same options and exceptions.
+
+        Examples
+        --------
+        >>> from escape_explorer import CASES, MapSpec, Plane
+        >>> MapSpec(CASES["III"], Plane.X_PX, 0.45, t_max=100.0).to_html("figure.html")  # doctest: +SKIP
+        """
+        write_live_figure(self, path, options)
 
     def pixel_at(self, x: float, ordinate: float) -> tuple[int, int] | None:
         """Return (row, column) of the pixel that contains a point of the slice; None outside the window."""

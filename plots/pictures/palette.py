@@ -242,6 +242,13 @@ DEFAULT_PALETTE = "safe"
 DEFAULT_COLOURS = PALETTES[DEFAULT_PALETTE]
 """The palette of this name."""
 
+def find_palette(name: str) -> Palette:
+    """Return the palette with a name; ValueError for an unknown name."""
+    if name not in PALETTES:
+        raise ValueError(f"palette={name!r}: must be one of {', '.join(PALETTES)}")
+    return PALETTES[name]
+
+
 MOST_CHANNELS = len(PAPER.channels)
 """Number of exit channels with individual colours."""
 

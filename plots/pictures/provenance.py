@@ -33,6 +33,7 @@ def provenance_line(frame: EscapeMap) -> str:
         f"{ordinate} from {_write_ends(window.ordinate_low, window.ordinate_high)}",
         f"{columns} × {rows} starts",
         f"t_max = {spec.t_max:g}",
+        *(["backward in time"] if spec.backward else []),
         *([] if frame.complete else ["not finished"]),
         f"escape-explorer {frame.provenance()['version']}",
     ]

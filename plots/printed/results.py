@@ -36,11 +36,10 @@ from plots.layers.table import LAYERS, map_legend
 from plots.pictures.charts import Chart, Frame, Series, Shape
 from plots.pictures.orbit_curves import compute_orbit_curves, well_energy
 from plots.pictures.orbit_quantities import ORBIT_QUANTITIES
-from plots.pictures.palette import DEFAULT_COLOURS, DEFAULT_PALETTE, LIGHT, MEASURED, PALETTES, Entry, Palette, rgba
+from plots.pictures.palette import DEFAULT_COLOURS, DEFAULT_PALETTE, LIGHT, MEASURED, Entry, Palette, find_palette, rgba
 from plots.pictures.periodic_marks import STABILITY_COLOURS
 from plots.printed.curve_figures import draw_chart
 from plots.printed.figure_axes import RENDER_LOCK, legend_handles, set_font, set_title, style_axes
-from plots.printed.live_figure import live_figure
 from plots.printed.map_figure import draw_picture
 from plots.printed.orbit_figure import draw_path, draw_quantity
 from plots.printed.potential_figure import draw_equipotentials, enlarge
@@ -74,7 +73,7 @@ class NoPictureError(TypeError):
 
 def plot_result(result: Result, ax: Axes | None = None, *, palette: str = DEFAULT_PALETTE, **options: Any) -> Axes:
     """Draw a result, as described in `engine.foundations.result.Result.plot`."""
-    colours = _palette(palette)
+    colours = find_palette(palette)
     legal_options = list(inspect.signature(_draw.dispatch(type(result))).parameters)[_FIXED_PARAMETERS:]
     if unknown := [name for name in options if name not in legal_options]:
         options_text = f"the picture of {type(result).__name__} has {', '.join(['palette', *legal_options])}"
@@ -89,12 +88,6 @@ def plot_result(result: Result, ax: Axes | None = None, *, palette: str = DEFAUL
     return ax
 
 
-def _palette(name: str) -> Palette:
-    if name not in PALETTES:
-        raise ValueError(f"palette={name!r}: must be one of {', '.join(PALETTES)}")
-    return PALETTES[name]
-
-
 def to_html(result: Result) -> str:
     """Return the HTML for notebooks: a picture if there is one, a sentence about the result, and the numbers of the result."""
     describe = getattr(result, "describe", None)
@@ -105,11 +98,6 @@ def to_html(result: Result) -> str:
         f"<div><strong>{type(result).__name__}</strong>{sentence}<div style='{_SIDE_BY_SIDE}'>"
         f"{_picture_html(result)}<table>{rows}</table></div></div>"
     )
-
-
-def to_live_html(found: EscapeMap, *, palette: str = DEFAULT_PALETTE, **options: Any) -> str:
-    """Return the HTML of a live figure, as described in `engine.maps.result.EscapeMap.to_html`."""
-    return live_figure(found, palette=_palette(palette), **options)
 
 
 def to_holoviews(result: Result) -> Any:

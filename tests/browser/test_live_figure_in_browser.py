@@ -11,8 +11,9 @@ import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from engine import CASES, Fate, MapSpec, Plane, classify_orbits, compute_map
+from plots.live.live_figure import live_figure
+from plots.live.live_view import LiveView
 from plots.pictures.palette import PAPER, rgba
-from plots.printed.live_figure import live_figure
 from tests.browser.conftest import Watch
 from tests.conftest import TIMEOUT_MS
 
@@ -38,7 +39,8 @@ _READ = """(canvas, places) => {
 def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     found = compute_map(MapSpec(III, Plane.X_PX, FIRST, (112, 112), t_max=100.0))
     path = tmp_path_factory.mktemp("live") / "figure.html"
-    path.write_text(live_figure(found, energies=(0.2, 0.6), starts=[(0.05, 0.0)]), encoding="utf-8")
+    view = LiveView(found.spec, energies=(0.2, 0.6), starts=[(0.05, 0.0)])
+    path.write_text(live_figure(view, found), encoding="utf-8")
     return path
 
 

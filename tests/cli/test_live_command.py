@@ -11,14 +11,14 @@ from tests.cli.conftest import Run
 
 def test_the_file_has_the_view_of_the_request(run: Run, tmp_path: Path) -> None:
     code, out, _ = run(
-        "live", "III", "--energy", 0.45, "--resolution", "20x20", "--t-max", 50, "--start", 0.1, 0.0,
+        "live", "III", "--energy", 0.45, "--resolution", "20x20", "--t-max", 50, "--start", "0.1,0", "--start", "-0.2,-0.1",
         "--shown-energies", 0.3, 0.6, "--caption", "Four exits.", "--json", "--output", tmp_path / "figure.html",
     )  # fmt: skip
     page = (tmp_path / "figure.html").read_text()
     [text] = re.findall(r'<script id="data" type="application/json">(.*?)</script>', page, re.DOTALL)
     data = json.loads(text)
     assert code == 0
-    assert (data["energy"], data["low"], data["high"], data["starts"]) == (0.45, 0.3, 0.6, [[0.1, 0.0]])
+    assert (data["energy"], data["low"], data["high"], data["starts"]) == (0.45, 0.3, 0.6, [[0.1, 0.0], [-0.2, -0.1]])
     assert "Four exits." in page
     assert json.loads(out)["bytes"] == len(page.encode())
 

@@ -17,7 +17,8 @@ from app.views.components.widgets import button
 from app.views.panels.embedding import NOT_ALLOWED
 from app.views.panels.figure_form import FigureForm
 from engine import Result
-from plots.printed.live_figure import live_figure, live_refusal
+from plots.live.live_figure import live_figure
+from plots.live.live_view import LiveView, live_refusal
 from plots.studies.study import Study
 from plots.studies.table import STUDIES
 from plots.texts.exports import file_stem, netcdf_bytes, orbits_csv, python_lines, section_csv, table_csv
@@ -108,7 +109,7 @@ def file_choices(results: ShownResults, state: ViewState) -> dict[str, File]:
         if not live_refusal(frame.spec):
             live_starts = [one.start for one in results.orbits]
             energies = min(state.energies.low, state.energy), max(state.energies.high, state.energy)
-            make = partial(live_figure, frame, energies=energies, starts=live_starts, palette=state.colours)
+            make = partial(live_figure, LiveView(frame.spec, energies, live_starts, palette=state.colours), frame)
             choices[LIVE] = name(".html"), lambda: make().encode()
         choices[MAPS] = name(".nc"), partial(netcdf_bytes, frame, results.analyses)
         study = results.calls.get(state.analysis)

@@ -1,11 +1,10 @@
 // @ts-check
 /**
- * The data of a live figure, which `plots/printed/live_figure.py` writes.
+ * The data of a live figure, which `plots/live/live_data.py` writes.
  *
  * @typedef {object} FigureData
  * @property {import("../engine/system.js").System} system
  * @property {string} module  WebAssembly of the system, in base64
- * @property {string} kernels  WebAssembly of the kernels, in base64
  * @property {import("../engine/system.js").Slice} slice
  * @property {string} plane  name of the slice
  * @property {[string, string]} axes  symbols of the axes of the slice

@@ -27,8 +27,9 @@ class LiveFigure {
    * @param {import("./data.js").FigureData} data
    * @param {import("../engine/integrator.js").Modules} modules
    * @param {Record<string, HTMLImageElement>} images  exact pixels of the pictures
+   * @param {string} program  of the workers
    */
-  constructor(data, modules, images) {
+  constructor(data, modules, images, program) {
     this.#data = data
     this.#integrator = new Integrator(data.system, modules)
     this.#exact = {window: data.window, exact: images, columns: null}
@@ -40,7 +41,7 @@ class LiveFigure {
     this.#starts = [...data.starts]
     this.#map = new MapPicture(part("map"), data, this.#integrator)
     this.#well = new WellPicture(part("well"), data, this.#integrator)
-    const worker = URL.createObjectURL(new Blob([part("worker").textContent], {type: "text/javascript"}))
+    const worker = URL.createObjectURL(new Blob([program], {type: "text/javascript"}))
     const pool = new Pool(() => new Worker(worker))
     this.#frames = new Frames(pool, workerCount(), (view, pixels, isMoving) => this.#receive(view, pixels, isMoving))
     this.#frames.setSystem(data.system, modules)
@@ -293,16 +294,18 @@ async function imageFrom(address) {
   return image
 }
 
-/** Replace the still picture of the page by the live figure, if the browser can run the kernels. */
-async function start() {
+/**
+ * Replace the still picture of the page by the live figure, if the browser can run the kernels.
+ *
+ * @param {{kernels: string, worker: string}} code  WebAssembly of the kernels, in base64, and the program of the workers
+ */
+export async function start({kernels, worker}) {
   if (!hasVectors()) return
   /** @type {import("./data.js").FigureData} */
   const data = JSON.parse(part("data").textContent)
-  const [kernels, system] = await Promise.all([data.kernels, data.module].map(text => WebAssembly.compile(bytesOf(text))))
+  const compiled = await Promise.all([kernels, data.module].map(text => WebAssembly.compile(bytesOf(text))))
   const images = await Promise.all(data.pictures.map(async ({name, image}) => [name, await imageFrom(image)]))
   part("live").hidden = false
   part("still").hidden = true
-  new LiveFigure(data, {kernels, system}, Object.fromEntries(images))
+  new LiveFigure(data, {kernels: compiled[0], system: compiled[1]}, Object.fromEntries(images), worker)
 }
-
-void start()

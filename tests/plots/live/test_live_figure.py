@@ -16,9 +16,11 @@ from PIL import Image
 
 from engine import CASES, POTENTIALS, EscapeMap, MapSpec, Plane, System, compute_map
 from engine.slices.slice_text import read_slice
+from engine.systems.outcomes import Centre
 from plots.layers.map_images import picture_pixels
+from plots.live.live_figure import live_figure
+from plots.live.live_view import LiveView, live_refusal
 from plots.pictures.palette import DEFAULT_COLOURS
-from plots.printed.live_figure import LIVE_PICTURES, live_figure, live_refusal
 
 
 @pytest.fixture(scope="module")
@@ -28,9 +30,9 @@ def found() -> EscapeMap:
 
 @pytest.fixture(scope="module")
 def page(found: EscapeMap) -> str:
-    return live_figure(
-        found, energies=(0.3, 0.6), starts=[(0.1, 0.05)], caption="x < 1 & y > 2", link="https://explorer.example/?a=1&b=2"
-    )
+    link = "https://explorer.example/?a=1&b=2"
+    view = LiveView(found.spec, (0.3, 0.6), [(0.1, 0.05)], "times", "x < 1 & y > 2", link)
+    return live_figure(view, found)
 
 
 def data_of(page: str) -> dict[str, Any]:
@@ -41,7 +43,7 @@ def data_of(page: str) -> dict[str, Any]:
 
 def test_the_pictures_are_those_of_the_map(found: EscapeMap, page: str) -> None:
     pictures = data_of(page)["pictures"]
-    assert [picture["name"] for picture in pictures] == list(LIVE_PICTURES)
+    assert [picture["name"] for picture in pictures] == ["times", "basins", "crossings"]
     for picture in pictures:
         content = base64.b64decode(picture["image"].removeprefix("data:image/png;base64,"))
         pixels = np.asarray(Image.open(BytesIO(content)).convert("RGBA"))
@@ -76,12 +78,20 @@ def test_the_file_refers_to_nothing_but_the_link(page: str) -> None:
 
 def test_a_live_figure_has_at_most_400_kilobytes() -> None:
     found = compute_map(MapSpec(POTENTIALS["C5"], Plane.X_PX, 0.5, (224, 224), t_max=100.0))
-    assert len(live_figure(found).encode()) < 400_000
+    assert len(live_figure(LiveView(found.spec), found).encode()) < 400_000
 
 
-def test_a_map_writes_its_live_figure(found: EscapeMap, tmp_path: Path) -> None:
-    found.to_html(tmp_path / "figure.html", energies=(0.3, 0.6), palette="safe")
-    assert data_of((tmp_path / "figure.html").read_text())["high"] == 0.6
+def test_a_map_and_its_request_write_the_same_live_figure(found: EscapeMap, tmp_path: Path) -> None:
+    for name, shown in (("map", found), ("request", found.spec)):
+        shown.to_html(tmp_path / name, energies=(0.3, 0.6), palette="safe")
+    assert data_of((tmp_path / "map").read_text())["high"] == 0.6
+    assert (tmp_path / "map").read_bytes() == (tmp_path / "request").read_bytes()
+
+
+def test_words_that_look_like_markup_stay_in_the_data(tmp_path: Path) -> None:
+    potential = CASES["I"].with_outcomes([Centre(0.0, 0.0, 0.05, "a <!-- </script> b")], 3.0)
+    MapSpec(potential, Plane.X_PX, 0.1, (4, 4), t_max=5.0).to_html(tmp_path / "figure.html")
+    assert "a <!-- </script> b" in data_of((tmp_path / "figure.html").read_text())["labels"][0]
 
 
 @pytest.mark.parametrize(
@@ -92,6 +102,7 @@ def test_a_map_writes_its_live_figure(found: EscapeMap, tmp_path: Path) -> None:
         ({"energies": (0.3, np.inf)}, "energies"),
         ({"starts": [(0.0, 0.0)] * 6}, "starts: there are 6; must be at most 5"),
         ({"starts": [(np.nan, 0.0)]}, "starts"),
+        ({"picture": "curves"}, "picture='curves': must be one of basins, times, crossings"),
         ({"palette": "blue"}, "palette="),
         ({"link": "javascript:alert(1)"}, "link="),
     ],

@@ -1,0 +1,92 @@
+"""Define the first view of a live figure, and what its reader can choose."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from engine import MapSpec
+from engine.foundations.validation import checked_number
+from engine.systems.review.potential_review import review_potential
+from plots.pictures.palette import PAPER, Palette
+
+LIVE_PICTURES = ("basins", "times", "crossings")
+"""Names of the pictures of a live figure."""
+
+
+@dataclass(frozen=True)
+class LiveView:
+    """The request for a live figure.
+
+    Parameters
+    ----------
+    spec
+        The map that is shown first, for which there is no `live_refusal`.
+    energies
+        Lowest and highest energy that a reader can choose, dimensionless, with the energy of the map between them; None for the
+        range that a review of the potential suggests.
+    starts
+        (x, ordinate) of chosen orbits, at most five.
+    picture
+        The picture that is shown first: basins, times or crossings.
+    caption
+        A text below the figure.
+    link
+        Address of the view in an explorer, which begins with http:// or https://; empty for none.
+    palette
+        Colours of the map.
+
+    Raises
+    ------
+    ValueError
+        If there is no live figure of the map, there are too many starts, or a value is not legal.
+    """
+
+    spec: MapSpec
+    energies: tuple[float, float] | None = None
+    starts: Sequence[tuple[float, float]] = ()
+    picture: str = LIVE_PICTURES[0]
+    caption: str = ""
+    link: str = ""
+    palette: Palette = PAPER
+
+    def __post_init__(self) -> None:
+        if refusal := live_refusal(self.spec):
+            raise ValueError(f"plane: {refusal}")
+        if self.energies is not None:
+            _check_energies(self.energies, self.spec.common_energy)
+        if len(self.starts) > len(self.palette.orbits):
+            raise ValueError(f"starts: there are {len(self.starts)}; must be at most {len(self.palette.orbits)}")
+        for start in self.starts:
+            for number in start:
+                checked_number("starts", number)
+        if self.picture not in LIVE_PICTURES:
+            raise ValueError(f"picture={self.picture!r}: must be one of {', '.join(LIVE_PICTURES)}")
+        if self.link and not self.link.startswith(("http://", "https://")):
+            raise ValueError(f"link={self.link!r}: must begin with http:// or https://")
+
+    @property
+    def pictures(self) -> list[str]:
+        """All pictures of the figure, that which is shown first at the beginning."""
+        return sorted(LIVE_PICTURES, key=lambda name: name != self.picture)
+
+    def find_energies(self) -> tuple[float, float]:
+        """Return the lowest and the highest energy of the figure."""
+        if self.energies is not None:
+            return self.energies
+        suggested = review_potential(self.spec.potential).energies
+        present = [] if self.spec.common_energy is None else [self.spec.common_energy]
+        return min([suggested.low, *present]), max([suggested.high, *present])
+
+
+def live_refusal(spec: MapSpec) -> str:
+    """Return why there is no live figure of a map; empty if there is one."""
+    if spec.plane.parameter is not None:
+        return f"an axis of its slice is {spec.plane.parameter.symbol}, so each of its orbits belongs to another system"
+    return "its orbits run backward in time" if spec.backward else ""
+
+
+def _check_energies(energies: tuple[float, float], energy: float | None) -> None:
+    low, high = (checked_number("energies", each) for each in energies)
+    if not low < high or (energy is not None and not low <= energy <= high):
+        raise ValueError(f"energies={energies}: must rise, with the energy of the map between them")
