@@ -254,7 +254,7 @@ class EscapeMap(MapResult):
         TypeError
             If an option does not exist.
         ValueError
-            If the map is not complete, has an axis that is a parameter, runs backward in time, or an option is not legal.
+            If the map is not complete, has an axis that is a parameter, or an option is not legal.
         """
         write_live_figure(self, path, options)
 

@@ -173,15 +173,19 @@ class Slice:
         arguments = "" if self.shows_positions else f"({', '.join(symbols.get(position, '0') for position in POSITIONS)})"
         return f"{kinetic}V{arguments} = h"
 
-    def to_dict(self, units: WellUnits) -> dict[str, Any]:
-        """Return the slice as plain data in units of a well, see `Slice` in modules/engine/system.js of the page."""
+    def to_dict(self, units: WellUnits, *, backward: bool = False) -> dict[str, Any]:
+        """Return the slice as plain data in units of a well, see `Slice` in modules/engine/system.js of the page.
+
+        With `backward`, all starts have the opposite momenta.
+        """
         scaled = self.in_well_units(units)
+        sense = -1 if backward else 1
         return {
             "axes": list(self.axis_names),
             "units": list(self.axis_units(units)),
-            "motion": [_to_columns(dict(scaled.fixed)), *(_to_columns(axis.components) for axis in scaled.axes)],
+            "motion": [_to_columns(motion, sense) for motion in (dict(scaled.fixed), *(axis.components for axis in scaled.axes))],
             "decided": _decided_code(self),
-            "sign": self.sign,
+            "sign": sense * self.sign,
             "mirrored": self.mirrored_axes,
         }
 
@@ -304,9 +308,15 @@ class Slice:
         return images.ravel()
 
 
-def _to_columns(values: Mapping[Coordinate, float]) -> list[float]:
-    """Return coordinates in the columns of `engine.integrator.kernels.slice_starts`; missing coordinates are 0."""
-    values_by_column = {"angle" if coordinate in ANGLES else coordinate.key: value for coordinate, value in values.items()}
+def _to_columns(values: Mapping[Coordinate, float], sense: int) -> list[float]:
+    """Return coordinates in the columns of `engine.integrator.kernels.slice_starts`; missing coordinates are 0.
+
+    Momenta are multiplied by `sense`. An angle stays, because the sign of the speed turns the velocity.
+    """
+    values_by_column = {
+        "angle" if coordinate in ANGLES else coordinate.key: sense * value if coordinate in MOMENTA else value
+        for coordinate, value in values.items()
+    }
     return [values_by_column.get(name, 0.0) for name in ("x", "y", "px", "py", "angle", "h")]
 
 

@@ -55,13 +55,13 @@ def slice_name(plane: Slice) -> str:
     return ";".join(filter(None, write_slice(plane)))
 
 
-def describe_slice(plane: Slice, potential: Potential, section: Section) -> dict[str, object]:
+def describe_slice(plane: Slice, potential: Potential, section: Section, *, backward: bool = False) -> dict[str, object]:
     """Return a slice in the form of `Slice` in modules/engine/system.js.
 
     It has the columns of its axes in states if it is on the section. Pixels have no mirror images if these cross the section in
-    another way.
+    another way. With `backward`, all starts have the opposite momenta.
     """
-    described = plane.to_dict(potential.units)
+    described = plane.to_dict(potential.units, backward=backward)
     described["sectionColumns"] = section.columns_on(plane)
     return described if section.is_mirrored else described | {"mirrored": None}
 

@@ -44,10 +44,12 @@ def figure_data(view: LiveView, found: EscapeMap, execution: Execution) -> dict[
     spec, outcomes, palette = view.spec, view.spec.outcomes, view.palette
     (low, high), (columns, rows) = view.find_energies(), spec.resolution
     system = make_browser_system(spec.potential, low, high, spec.section, execution=execution).to_dict()
+    if spec.backward and system["backward"]:
+        system["table"] = system["backward"]
     return {
         "module": text_of_bytes(system.pop("module")),
         "system": system,
-        "slice": describe_slice(spec.plane, spec.potential, spec.section),
+        "slice": describe_slice(spec.plane, spec.potential, spec.section, backward=spec.backward),
         "plane": slice_name(spec.plane),
         "axes": list(spec.plane.axis_symbols),
         "energy": spec.common_energy or 0.0,

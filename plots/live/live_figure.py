@@ -108,7 +108,7 @@ def _page(view: LiveView, found: EscapeMap, parts: Mapping[str, str], execution:
 def view_title(spec: MapSpec) -> str:
     """Return the title of a figure."""
     name = spec.potential.name
-    return f"{'Case ' if name in CASES else ''}{name}, {spec.plane.title}"
+    return f"{'Case ' if name in CASES else ''}{name}, {spec.plane.title}{', backward in time' if spec.backward else ''}"
 
 
 def _legend(name: str, shown: ShownMap, *, hidden: bool) -> str:

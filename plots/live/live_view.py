@@ -81,9 +81,10 @@ class LiveView:
 
 def live_refusal(spec: MapSpec) -> str:
     """Return why there is no live figure of a map; empty if there is one."""
-    if spec.plane.parameter is not None:
-        return f"an axis of its slice is {spec.plane.parameter.symbol}, so each of its orbits belongs to another system"
-    return "its orbits run backward in time" if spec.backward else ""
+    parameter = spec.plane.parameter
+    if parameter is None:
+        return ""
+    return f"along {parameter.symbol} each orbit belongs to another system, and a live figure has the exits of one system"
 
 
 def _check_energies(energies: tuple[float, float], energy: float | None) -> None:

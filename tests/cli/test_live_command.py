@@ -26,4 +26,4 @@ def test_the_file_has_the_view_of_the_request(run: Run, tmp_path: Path) -> None:
 def test_a_slice_along_a_parameter_is_refused(run: Run) -> None:
     code, _, error = run("live", "I", "--energy", 0.2, "--plane", "x,epsilon=0.5:2")
     assert code == 2
-    assert "another system" in error
+    assert "along ε each orbit belongs to another system" in error

@@ -115,5 +115,5 @@ def test_illegal_options_are_refused(found: EscapeMap, tmp_path: Path, options: 
 
 def test_a_slice_along_a_parameter_has_no_live_figure() -> None:
     plane = read_slice("x,epsilon=0.5:2", "", System("I"))
-    assert "another system" in live_refusal(MapSpec(CASES["I"], plane, 0.2))
+    assert "along ε each orbit belongs to another system" in live_refusal(MapSpec(CASES["I"], plane, 0.2))
     assert live_refusal(MapSpec(CASES["I"], Plane.X_PX, 0.2)) == ""
