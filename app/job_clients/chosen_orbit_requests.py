@@ -11,13 +11,13 @@ import numpy as np
 
 from app.job_clients.latest_request import LatestRequest, Locked
 from app.job_clients.orbit_requests import StartOrbit
-from app.state.view import Start
 from app.state.view_state import ViewState
 from engine import Orbit, PeriodicOrbit, Stability, compute_separation, find_divergent_start
 from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job, Queue
 from engine.propagation.fates import describe_fate
 from engine.results import DivergentStart, Separation
+from plots.links.map_view import Start
 from plots.pictures.orbit_curves import initial_state
 from plots.studies.family import nearest_orbit_job
 from plots.studies.section import start_through

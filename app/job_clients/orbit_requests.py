@@ -10,13 +10,13 @@ from typing import Any
 from app.job_clients.error_messages import error_sentence
 from app.job_clients.latest_request import Locked
 from app.job_clients.requested_results import RequestedResults
-from app.state.view import Start
 from app.state.view_state import ViewState
 from engine import Fate, Orbit, PeriodicOrbit, judge_orbit
 from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job, Queue
 from engine.propagation.fates import describe_fate
 from engine.results import BirkhoffDigits, OrbitVerdict
+from plots.links.map_view import Start
 from plots.pictures.orbit_curves import OrbitCurves, compute_orbit_curves
 
 

@@ -24,7 +24,7 @@ from app.session.potential_presenter import PotentialPresenter
 from app.session.study_presenter import StudyPresenter
 from app.state.help_texts import HELP_TEXTS, title_with_help
 from app.state.navigation import WINDOW_MOVES
-from app.state.presets import Preset
+from app.state.permalink import preset_view
 from app.state.view import Analysis
 from app.views.analysis.live_section import LiveSection
 from app.views.analysis.statistics import StatisticsView
@@ -43,6 +43,7 @@ from app.views.panels.slice_panel import SlicePanel
 from engine import System
 from engine.jobs.client import JobClient
 from engine.systems.system import TYPED
+from plots.links.presets import Preset
 from plots.studies.section import SECTION_STUDY
 from plots.studies.table import STUDIES, studies_by_tab
 
@@ -162,7 +163,7 @@ class Explorer:
         # On a phone, the drawer covers the maps.
         if self.state.touch:
             self.drawers.show(None)
-        self._open_view(preset.view.system, preset.view.within_limits().values())
+        self._open_view(preset_view(preset).system, preset_view(preset).within_limits().values())
 
     def _copied(self, success: bool) -> None:
         self.notice.show("Copied." if success else "The browser does not allow copying.")

@@ -14,7 +14,7 @@ from app.job_clients.map_requests import MapRequests
 from app.runtime.process_state import process_state
 from app.session.context import History, SessionContext
 from app.state.navigation import DOUBLE_CLICK_ZOOM_FACTOR, zoom
-from app.state.view import Analysis, Start
+from app.state.view import Analysis
 from app.state.view_state import STARTS_FULL
 from app.views.maps.map_plots import MapActions, MapsView, prepare_curves
 from app.views.maps.map_toolbar import MapToolbar
@@ -22,6 +22,7 @@ from app.views.maps.progress import ProgressView
 from app.views.panels.engine_component import BrowserEngine
 from engine import EscapeMap, Fate, Window
 from engine.propagation.fates import describe_fate
+from plots.links.map_view import Start
 
 
 class MapPresenter:

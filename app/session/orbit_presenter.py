@@ -15,7 +15,6 @@ from app.browser.components.orbit_components import OrbitPlayer
 from app.job_clients.chosen_orbit_requests import DivergentStartRequests, PeriodicOrbitRequests, SeparationRequests
 from app.job_clients.orbit_requests import OrbitRequests, StartOrbit
 from app.session.context import SessionContext
-from app.state.view import Start
 from app.views.maps.markers import NO_POINTS, Markers
 from app.views.maps.well import WellView
 from app.views.orbits.inspector import Inspector
@@ -24,6 +23,7 @@ from app.views.orbits.orbit_plots import OrbitPlots
 from app.views.orbits.path_picture import path_picture
 from app.views.orbits.separation_plot import SeparationPlot
 from engine import Orbit, Section, Slice
+from plots.links.map_view import Start
 from plots.pictures.orbit_curves import OrbitCurves, restrict_curves
 
 ORBITS_REMOVED = "The orbits are removed, because they start on another slice. The Back button of the browser shows them again."

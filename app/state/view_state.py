@@ -10,18 +10,7 @@ import numpy as np
 import param
 
 from app.state.system_review import PageReview, review_catalogue_entry, review_job
-from app.state.view import (
-    ANALYSES,
-    FIRST_VIEW,
-    PICTURES,
-    RESOLUTION_CHOICES,
-    SETTINGS,
-    T_MAX_CHOICES,
-    Start,
-    View,
-    allowed_resolutions,
-    allowed_t_max,
-)
+from app.state.view import ANALYSES, FIRST_VIEW, PICTURES, View, allowed_resolutions, allowed_t_max
 from app.state.watched_starts import WatchedStarts
 from engine import (
     Fate,
@@ -44,6 +33,7 @@ from engine.systems.catalogue.entry import EnergyRange
 from engine.systems.catalogue.table import PAPER_ENERGIES
 from engine.systems.system import TYPED
 from plots.layers.table import LAYERS
+from plots.links.map_view import RESOLUTION_CHOICES, SETTINGS, T_MAX_CHOICES, Start
 from plots.pictures.palette import DEFAULT_PALETTE, MOST_ORBITS, PALETTES, Palette
 from plots.pictures.time_scale import TimeScale
 from plots.studies.study import Subject

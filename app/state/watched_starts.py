@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from engine import Potential
+from plots.links.link_formats import Format, listed, read_number
 
 LARGEST_SEED = 2**31 - 1
 """Largest seed of the random generator in the browser."""
@@ -99,3 +100,16 @@ class WatchedStarts:
             raise ValueError(f"seed={self.seed}: must be from 0 to {LARGEST_SEED}")
         if not SMALLEST_LOG_RADIUS <= self.radius <= LARGEST_LOG_RADIUS:
             raise ValueError(f"radius={self.radius:g}: must be from {SMALLEST_LOG_RADIUS:g} to {LARGEST_LOG_RADIUS:g}")
+
+
+def _read_watched(text: str) -> WatchedStarts:
+    where, count, seed, radius = text.split(",")
+    return WatchedStarts(StartsFrom(where), int(count), int(seed), read_number(radius))
+
+
+WATCHED = Format(
+    lambda watched: f"{watched.where},{watched.count},{watched.seed},{watched.radius:g}",
+    _read_watched,
+    lambda: f"{listed(StartsFrom)}, {listed(map(str, COUNTS))}, a seed, and log10 of a radius, such as well,5000,1,-2",
+)
+"""Text form of the starts in a link."""

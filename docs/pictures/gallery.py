@@ -12,9 +12,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from PIL import Image
 
-from app.state.presets import PRESETS, Preset
-from app.state.system_review import review_catalogue_entry
-from app.state.view import View
 from engine import (
     EscapeMap,
     compute_map,
@@ -26,9 +23,12 @@ from engine.foundations.execution import DEFAULT_EXECUTION
 from engine.jobs.job import run_job
 from engine.maps.map_jobs import map_job
 from engine.slices.limiting_curves import trace_equipotentials
+from engine.systems.review.potential_review import review_system
 from plots.layers.layer import Analyses
 from plots.layers.map_images import picture_pixels
 from plots.layers.table import LAYERS
+from plots.links.map_view import MapView
+from plots.links.presets import PRESETS, Preset
 from plots.pictures.palette import DEFAULT_COLOURS, LIGHT, PATCH_EDGE
 from plots.printed.window_axes import draw_curve, draw_pixels, draw_strokes
 
@@ -51,8 +51,9 @@ def make(names: Sequence[str]) -> None:
 
 def _draw_thumbnail(preset: Preset) -> Image.Image:
     """Return a thumbnail in RGBA. It is transparent where no orbit can start, for light and dark pages."""
-    frame = compute_map(replace(preset.view.map_spec(review_catalogue_entry(preset.view.system.case)), resolution=(SIDE, SIDE)))
-    analyses = _analyse(frame, preset.view)
+    view = preset.map_view
+    frame = compute_map(replace(view.map_spec(review_system(view.system)), resolution=(SIDE, SIDE)))
+    analyses = _analyse(frame, view)
     pixels = picture_pixels(frame, preset.picture, DEFAULT_COLOURS, analyses)
     strokes = [
         stroke
@@ -69,20 +70,20 @@ def _draw_thumbnail(preset: Preset) -> Image.Image:
     if strokes:
         draw_strokes(axes, strokes, frame.spec.find_window(), DEFAULT_COLOURS)
     else:
-        _draw_curves(axes, frame, preset.view)
+        _draw_curves(axes, frame, view)
     axes.set(xlim=(0.0, 1.0), ylim=(0.0, 1.0))
     file = BytesIO()
     figure.savefig(file, format="png")
     return Image.open(file).convert("RGBA")
 
 
-def _analyse(frame: EscapeMap, view: View) -> Analyses:
+def _analyse(frame: EscapeMap, view: MapView) -> Analyses:
     known = {map_job(frame.spec): frame}
     layers = (layer for name, layer in LAYERS.items() if name in view.layers)
     return {layer.name: run_job(layer.job(frame.spec, view.settings), DEFAULT_EXECUTION, known) for layer in layers}
 
 
-def _draw_curves(axes: Axes, frame: EscapeMap, view: View) -> None:
+def _draw_curves(axes: Axes, frame: EscapeMap, view: MapView) -> None:
     """Draw equipotentials, limiting curve, orbits and exits."""
     spec, escape = frame.spec, frame.spec.potential.escape_energy
     energies = (view.energy, escape, *(level * escape for level in _LEVELS))

@@ -9,8 +9,8 @@ import pytest
 from playwright.sync_api import expect
 
 from app.job_clients.error_messages import ZOOM_ENDS
-from app.state.presets import PRESETS
 from engine import Window
+from plots.links.presets import PRESETS
 from tests.browser.explorer_page import ExplorerPage
 
 DEEP = next(preset for preset in PRESETS if preset.key == "closer")

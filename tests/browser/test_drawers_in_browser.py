@@ -7,7 +7,7 @@ from collections.abc import Callable
 import pytest
 from playwright.sync_api import Locator, expect
 
-from app.state.presets import PRESETS, Preset
+from plots.links.presets import PRESETS, Preset
 from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 

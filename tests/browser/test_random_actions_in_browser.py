@@ -13,7 +13,7 @@ import pytest
 from playwright.sync_api import TimeoutError as Late
 from playwright.sync_api import expect
 
-from app.state.presets import PRESETS
+from app.state.permalink import preset_view
 from app.state.view import Analysis
 from app.state.view_state import ViewState
 from app.views.panels.analysis_choice import ANALYSIS_LABELS
@@ -22,6 +22,7 @@ from engine.foundations.execution import DEFAULT_EXECUTION
 from engine.foundations.wording import format_share
 from engine.jobs.job import Job, run_job
 from plots.layers.table import LAYERS
+from plots.links.presets import PRESETS
 from plots.pictures.image_columns import map_columns
 from plots.pictures.time_scale import fitted_scale
 from plots.texts.typeset import typeset
@@ -38,7 +39,7 @@ LINKS = (
 QUICK = [
     preset
     for preset in PRESETS
-    if preset.view.t_max <= 1e4 and preset.view.system.case in CASES and preset.view.resolution <= 224
+    if preset_view(preset).t_max <= 1e4 and preset_view(preset).system.case in CASES and preset_view(preset).resolution <= 224
 ]
 ACTIONS, SEEDS = 50, range(200, 206)
 ROUNDS = 20

@@ -11,7 +11,7 @@ from bokeh.events import DoubleTap, Event, PointEvent, SelectionGeometry, Tap
 from bokeh.models import ColumnDataSource, Image, LinearColorMapper, LogColorMapper
 from bokeh.plotting import figure
 
-from app.state.view import PICTURES, Start
+from app.state.view import PICTURES
 from app.state.view_state import ViewState
 from app.views.components.plots import FigurePane, PictureTexts, changing_models, label_axes, map_figure
 from app.views.components.view_store import ViewStore
@@ -31,6 +31,7 @@ from plots.layers.map_images import LAYER_COLUMNS, result_columns
 from plots.layers.picture import ShownMap
 from plots.layers.table import LAYERS, map_legend
 from plots.layers.table import PICTURES as PICTURE_ENTRIES
+from plots.links.map_view import Start
 from plots.pictures.image_columns import NO_LAYER
 from plots.pictures.palette import PALETTES
 from plots.pictures.time_scale import WITHOUT_ESCAPES, TimeScale, fitted_scale

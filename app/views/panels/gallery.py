@@ -10,9 +10,10 @@ import panel as pn
 import param
 from panel.custom import JSComponent
 
-from app.state.presets import GROUPS, PRESETS, Preset
+from app.state.permalink import preset_view
 from app.state.view_state import ViewState
 from plots.layers.table import TITLES
+from plots.links.presets import GROUPS, PRESETS, Preset
 from plots.texts.typeset import typeset
 
 INVITATION = "Each pixel of the basins is a start, and its colour the exit through which its orbit escapes. Views to begin with:"
@@ -113,6 +114,6 @@ def _card(preset: Preset) -> dict[str, str]:
         "title": preset.title,
         "caption": preset.caption,
         "line": "",
-        "alt": f"{TITLES[preset.picture]}, case {preset.view.system.case}, {preset.view.plane.title}",
+        "alt": f"{TITLES[preset.picture]}, case {preset_view(preset).system.case}, {preset_view(preset).plane.title}",
         "thumbnail": f"{_THUMBNAILS}/{preset.key}.png",
     }

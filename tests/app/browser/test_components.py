@@ -18,12 +18,12 @@ from app.browser.inputs.counted_inputs import (
     ParameterSliders,
     SliderParameter,
 )
-from app.state.presets import PRESETS
 from app.state.view_state import ViewState
 from app.views.panels.browser_events import KEYS, BrowserEvents
 from app.views.panels.engine_component import BrowserEngine
 from app.views.panels.gallery import Gallery
 from engine import Window
+from plots.links.presets import PRESETS
 from tests.app.browser_messages import send
 from tests.app.map_actions import make_browser_engine
 

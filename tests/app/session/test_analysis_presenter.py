@@ -11,12 +11,13 @@ import numpy as np
 import pytest
 
 from app.session.analysis_presenter import AnalysisPresenter
-from app.state.view import Analysis, default_settings
+from app.state.view import Analysis
 from app.state.view_state import ViewState
 from engine import CASES, EscapeMap, MapSpec, Plane, System, Trust, Window, compute_map
 from engine.jobs.manager import Jobs
 from plots.layers.layer import Analyses
 from plots.layers.table import LAYERS
+from plots.links.map_view import default_settings
 from plots.pictures.palette import CLEAR
 from tests.app.map_actions import make_maps
 from tests.app.session.session_lock import context_of

@@ -8,13 +8,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.state.permalink import LONGEST_VALUE, linked_view, read_link, without_system, write_link
-from app.state.view import PICTURES, RESOLUTION_CHOICES, SETTINGS, T_MAX_CHOICES, Analysis, View
+from app.state.permalink import linked_view, read_link, without_system, write_link
+from app.state.view import PICTURES, Analysis, View
 from app.state.view_state import ViewState
 from app.state.watched_starts import COUNTS, StartsFrom, WatchedStarts
 from engine import CASES, Coordinate, ParameterAxis, Plane, Slice, System, Window, read_section
 from engine.systems.system import TYPED
 from plots.layers.table import LAYERS
+from plots.links.map_link import LONGEST_VALUE
+from plots.links.map_view import RESOLUTION_CHOICES, SETTINGS, T_MAX_CHOICES
 from plots.pictures.palette import MOST_ORBITS, PALETTES
 from plots.pictures.time_scale import TimeScale
 from tests.app.state.opened_link import open_link

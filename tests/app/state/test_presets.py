@@ -15,8 +15,7 @@ from PIL import Image
 
 import app
 from app.runtime.process_state import ProcessState
-from app.state.permalink import read_link, write_link
-from app.state.presets import GROUPS, PRESETS, Preset
+from app.state.permalink import preset_view, read_link, write_link
 from app.state.system_review import review_catalogue_entry
 from app.state.view import Analysis, View
 from app.state.view_state import ViewState
@@ -40,6 +39,7 @@ from engine import (
     start_states,
 )
 from plots.layers.table import TITLES
+from plots.links.presets import GROUPS, PRESETS, Preset
 from plots.pictures.palette import MOST_ORBITS
 
 THUMBNAILS = Path(app.__file__).parent / "static" / "gallery"
@@ -57,7 +57,7 @@ def marked(key: str, value: Any) -> Any:
 
 
 def view_of(key: str) -> View:
-    return next(preset.view for preset in PRESETS if preset.key == key)
+    return next(preset_view(preset) for preset in PRESETS if preset.key == key)
 
 
 def spec_of(view: View) -> MapSpec:
@@ -90,18 +90,18 @@ def test_presets_cover_all_groups_cases_planes_and_pictures() -> None:
     places = [preset for preset in PRESETS if preset.group == "Places"]
     assert len(places) >= 12
     assert {preset.group for preset in PRESETS} == set(GROUPS)
-    assert {preset.view.system.case for preset in places} == set(CASES)
-    assert {preset.view.plane for preset in PRESETS} >= set(Plane)
+    assert {preset_view(preset).system.case for preset in places} == set(CASES)
+    assert {preset_view(preset).plane for preset in PRESETS} >= set(Plane)
     assert {preset.picture for preset in PRESETS} == set(TITLES)
 
 
 @each_preset
 def test_a_preset_is_a_valid_view_with_a_link_and_a_small_picture(preset: Preset) -> None:
     assert read_link(dict(parse_qsl(preset.link, strict_parsing=True)))[1] == []
-    state = ViewState(**preset.view.values())
-    assert state.map_spec() == spec_of(preset.view)
+    state = ViewState(**preset_view(preset).values())
+    assert state.map_spec() == spec_of(preset_view(preset))
     values, problems = read_link(dict(parse_qsl(write_link(state)[1:], strict_parsing=True)))
-    assert (ViewState(**values).view, problems) == (preset.view, [])
+    assert (ViewState(**values).view, problems) == (preset_view(preset), [])
     file = THUMBNAILS / f"{preset.key}.png"
     assert file.stat().st_size <= LARGEST_THUMBNAIL
     with Image.open(file) as picture:
@@ -117,8 +117,8 @@ def test_examples_show_the_analyses_that_they_explain() -> None:
 def test_a_server_with_limits_shows_every_preset(start_state: Callable[..., ProcessState]) -> None:
     start_state(longest_t_max=1e3, largest_resolution=112)
     for preset in PRESETS:
-        state = ViewState(**preset.view.within_limits().values())
-        assert (state.t_max, state.resolution) == (min(preset.view.t_max, 1e3), 112)
+        state = ViewState(**preset_view(preset).within_limits().values())
+        assert (state.t_max, state.resolution) == (min(preset_view(preset).t_max, 1e3), 112)
 
 
 def test_every_thumbnail_has_a_preset() -> None:
@@ -127,7 +127,7 @@ def test_every_thumbnail_has_a_preset() -> None:
 
 @pytest.mark.parametrize("preset", [marked(preset.key, preset) for preset in PRESETS])
 def test_starts_are_in_the_window_and_allowed(preset: Preset) -> None:
-    view, spec = preset.view, spec_of(preset.view)
+    view, spec = preset_view(preset), spec_of(preset_view(preset))
     # Presets that show many orbits have no chosen orbits.
     fewest = 0 if view.analysis == Analysis.WATCH else 1
     assert fewest <= len(set(view.starts)) == len(view.starts) <= MOST_ORBITS

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.state.view import default_settings
 from app.state.view_state import ViewState
 from engine import CASES, Coordinate, ParameterAxis, Plane, Slice, System, Window, read_section
 from engine.systems.catalogue.table import PAPER_ENERGIES
+from plots.links.map_view import default_settings
 from plots.pictures.palette import MOST_ORBITS
 
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from app.state.link_formats import Format, name_format, number_format
-from app.state.view import FIRST_VIEW
 from engine import POTENTIALS, System
 from engine.systems.formulas.formula_parser import LARGEST_VALUE, LONGEST_TEXT, checked_letter_value
 from engine.systems.parameters import WELL_PARAMETERS
 from engine.systems.system import TYPED
+from plots.links.link_formats import Format, name_format, number_format
+from plots.links.map_view import FIRST_MAP_VIEW
 
 # Names of link parameters. All letters of a formula share one parameter, because single letters already name other parameters.
 _CASE, _FORMULA, _LETTERS = "case", "V", "letters"
@@ -30,7 +30,7 @@ def write_system(system: System) -> dict[str, str]:
 
 def system_of(parts: Mapping[str, Any]) -> tuple[System, list[str]]:
     """Return the system in a link, not reviewed yet, and a message if the link has letters that the formula does not have."""
-    case = parts.get(_CASE, TYPED if _FORMULA in parts else FIRST_VIEW.system.case)
+    case = parts.get(_CASE, TYPED if _FORMULA in parts else FIRST_MAP_VIEW.system.case)
     formula = parts.get(_FORMULA, "")
     letter_values = parts.get(_LETTERS, {})
     letters = [name for name in System(case, formula).parameter_names if name not in WELL_PARAMETERS]

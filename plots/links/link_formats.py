@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from app.state.watched_starts import COUNTS, StartsFrom, WatchedStarts
 from engine import Window, read_section
 from plots.pictures.palette import MOST_ORBITS
 from plots.pictures.time_scale import TimeScale
@@ -128,11 +127,6 @@ def _read_starts(text: str) -> tuple[tuple[float, ...], ...]:
     return starts
 
 
-def _read_watched(text: str) -> WatchedStarts:
-    where, count, seed, radius = text.split(",")
-    return WatchedStarts(StartsFrom(where), int(count), int(seed), read_number(radius))
-
-
 SWITCH = choice_format({"yes": True, "no": False})
 """Text form of a switch."""
 
@@ -159,10 +153,3 @@ STARTS = Format(
     lambda: f"up to {MOST_ORBITS} starts x,ordinate, separated by semicolons",
 )
 """Text form of the starts of the orbits."""
-
-WATCHED = Format(
-    lambda watched: f"{watched.where},{watched.count},{watched.seed},{watched.radius:g}",
-    _read_watched,
-    lambda: f"{listed(StartsFrom)}, {listed(map(str, COUNTS))}, a seed, and log10 of a radius, such as well,5000,1,-2",
-)
-"""Text form of the starts in the player of many orbits."""

@@ -5,10 +5,9 @@ from __future__ import annotations
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
-from urllib.parse import parse_qsl
 
-from app.state.permalink import linked_view, read_link
-from app.state.view import View
+from plots.links.map_link import read_map_view
+from plots.links.map_view import MapView
 
 GROUPS = ("The paper", "Places", "Explanations", "Other slices", "Other systems")
 """Groups of presets, in the order of the page."""
@@ -43,10 +42,9 @@ class Preset:
     invitation: str = ""
 
     @property
-    def view(self) -> View:
-        """The view, with defaults for choices that the settings of the server do not allow."""
-        values, _ = read_link(dict(parse_qsl(self.link)))
-        return linked_view(values)
+    def map_view(self) -> MapView:
+        """The map of the view with its layers."""
+        return read_map_view(self.link)
 
 
 def _read_presets() -> tuple[Preset, ...]:
