@@ -31,6 +31,7 @@ INTERRUPTED = 130
 COMMANDS = (
     "map",
     "live",
+    "gallery",
     "orbit",
     "lyapunov",
     "measures",

@@ -85,6 +85,13 @@ def reserve_output(output: Path | None) -> Iterator[None]:
         yield
 
 
+def make_folder(folder: Path) -> None:
+    """Create an output folder unless it exists; ValueError if it cannot be created."""
+    if not folder.absolute().parent.is_dir() or (folder.exists() and not folder.is_dir()):
+        raise ValueError(f"output='{folder}': must be a folder, or a new folder inside an existing one")
+    folder.mkdir(exist_ok=True)
+
+
 Stem = Annotated[Path | None, typer.Option(metavar="STEM"), DocumentedBy(reserve_output)]
 """Type of the option for the names of output files."""
 

@@ -22,7 +22,7 @@ import typer
 
 from cli.execution import THREADS_ONLY, Place
 from cli.options import with_options
-from cli.output_files import reserve_output, write_files
+from cli.output_files import make_folder, reserve_output, write_files
 from cli.printing import AsJson, Table, print_result
 from reproduction import members, quality
 from reproduction.map_cache import MapCache
@@ -57,7 +57,7 @@ def run(
         print_result(as_json, {"figures": captions}, Table(("name", "shows"), list(captions.items())))
         return
     map_quality = quality.QUICK if quick else quality.FULL
-    _make_folder(output)
+    make_folder(output)
     begin = time.perf_counter()
     made_figures: list[dict[str, Any]] = []
     try:
@@ -77,13 +77,6 @@ def run(
     sentence = f"Written to {output} in {seconds:.0f} s, {map_quality.name} quality: {side} x {side} starts a map."
     answer = {"quality": map_quality.name, "seconds": seconds, "figures": made_figures}
     print_result(as_json, answer, Table(("made", "in", "files"), rows), sentence)
-
-
-def _make_folder(folder: Path) -> None:
-    """Create the output folder unless it exists; ValueError if it cannot be created."""
-    if not folder.absolute().parent.is_dir() or (folder.exists() and not folder.is_dir()):
-        raise ValueError(f"output='{folder}': must be a folder, or a new folder inside an existing one")
-    folder.mkdir(exist_ok=True)
 
 
 def _make(name: str, cache: MapCache, folder: Path) -> dict[str, Any]:

@@ -20,15 +20,13 @@ from engine import (
     start_states,
 )
 from engine.foundations.execution import DEFAULT_EXECUTION
-from engine.jobs.job import run_job
-from engine.maps.map_jobs import map_job
 from engine.slices.limiting_curves import trace_equipotentials
 from engine.systems.review.potential_review import review_system
-from plots.layers.layer import Analyses
 from plots.layers.map_images import picture_pixels
 from plots.layers.table import LAYERS
 from plots.links.map_view import MapView
 from plots.links.presets import PRESETS, Preset
+from plots.live.gallery import analyse
 from plots.pictures.palette import DEFAULT_COLOURS, LIGHT, PATCH_EDGE
 from plots.printed.window_axes import draw_curve, draw_pixels, draw_strokes
 
@@ -53,7 +51,7 @@ def _draw_thumbnail(preset: Preset) -> Image.Image:
     """Return a thumbnail in RGBA. It is transparent where no orbit can start, for light and dark pages."""
     view = preset.map_view
     frame = compute_map(replace(view.map_spec(review_system(view.system)), resolution=(SIDE, SIDE)))
-    analyses = _analyse(frame, view)
+    analyses = analyse(frame, view.layers, view.settings, DEFAULT_EXECUTION)
     pixels = picture_pixels(frame, preset.picture, DEFAULT_COLOURS, analyses)
     strokes = [
         stroke
@@ -75,12 +73,6 @@ def _draw_thumbnail(preset: Preset) -> Image.Image:
     file = BytesIO()
     figure.savefig(file, format="png")
     return Image.open(file).convert("RGBA")
-
-
-def _analyse(frame: EscapeMap, view: MapView) -> Analyses:
-    known = {map_job(frame.spec): frame}
-    layers = (layer for name, layer in LAYERS.items() if name in view.layers)
-    return {layer.name: run_job(layer.job(frame.spec, view.settings), DEFAULT_EXECUTION, known) for layer in layers}
 
 
 def _draw_curves(axes: Axes, frame: EscapeMap, view: MapView) -> None:

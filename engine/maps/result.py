@@ -247,7 +247,7 @@ class EscapeMap(MapResult):
         options
             ``energies``: lowest and highest energy of the figure; ``starts``: (x, ordinate) of orbits, at most five; ``picture``
             shown first: ``"basins"``, ``"times"`` or ``"crossings"``; ``caption``; ``link``: address of the view in an explorer;
-            ``palette``: ``"safe"`` or ``"paper"``.
+            ``palette``: ``"safe"`` or ``"paper"``; ``title``: heading, by default system and slice.
 
         Raises
         ------

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from engine import MapSpec
+from engine import CASES, MapSpec
 from engine.foundations.validation import checked_number
 from engine.systems.review.potential_review import review_potential
 from plots.pictures.palette import PAPER, Palette
@@ -35,6 +35,8 @@ class LiveView:
         Address of the view in an explorer, which begins with http:// or https://; empty for none.
     palette
         Colours of the map.
+    title
+        Heading of the figure; empty for system and slice.
 
     Raises
     ------
@@ -49,6 +51,7 @@ class LiveView:
     caption: str = ""
     link: str = ""
     palette: Palette = PAPER
+    title: str = ""
 
     def __post_init__(self) -> None:
         if refusal := live_refusal(self.spec):
@@ -70,6 +73,11 @@ class LiveView:
         """All pictures of the figure, that which is shown first at the beginning."""
         return sorted(LIVE_PICTURES, key=lambda name: name != self.picture)
 
+    @property
+    def heading(self) -> str:
+        """The title, or else system and slice."""
+        return self.title or view_title(self.spec)
+
     def find_energies(self) -> tuple[float, float]:
         """Return the lowest and the highest energy of the figure."""
         if self.energies is not None:
@@ -85,6 +93,12 @@ def live_refusal(spec: MapSpec) -> str:
     if parameter is None:
         return ""
     return f"along {parameter.symbol} each orbit belongs to another system, and a live figure has the exits of one system"
+
+
+def view_title(spec: MapSpec) -> str:
+    """Return system and slice of a map."""
+    name = spec.potential.name
+    return f"{'Case ' if name in CASES else ''}{name}, {spec.plane.title}{', backward in time' if spec.backward else ''}"
 
 
 def _check_energies(energies: tuple[float, float], energy: float | None) -> None:
