@@ -21,8 +21,9 @@ from plots.pictures.image_columns import pixel_coding
 from plots.pictures.palette import Palette
 from plots.pictures.time_scale import fitted_scale
 
-# Longest time of the orbits that a reader chooses, in units of the well.
+# Longest times of the orbits that a reader chooses, and of previews, in units of the well.
 _LONGEST_TIME = 200.0
+_LONGEST_PREVIEW = 1600.0
 # Largest number of colours in the table of a PNG file.
 _MOST_COLOURS = 256
 # Decimals of an energy beyond the size of the range of energies.
@@ -60,6 +61,7 @@ def figure_data(view: LiveView, found: EscapeMap, execution: Execution) -> dict[
         "home": spec.given_window is None,
         "starts": [list(start) for start in view.starts],
         "longest": min(spec.t_max, _LONGEST_TIME * spec.potential.units.time),
+        "horizon": min(spec.t_max, _LONGEST_PREVIEW * spec.potential.units.time),
         "exact": f"Exact map, computed before: {columns} × {rows} pixels, up to t = {format_number(spec.t_max)}.",
         "colours": [entry.colour for entry in palette.end_entries(outcomes)],
         "labels": [outcome.label for outcome in outcomes],

@@ -80,6 +80,19 @@ def test_the_first_picture_is_the_exact_map(open_figure: Callable[..., Page]) ->
     expect(page.locator("#still")).to_be_hidden()
 
 
+def test_a_figure_does_not_call_the_map_exact_at_another_energy(open_figure: Callable[..., Page]) -> None:
+    page = open_figure()
+    status = page.locator("#energy").evaluate(
+        """slider => {
+          slider.value = 0.3
+          slider.dispatchEvent(new Event("input"))
+          return document.getElementById("status").textContent
+        }"""
+    )
+    assert status == "A preview is computed here."
+    at_rest(page)
+
+
 def test_the_map_of_another_energy_is_that_of_the_library(open_figure: Callable[..., Page]) -> None:
     page = open_figure()
     set_energy(page, OTHER)

@@ -29,8 +29,12 @@ test("half of a symmetric picture is computed, the other half has the mirror ima
   assert.deepEqual([...time.subarray(6)], [3, 2, 1])
 })
 
-/** Frames with a pool that answers when it is told to. */
-function startFrames() {
+/**
+ * Frames with a pool that answers when it is told to. All pixels have the fate 0.
+ *
+ * @param {{longest?: number, undecided?: number}} options  longest time at rest, and the fate of undecided pixels
+ */
+function startFrames({longest, undecided} = {}) {
   /** @type {{view: any, finish: () => void}[]} */
   const asked = []
   const pool = /** @type {any} */ ({
@@ -43,8 +47,8 @@ function startFrames() {
   })
   /** @type {any[]} */
   const shown = []
-  const frames = new Frames(pool, 1, given => shown.push(given))
-  frames.setSystem(system, /** @type {any} */ (null))
+  const frames = new Frames(pool, 1, given => shown.push(given), longest)
+  frames.setSystem({...system, layout: {fates: {not_computed: undecided}}}, /** @type {any} */ (null))
   return {frames, asked, shown, pool}
 }
 
@@ -79,6 +83,26 @@ test("at rest the picture gets finer and longer, and a new scene replaces that a
   frames.stop()
   mock.timers.reset()
 })
+
+for (const [undecided, horizons] of /** @type {[number, number[]][]} */ ([
+  [0, [30, 100, 100, 200, 250]],
+  [-3, [30, 100, 100]],
+])) {
+  test(`at rest the time doubles up to the longest time if pixels with fate 0 are undecided: ${undecided === 0}`, () => {
+    mock.timers.enable({apis: ["setTimeout"]})
+    const {frames, asked} = startFrames({longest: 250, undecided})
+    frames.request(scene(0.3))
+    for (let k = 0; k < asked.length; k++) {
+      asked[k].finish()
+      mock.timers.tick(100)
+    }
+    assert.deepEqual(
+      asked.map(({view: {horizon}}) => horizon),
+      horizons,
+    )
+    mock.timers.reset()
+  })
+}
 
 test("a preview has no more pixels than the map", () => {
   mock.timers.enable({apis: ["setTimeout"]})

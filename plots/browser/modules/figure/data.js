@@ -15,7 +15,8 @@
  * @property {import("../engine/starts.js").Window} window  at first
  * @property {boolean} home  whether this is the default window of the energy
  * @property {[number, number][]} starts  of the chosen orbits
- * @property {number} longest  longest time of orbits and of the exact map, in units of the page
+ * @property {number} longest  longest time of orbits, in units of the page
+ * @property {number} horizon  longest time of previews, in units of the page
  * @property {string} exact  description of the exact map
  * @property {string[]} colours  of the outcomes, exits first
  * @property {string[]} labels  of the outcomes

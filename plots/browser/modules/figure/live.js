@@ -1,5 +1,10 @@
 // @ts-check
-/** A live figure: a map in a file, which the browser computes again while the visitor changes energy and window. */
+/**
+ * A live figure: a map in a file, which the browser computes again while the visitor changes energy and window.
+ *
+ * @typedef {import("../engine/pixels.js").View} View
+ * @typedef {import("../engine/pixels.js").Pixels} Pixels
+ */
 
 import {Integrator} from "../engine/integrator.js"
 import {findPath} from "../engine/path.js"
@@ -43,7 +48,9 @@ class LiveFigure {
     this.#well = new WellPicture(part("well"), data, this.#integrator)
     const worker = URL.createObjectURL(new Blob([program], {type: "text/javascript"}))
     const pool = new Pool(() => new Worker(worker))
-    this.#frames = new Frames(pool, workerCount(), (view, pixels, isMoving) => this.#receive(view, pixels, isMoving))
+    const show = (/** @type {View} */ view, /** @type {Pixels} */ pixels, /** @type {boolean} */ isMoving) =>
+      this.#receive(view, pixels, isMoving)
+    this.#frames = new Frames(pool, workerCount(), show, data.horizon / data.system.units.time)
     this.#frames.setSystem(data.system, modules)
     this.#player = new EnergyPlayer(
       energy => this.#setEnergy(energy),
@@ -187,14 +194,15 @@ class LiveFigure {
       const highest = [this.#window.xHigh, this.#window.ordinateHigh][energyAxis(slice)] ?? this.#energy
       if (coversEnergy(system, highest / system.units.energy)) {
         this.#frames.request({slice, energy: this.#energy, window: this.#window, mostPixels: MOST_PIXELS})
+        if (this.#shown === this.#exact) this.#showStatus("A preview is computed here.")
       } else this.#showStatus("The exits are not in this file for energies as high.")
     }
     this.#paint()
   }
 
   /**
-   * @param {import("../engine/pixels.js").View} view
-   * @param {import("../engine/pixels.js").Pixels} pixels
+   * @param {View} view
+   * @param {Pixels} pixels
    * @param {boolean} isMoving  whether another preview may follow in the next frame
    */
   #receive(view, pixels, isMoving) {

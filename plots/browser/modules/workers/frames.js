@@ -4,6 +4,9 @@
  * display. At rest, it has more pixels and a longer time. Only the newest view is computed, but a picture begun while the view
  * moves is finished first: otherwise, fast moves would show no pictures.
  *
+ * A figure without a server has no other map of the view. There, pictures at rest are computed again for twice the time, until no
+ * pixel is undecided or the longest time is reached.
+ *
  * @typedef {import("../engine/pixels.js").View} View
  * @typedef {import("../engine/pixels.js").Pixels} Pixels
  * @typedef {Omit<View, "columns" | "rows" | "horizon">} Scene  slice, energy and window to draw
@@ -34,16 +37,19 @@ export class Frames {
    * @param {import("./pool.js").Pool} pool
    * @param {number} workerCount  number of workers of the pool
    * @param {(view: View, pixels: Pixels, isMoving: boolean) => void} show
+   * @param {number} longest  longest time of pictures at rest, in units of the well; 0 for that of `RESTING`
    */
-  constructor(pool, workerCount, show) {
+  constructor(pool, workerCount, show, longest = 0) {
     this.#pool = pool
     this.#workerCount = workerCount
     this.#show = show
+    this.#longest = longest
   }
 
   #pool
   #workerCount
   #show
+  #longest
   /** @type {import("../engine/system.js").System | null} */
   #system = null
   /** The scene to compute next. @type {Scene | null} */
@@ -122,9 +128,32 @@ export class Frames {
       this.#refine(scene, level + 1)
       return
     }
+    const view = {...scene, columns: side, rows: side, horizon}
+    const isLast = level === RESTING.length - 1
+    this.#computeResting(view, pixels => (isLast ? this.#lengthen(view, pixels) : this.#refine(scene, level + 1)))
+  }
+
+  /**
+   * Compute a picture of a view at rest again for twice the time, if that can decide pixels.
+   *
+   * @param {View} view
+   * @param {Pixels} pixels
+   */
+  #lengthen(view, {fate}) {
+    const horizon = Math.min(2 * view.horizon, this.#longest)
+    if (horizon > view.horizon && this.#system && fate.includes(this.#system.layout.fates.not_computed)) {
+      const longer = {...view, horizon}
+      this.#computeResting(longer, pixels => this.#lengthen(longer, pixels))
+    } else this.#computing = "nothing"
+  }
+
+  /**
+   * @param {View} view
+   * @param {(pixels: Pixels) => void} onDone
+   */
+  #computeResting(view, onDone) {
     this.#computing = "resting"
-    const parts = Math.ceil((side * side) / PART_PIXELS)
-    this.#compute({...scene, columns: side, rows: side, horizon}, parts, () => this.#refine(scene, level + 1))
+    this.#compute(view, Math.ceil((view.columns * view.rows) / PART_PIXELS), onDone)
   }
 
   /**
@@ -132,7 +161,7 @@ export class Frames {
    *
    * @param {View} view
    * @param {number} count  number of parts into which the rows are divided
-   * @param {() => void} onDone
+   * @param {(pixels: Pixels) => void} onDone
    */
   #compute(view, count, onDone) {
     if (!this.#system) return
@@ -142,8 +171,9 @@ export class Frames {
     this.#pool.compute(view, parts, (part, pixels) => {
       collector.add(part, pixels)
       if (--missingParts > 0) return
-      this.#show(view, collector.finish(), this.#computing === "moving")
-      onDone()
+      const computed = collector.finish()
+      this.#show(view, computed, this.#computing === "moving")
+      onDone(computed)
     })
   }
 }
