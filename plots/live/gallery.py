@@ -27,14 +27,14 @@ from plots.pictures.setting import Settings
 from plots.printed.figure_files import map_figure_bytes
 from plots.printed.figure_style import FigureFormat
 
-SYSTEMS = "Systems"
+SYSTEMS = "Catalogue of systems"
 """Topic of the catalogue."""
 
 _TOPICS = (*GROUPS, SYSTEMS)
 _TITLE = "Escapes in open Hamiltonian systems"
 _INTRODUCTION = (
-    "Each picture is a map of starts, whose colours say how their orbits leave. Most are live figures: your browser computes the "
-    "map again while you drag the energy, move over the map, or zoom. Some are still pictures, and say why."
+    "Each picture is a map of starts, whose colours say how their orbits leave. In a live figure your browser computes the map "
+    "again while you drag the energy, move over the map, or zoom. The page of a still picture says why it is not live."
 )
 # Names of the files that all figures share.
 _SCRIPT, _INDEX = "live.js", "index.html"
@@ -53,7 +53,7 @@ class GalleryEntry:
     spec
         The map.
     picture
-        The picture that is shown first, one of `TITLES`.
+        The picture of the preset, one of `TITLES`.
     starts
         (x, ordinate) of chosen orbits.
     layers, settings
@@ -77,11 +77,14 @@ class GalleryEntry:
         return live_refusal(self.spec) or (f"a live figure has no layers, and the picture shows one: {layers}" if layers else "")
 
     @property
+    def first_picture(self) -> str:
+        """The picture that is shown first. Each live figure has the curves beside the map."""
+        return LIVE_PICTURES[0] if self.picture == CURVES.name and not self.refusal else self.picture
+
+    @property
     def live_view(self) -> LiveView:
         """The live figure without its palette; ValueError if the view is a still picture."""
-        # Each live figure has the curves beside the map.
-        picture = LIVE_PICTURES[0] if self.picture == CURVES.name else self.picture
-        return LiveView(self.spec, None, self.starts, picture, self.caption, title=self.title)
+        return LiveView(self.spec, None, self.starts, self.first_picture, self.caption, title=self.title)
 
 
 def preset_entry(preset: Preset) -> GalleryEntry:
@@ -151,7 +154,7 @@ def _still(entry: GalleryEntry, found: EscapeMap, palette: Palette, execution: E
 
 
 def _description(entry: GalleryEntry) -> str:
-    return f"{TITLES[entry.picture]}, {view_title(entry.spec)}"
+    return f"{TITLES[entry.first_picture]}, {view_title(entry.spec)}"
 
 
 def _card(entry: GalleryEntry) -> str:

@@ -73,7 +73,7 @@ def test_a_folder_refers_to_its_own_files_only(files: dict[str, str | bytes]) ->
 
 def test_the_page_lists_each_figure_below_its_topic_with_its_title(files: dict[str, str | bytes]) -> None:
     text = References(files["index.html"]).text
-    headings = ["The paper", "Explanations", "Other slices", "Systems"]
+    headings = ["The paper", "Explanations", "Other slices", "Catalogue of systems"]
     titles = ["Counting crossings", "From order to escape", CATALOGUE["One exit"].title]
     assert [heading for heading in headings if text.count(heading) != 2] == []
     assert [title for title in titles if title not in text] == []
