@@ -167,6 +167,18 @@ def test_nothing_is_wider_than_the_window(open_figure: Callable[..., Page], widt
     assert page.evaluate("document.documentElement.scrollWidth") <= width
 
 
+def test_a_print_in_the_dark_theme_has_dark_lines_and_square_pictures(open_figure: Callable[..., Page]) -> None:
+    page = open_figure(theme="dark")
+    page.emulate_media(media="print")
+    canvas = page.locator("#map")
+    line = canvas.evaluate("canvas => [...canvas.getContext('2d').getImageData(61, 200, 1, 1).data]")
+    assert line == [27, 32, 39, 255]
+    box = canvas.bounding_box()
+    assert box is not None
+    assert box["height"] / box["width"] == pytest.approx(canvas.evaluate("canvas => canvas.height / canvas.width"), rel=0.01)
+    assert page.locator("#play").is_hidden()
+
+
 def test_without_scripts_there_is_a_still_picture(chromium: Browser, file: Path) -> None:
     context = chromium.new_context(java_script_enabled=False, offline=True)
     page = context.new_page()

@@ -110,6 +110,8 @@ class LiveFigure {
     part("picture").addEventListener("change", () => this.#setPicture(part("picture").value))
     addEventListener("resize", () => this.#paint())
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.#paint())
+    // A print does not wait for a frame of the screen.
+    matchMedia("print").addEventListener("change", () => this.#draw())
   }
 
   /** @param {string} name */
@@ -220,14 +222,19 @@ class LiveFigure {
     this.#isPainting = true
     requestAnimationFrame(() => {
       this.#isPainting = false
-      this.#map.draw(this.#window, this.#energy, this.#picture, this.#shown, this.#starts)
-      const start = this.#pointed ?? this.#starts[this.#starts.length - 1]
-      const path = start ? this.#pathFrom(start) : null
-      // On a slice with an axis h, each orbit has its own energy.
-      const energy = path ? path.energy * this.#data.system.units.energy : this.#energy
-      const outcome = this.#well.draw(energy, path)
-      part("well").setAttribute("aria-label", outcome || "The well: limiting curve and exits")
+      this.#draw()
     })
+  }
+
+  /** Draw both pictures. */
+  #draw() {
+    this.#map.draw(this.#window, this.#energy, this.#picture, this.#shown, this.#starts)
+    const start = this.#pointed ?? this.#starts[this.#starts.length - 1]
+    const path = start ? this.#pathFrom(start) : null
+    // On a slice with an axis h, each orbit has its own energy.
+    const energy = path ? path.energy * this.#data.system.units.energy : this.#energy
+    const outcome = this.#well.draw(energy, path)
+    part("well").setAttribute("aria-label", outcome || "The well: limiting curve and exits")
   }
 
   /** Return the orbit from a point of the slice; null for a point without an orbit. @param {[number, number]} start */
