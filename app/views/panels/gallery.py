@@ -10,7 +10,6 @@ import panel as pn
 import param
 from panel.custom import JSComponent
 
-from app.state.permalink import preset_view
 from app.state.view_state import ViewState
 from plots.layers.table import TITLES
 from plots.links.presets import GROUPS, PRESETS, Preset
@@ -108,12 +107,13 @@ class Gallery:
 
 def _card(preset: Preset) -> dict[str, str]:
     """Return the data of a preset's card."""
+    view = preset.map_view
     return {
         "key": preset.key,
         "group": preset.group,
         "title": preset.title,
         "caption": preset.caption,
         "line": "",
-        "alt": f"{TITLES[preset.picture]}, case {preset_view(preset).system.case}, {preset_view(preset).plane.title}",
+        "alt": f"{TITLES[preset.picture]}, case {view.system.case}, {view.plane.title}",
         "thumbnail": f"{_THUMBNAILS}/{preset.key}.png",
     }
