@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from engine import CASES, MapSpec
+from engine import CASES, POTENTIALS, MapSpec, Potential, System
 from engine.foundations.validation import checked_number
-from engine.systems.review.potential_review import review_potential
+from engine.systems.catalogue.entry import EnergyRange
+from engine.systems.review.potential_review import review_potential, review_system
 from plots.pictures.palette import PAPER, Palette
 
 LIVE_PICTURES = ("basins", "times", "crossings")
@@ -24,7 +25,7 @@ class LiveView:
         The map that is shown first, for which there is no `live_refusal`.
     energies
         Lowest and highest energy that a reader can choose, dimensionless, with the energy of the map between them; None for the
-        range that a review of the potential suggests.
+        energies at which the page explores the system.
     starts
         (x, ordinate) of chosen orbits, at most five.
     picture
@@ -82,7 +83,7 @@ class LiveView:
         """Return the lowest and the highest energy of the figure."""
         if self.energies is not None:
             return self.energies
-        suggested = review_potential(self.spec.potential).energies
+        suggested = _suggested_energies(self.spec.potential)
         present = [] if self.spec.common_energy is None else [self.spec.common_energy]
         return min([suggested.low, *present]), max([suggested.high, *present])
 
@@ -99,6 +100,13 @@ def view_title(spec: MapSpec) -> str:
     """Return system and slice of a map."""
     name = spec.potential.name
     return f"{'Case ' if name in CASES else ''}{name}, {spec.plane.title}{', backward in time' if spec.backward else ''}"
+
+
+def _suggested_energies(potential: Potential) -> EnergyRange:
+    """Return the energies of the catalogue for its potentials, and for others those that their review suggests."""
+    name = potential.name
+    is_known = name in POTENTIALS and POTENTIALS[name] == potential
+    return review_system(System(name)).energies if is_known else review_potential(potential).energies
 
 
 def _check_energies(energies: tuple[float, float], energy: float | None) -> None:

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from engine import CASES, POTENTIALS, EscapeMap, MapSpec, Plane, System, compute_map
+from engine import CASES, POTENTIALS, EscapeMap, MapSpec, Plane, Potential, System, compute_map, review_potential
 from engine.slices.slice_text import read_slice
 from engine.systems.outcomes import Centre
 from plots.layers.map_images import picture_pixels
@@ -86,6 +86,22 @@ def test_a_map_and_its_request_write_the_same_live_figure(found: EscapeMap, tmp_
         shown.to_html(tmp_path / name, energies=(0.3, 0.6), palette="safe")
     assert data_of((tmp_path / "map").read_text())["high"] == 0.6
     assert (tmp_path / "map").read_bytes() == (tmp_path / "request").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("potential", "energy", "energies"),
+    [
+        (POTENTIALS["Star cluster"], -1.75, (-3.0, -0.9)),
+        (POTENTIALS["III"], 1.2, (0.2, 1.2)),
+        (POTENTIALS["III"].in_rotating_frame(0.1), 0.3, None),
+    ],
+)
+def test_the_energies_are_those_of_the_catalogue_or_else_of_the_review(
+    potential: Potential, energy: float, energies: tuple[float, float] | None
+) -> None:
+    review = review_potential(potential)
+    found = LiveView(MapSpec(potential, Plane.X_PX, energy)).find_energies()
+    assert found == (energies or (review.energies.low, review.energies.high))
 
 
 def test_words_that_look_like_markup_stay_in_the_data(tmp_path: Path) -> None:
