@@ -13,7 +13,7 @@ from PIL import Image
 from engine import EscapeMap
 from engine.foundations.execution import Execution
 from engine.foundations.wording import format_number
-from plots.browser.browser_system import describe_slice, make_browser_system, slice_name, window_in_browser
+from plots.browser.browser_system import BrowserSystem, describe_slice, make_browser_system, slice_name, window_in_browser
 from plots.layers.map_images import picture_pixels
 from plots.layers.table import PICTURES
 from plots.live.live_view import LiveView
@@ -44,7 +44,9 @@ def figure_data(view: LiveView, found: EscapeMap, execution: Execution) -> dict[
     """
     spec, outcomes, palette = view.spec, view.spec.outcomes, view.palette
     (low, high), (columns, rows) = view.find_energies(), spec.resolution
-    system = make_browser_system(spec.potential, low, high, spec.section, execution=execution).to_dict()
+    browser_system = make_browser_system(spec.potential, low, high, spec.section, execution=execution)
+    high = _highest_energy(view, browser_system)
+    system = browser_system.to_dict()
     if spec.backward and system["backward"]:
         system["table"] = system["backward"]
     return {
@@ -69,6 +71,14 @@ def figure_data(view: LiveView, found: EscapeMap, execution: Execution) -> dict[
         "coding": {**pixel_coding(outcomes, spec.section), "layers": []},
         "pictures": [_picture(name, found, palette) for name in view.pictures],
     }
+
+
+def _highest_energy(view: LiveView, system: BrowserSystem) -> float:
+    """Return the highest energy of the figure: that of the request, or the lowest one up to which an exit is tabulated."""
+    low, high = view.find_energies()
+    energy = view.spec.common_energy
+    tabulated = [table.highest * view.spec.potential.units.energy for table in system.portable.exits]
+    return min([high, *(each for each in tabulated if each > (low if energy is None else energy))])
 
 
 def text_of_bytes(content: bytes) -> str:

@@ -39,6 +39,14 @@ BACKWARD = {
 }
 
 
+def test_a_reader_can_choose_only_energies_at_which_the_exits_are_tabulated() -> None:
+    spec = MapSpec(POTENTIALS["Separable"], Plane.X_PX, 0.1, (4, 4), t_max=10.0)
+    data = figure_data(LiveView(spec), compute_map(spec), DEFAULT_EXECUTION)
+    unit = data["system"]["units"]["energy"]
+    assert data["energy"] < data["high"] < LiveView(spec).find_energies()[1]
+    assert data["high"] == min(table["highest"] * unit for table in data["system"]["exits"])
+
+
 @needs_node
 @pytest.mark.parametrize("spec", [pytest.param(spec, id=name) for name, spec in BACKWARD.items()])
 def test_pixels_backward_in_time_are_those_of_the_map(spec: MapSpec, tmp_path: Path) -> None:
