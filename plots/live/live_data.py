@@ -13,7 +13,7 @@ from PIL import Image
 from engine import EscapeMap
 from engine.foundations.execution import Execution
 from engine.foundations.wording import format_number
-from plots.browser.browser_system import BrowserSystem, describe_slice, make_browser_system, slice_name, window_in_browser
+from plots.browser.browser_system import describe_slice, make_browser_system, slice_name, window_in_browser
 from plots.layers.map_images import picture_pixels
 from plots.layers.table import PICTURES
 from plots.live.live_view import LiveView
@@ -44,9 +44,8 @@ def figure_data(view: LiveView, found: EscapeMap, execution: Execution) -> dict[
     """
     spec, outcomes, palette = view.spec, view.spec.outcomes, view.palette
     (low, high), (columns, rows) = view.find_energies(), spec.resolution
-    browser_system = make_browser_system(spec.potential, low, high, spec.section, execution=execution)
-    high = _highest_energy(view, browser_system)
-    system = browser_system.to_dict()
+    system = make_browser_system(spec.potential, low, high, spec.section, execution=execution).to_dict()
+    high = _highest_energy(view, system)
     if spec.backward and system["backward"]:
         system["table"] = system["backward"]
     return {
@@ -73,11 +72,12 @@ def figure_data(view: LiveView, found: EscapeMap, execution: Execution) -> dict[
     }
 
 
-def _highest_energy(view: LiveView, system: BrowserSystem) -> float:
+def _highest_energy(view: LiveView, system: dict[str, Any]) -> float:
     """Return the highest energy of the figure: that of the request, or the lowest one up to which an exit is tabulated."""
     low, high = view.find_energies()
     energy = view.spec.common_energy
-    tabulated = [table.highest * view.spec.potential.units.energy for table in system.portable.exits]
+    unit = view.spec.potential.units.energy
+    tabulated = [unit * table["highest"] for table in system["exits"] if "highest" in table]
     return min([high, *(each for each in tabulated if each > (low if energy is None else energy))])
 
 

@@ -11,14 +11,14 @@ from typing import Any
 
 from engine import EscapeMap, Fate, MapSpec, compute_map
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
-from engine.integrator.portable_kernels import kernel_module
+from plots.browser.compiled_files import browser_kernels
 from plots.browser.javascript import script_code
 from plots.layers.picture import ShownMap
 from plots.layers.table import PICTURES, map_legend
 from plots.live.html_pages import fill_page
 from plots.live.live_data import figure_data, png_address, text_of_bytes
 from plots.live.live_view import LiveView
-from plots.pictures.palette import find_palette
+from plots.pictures.palette import DEFAULT_PALETTE, find_palette
 from plots.pictures.provenance import provenance_line
 from plots.printed.figure_files import map_figure_bytes
 from plots.printed.figure_style import FigureFormat, FigureStyle
@@ -79,7 +79,7 @@ def linked_live_figure(
 def live_script() -> str:
     """Return the script of live figures, with the kernels, which are the same for all figures."""
     code = {
-        "kernels": text_of_bytes(kernel_module()),
+        "kernels": text_of_bytes(browser_kernels()),
         "worker": script_code(_MODULES / "workers" / "worker.js"),
     }
     return f'{script_code(_MODULES / "figure" / "live.js")}\nvoid modules["figure/live"].start({_inline(code)})\n'
@@ -91,7 +91,7 @@ def still_picture(view: LiveView, found: EscapeMap) -> bytes:
     return map_figure_bytes(found, [view.picture], view.palette, FigureFormat.PNG, STILL, starts=view.starts)
 
 
-def to_live_html(shown: EscapeMap | MapSpec, *, palette: str = "paper", **options: Any) -> str:
+def to_live_html(shown: EscapeMap | MapSpec, *, palette: str = DEFAULT_PALETTE, **options: Any) -> str:
     """Return the HTML of a live figure, as described in `engine.maps.result.EscapeMap.to_html`."""
     spec = shown if isinstance(shown, MapSpec) else shown.spec
     view = LiveView(spec, palette=find_palette(palette), **options)

@@ -9,7 +9,7 @@ from engine import CASES, POTENTIALS, MapSpec, Potential, System
 from engine.foundations.validation import checked_number
 from engine.systems.catalogue.entry import EnergyRange
 from engine.systems.review.potential_review import review_potential, review_system
-from plots.pictures.palette import PAPER, Palette
+from plots.pictures.palette import DEFAULT_COLOURS, Palette
 
 LIVE_PICTURES = ("basins", "times", "crossings")
 """Names of the pictures of a live figure."""
@@ -51,7 +51,7 @@ class LiveView:
     picture: str = LIVE_PICTURES[0]
     caption: str = ""
     link: str = ""
-    palette: Palette = PAPER
+    palette: Palette = DEFAULT_COLOURS
     title: str = ""
 
     def __post_init__(self) -> None:

@@ -242,6 +242,7 @@ DEFAULT_PALETTE = "safe"
 DEFAULT_COLOURS = PALETTES[DEFAULT_PALETTE]
 """The palette of this name."""
 
+
 def find_palette(name: str) -> Palette:
     """Return the palette with a name; ValueError for an unknown name."""
     if name not in PALETTES:
