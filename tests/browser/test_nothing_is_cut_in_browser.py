@@ -9,7 +9,7 @@ import pytest
 from playwright.sync_api import Browser, Page
 from playwright.sync_api import TimeoutError as PlaywrightTimeout
 
-from app.state.presets import PRESETS, Preset
+from plots.links.presets import PRESETS, Preset
 from tests.browser.conftest import QUICK
 from tests.conftest import TIMEOUT_MS
 
