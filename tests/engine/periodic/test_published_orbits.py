@@ -28,6 +28,8 @@ DE_LEON_BERNE = parse_formula("10(1 − exp(−1.5x))² + 1 + 4y²(y² − 1) ex
 PLUMMER, ISOCHRONE = parse_formula("−1/√(r² + 1)"), parse_formula("−1/(1 + √(1 + r²))")
 LOGARITHMIC, KEPLER = parse_formula("½ log(r² + 0.1)"), parse_formula("−1/r; centre sun (0, 0) 0.001")
 OSCILLATOR = parse_formula("½(x² + 2y²)")
+SUN_EARTH = System("Copenhagen", "", {"m": 3.0542e-6, "rotation": 1.0}).potential
+SUN_EARTH_START = [0.9919572253872686, 0.0, 0.0, -0.011810020232594805]
 
 
 class Orbit(NamedTuple):
@@ -193,6 +195,8 @@ ORBITS = {
     "oscillator, rotating frame": rotating_oscillator(),
     # Wilczak and Zgliczyński 2003, Commun. Math. Phys. 234, 37: proved between 3.082119126376508 and 3.082119126392904.
     "Oterma, L1": oterma(0.92080349132074, 1.0, 3.0821191263847),
+    # The catalogue of JPL, see `MOON`.
+    "Sun and Earth, L1": Orbit(SUN_EARTH, SUN_EARTH_START, "y = 0 down", 3.0848099797153212, None),
 }
 
 
