@@ -6,8 +6,11 @@ import hashlib
 import json
 from collections.abc import Mapping
 from html import escape
+from io import BytesIO
 from pathlib import Path
 from typing import Any
+
+from PIL import Image
 
 from engine import EscapeMap, Fate, MapSpec, compute_map
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
@@ -86,9 +89,12 @@ def live_script() -> str:
 
 
 def still_picture(view: LiveView, found: EscapeMap) -> bytes:
-    """Return the picture for readers without scripts, as a PNG file; ValueError if the map is not complete."""
+    """Return the picture for readers without scripts, as a PNG file with a table of colours; ValueError for an incomplete map."""
     found.check_complete("found")
-    return map_figure_bytes(found, [view.picture], view.palette, FigureFormat.PNG, STILL, starts=view.starts)
+    picture = map_figure_bytes(found, [view.picture], view.palette, FigureFormat.PNG, STILL, starts=view.starts)
+    file = BytesIO()
+    Image.open(BytesIO(picture)).convert("RGB").quantize(dither=Image.Dither.NONE).save(file, "png", optimize=True)
+    return file.getvalue()
 
 
 def to_live_html(shown: EscapeMap | MapSpec, *, palette: str = DEFAULT_PALETTE, **options: Any) -> str:

@@ -19,7 +19,7 @@ from engine.slices.slice_text import read_slice
 from engine.systems.outcomes import Centre
 from plots.layers.map_images import picture_pixels
 from plots.live.live_figure import live_figure
-from plots.live.live_view import LiveView, live_refusal
+from plots.live.live_view import LIVE_PICTURES, LiveView, live_refusal
 from plots.pictures.palette import DEFAULT_COLOURS
 
 
@@ -76,9 +76,10 @@ def test_the_file_refers_to_nothing_but_the_link(page: str) -> None:
     assert "x &lt; 1 &amp; y &gt; 2" in page
 
 
-def test_a_live_figure_has_at_most_400_kilobytes() -> None:
+@pytest.mark.parametrize("picture", LIVE_PICTURES)
+def test_a_live_figure_has_at_most_400_kilobytes(picture: str) -> None:
     found = compute_map(MapSpec(POTENTIALS["C5"], Plane.X_PX, 0.5, (224, 224), t_max=100.0))
-    assert len(live_figure(LiveView(found.spec), found).encode()) < 400_000
+    assert len(live_figure(LiveView(found.spec, picture=picture), found).encode()) < 400_000
 
 
 def test_a_map_and_its_request_write_the_same_live_figure(found: EscapeMap, tmp_path: Path) -> None:
