@@ -15,8 +15,9 @@ HELP_TEXTS: Mapping[str, str] = MappingProxyType(
             "The zero-velocity curve V = h bounds the places that an orbit of this energy can reach. Above the escape energy, it "
             "has a gap at each saddle of the potential. An unstable periodic orbit, the Lyapunov orbit, spans each gap and marks "
             "the exit. An orbit has escaped when it crosses it outward. In the cases of the paper it never returns. Orbits also "
-            "end at bodies and at an escape radius. The orbit under the cursor and the chosen orbits are drawn up to their ends, "
-            "very long ones as density images. A regular orbit fills a regular pattern, a chaotic one does not."
+            "end at bodies, marked by dots, and at an escape radius; beside bodies, crosses mark the equilibria. The orbit under "
+            "the cursor and the chosen orbits are drawn up to their ends, very long ones as density images. A regular orbit "
+            "fills a regular pattern, a chaotic one does not."
         ),
         "sali": (
             "SALI, the smaller alignment index, follows two small deviations from the orbit. Chaos aligns them, and SALI "

@@ -1,4 +1,4 @@
-"""Curves over the pictures: limiting curve, equipotentials, and Lyapunov orbits with the numbers of their exits."""
+"""Curves over the pictures: limiting curve, equipotentials, and Lyapunov orbits with numbers; and bodies and equilibria."""
 
 from __future__ import annotations
 
@@ -7,16 +7,17 @@ from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from bokeh.models import ColumnDataSource, MultiLine, Text
+from bokeh.models import ColumnDataSource, MultiLine, Scatter, Text
 from bokeh.plotting import figure
 
 from app.state.view_state import ViewState
 from app.views.components.plots import LaterGlyphs, SourcedGlyphs, with_gaps
 from app.views.components.theme import theme_colour, theme_line
-from engine import LyapunovOrbit, MapSpec, find_lyapunov_orbits
+from engine import LyapunovOrbit, MapSpec, Potential, find_lyapunov_orbits
 from engine.slices.limiting_curves import trace_equipotentials, trace_zero_velocity_curve
+from engine.systems.outcomes import Centre
 from engine.systems.review.energy_ranges import depth_levels
-from engine.systems.review.potential_review import critical_energies
+from engine.systems.review.potential_review import critical_energies, review_potential
 from plots.browser.browser_system import EXIT_NUMBER_DISTANCE
 from plots.pictures.palette import LIGHT, MOST_CHANNELS, Entry
 
@@ -32,6 +33,22 @@ class TracedCurves(NamedTuple):
     limit: list[np.ndarray]
     critical: list[np.ndarray]
     levels: list[np.ndarray]
+
+
+class MarkedPlaces(NamedTuple):
+    """Places (n, 2) of the bodies, and, if there are any, (m, 2) of the equilibria, such as the Lagrange points."""
+
+    bodies: np.ndarray
+    equilibria: np.ndarray
+
+
+@functools.lru_cache(maxsize=_CACHED_MAPS)
+def find_marked_places(potential: Potential) -> MarkedPlaces:
+    """Return the bodies and equilibria of a potential, cached. The equilibria are known after its review."""
+    bodies = [end.place for end in potential.ends if isinstance(end, Centre)]
+    equilibria = review_potential(potential).critical_points if bodies else ()
+    places = [(point.x, point.y) for point in equilibria]
+    return MarkedPlaces(np.reshape(np.array(bodies), (-1, 2)), np.reshape(np.array(places), (-1, 2)))
 
 
 @functools.lru_cache(maxsize=_CACHED_MAPS)
@@ -68,10 +85,12 @@ class MapCurves:
         self._critical_source = ColumnDataSource({"xs": [], "ys": []}, name="critical_equipotential")
         self._exit_source = ColumnDataSource({"xs": [], "ys": [], "colour": []}, name="lyapunov_orbits")
         self._label_source = ColumnDataSource({"x": [], "y": [], "text": [], "colour": []}, name="channel_numbers")
+        self._mark_source = ColumnDataSource({"x": [], "y": [], "marker": []}, name="marked_places")
         self._exit_lines, self._exit_numbers = LaterGlyphs(self._make_exit_lines), LaterGlyphs(self._make_exit_numbers)
+        self._marks = LaterGlyphs(self._make_marks)
 
     def draw(self, plot: figure, *, full: bool) -> None:
-        """Add the curves to a figure. Only a `full` figure gets equipotentials and exit numbers."""
+        """Add the curves to a figure. Only a `full` figure gets equipotentials, exit numbers, bodies and equilibria."""
         if full:
             _draw_lines(plot, self._level_source, "equipotential", 1.0)
             _draw_lines(plot, self._critical_source, "critical_equipotential", 1.5)
@@ -79,6 +98,7 @@ class MapCurves:
         self._exit_lines.add_figure(plot)
         if full:
             self._exit_numbers.add_figure(plot)
+            self._marks.add_figure(plot)
 
     def _make_exit_lines(self) -> SourcedGlyphs:
         styles = ({"line_color": LIGHT.halo, "line_width": 5}, {"line_color": "colour", "line_width": 3})
@@ -87,6 +107,10 @@ class MapCurves:
     def _make_exit_numbers(self) -> SourcedGlyphs:
         font = {"text_align": "center", "text_baseline": "middle", "text_font_size": "16px", "text_font_style": "bold"}
         return [(self._label_source, Text(text_color="colour", **font))]
+
+    def _make_marks(self) -> SourcedGlyphs:
+        style = {"line_color": theme_line("limiting_curve"), "fill_color": theme_line("limiting_curve")}
+        return [(self._mark_source, Scatter(marker="marker", size=9, **style))]
 
     def show(self, spec: MapSpec) -> None:
         """Draw the curves of a map."""
@@ -99,6 +123,14 @@ class MapCurves:
             self._show_exits(orbits)
         self._critical_source.data = _columns_with_gaps(curves.critical)
         self._level_source.data = _columns_with_gaps(curves.levels)
+
+    def show_marks(self, potential: Potential) -> None:
+        """Mark the bodies with dots and the equilibria with crosses."""
+        bodies, equilibria = find_marked_places(potential)
+        if len(bodies) or self._mark_source.data["marker"]:
+            self._marks.draw()
+            x, y = np.concatenate([bodies, equilibria]).T
+            self._mark_source.data = {"x": x, "y": y, "marker": ["circle"] * len(bodies) + ["cross"] * len(equilibria)}
 
     def _show_exits(self, orbits: Sequence[LyapunovOrbit]) -> None:
         if orbits:

@@ -17,7 +17,7 @@ from app.views.components.plots import FigurePane, PictureTexts, changing_models
 from app.views.components.view_store import ViewStore
 from app.views.maps.comparison import ComparedMap
 from app.views.maps.hover import pixel_hover
-from app.views.maps.map_curves import MapCurves, trace_curves
+from app.views.maps.map_curves import MapCurves, find_marked_places, trace_curves
 from app.views.maps.map_toolbar import MapTools
 from app.views.maps.markers import Markers
 from app.views.maps.overlays import Overlays
@@ -73,6 +73,7 @@ def prepare_curves(spec: MapSpec) -> None:
     """Trace the curves over a map and in the well, and cache them for `MapsView.show`. Tracing takes up to half a second."""
     trace_curves(spec)
     trace_curves(well_spec(spec.potential, highest_energy(spec.energy)))
+    find_marked_places(spec.potential)
 
 
 class MapsView:

@@ -135,6 +135,7 @@ class WellView:
             return
         self._outline_key = outlined_spec, self._state.colours
         self._outlines.show(outlined_spec)
+        self._outlines.show_marks(outlined_spec.potential)
         self._go_to(outlined_spec.find_window())
         self.describe()
 

@@ -10,6 +10,7 @@ import pytest
 from app.views.maps.well import WellView
 from engine import (
     CASES,
+    POTENTIALS,
     Coordinate,
     MapSpec,
     ParameterAxis,
@@ -113,3 +114,16 @@ def test_on_a_slice_along_a_parameter_the_well_is_that_of_the_chosen_orbit() -> 
     assert edges(well) == edges(own)
     # The path of an orbit in another well is left out.
     assert source(well, "paths").data["slot"] == [1]
+
+
+def test_bodies_and_equilibria_of_a_three_body_problem_are_marked() -> None:
+    well, copenhagen = make_well(), POTENTIALS["Copenhagen"]
+    well.show_map(MapSpec(copenhagen, Plane.X_Y, -1.6))
+    marks = source(well, "marked_places").data
+    places = sorted(zip(marks["marker"], np.round(marks["x"], 6), np.round(marks["y"], 6), strict=True))
+    # Two bodies, the triangular and the collinear points (Szebehely 1967, Theory of Orbits, section 4.6).
+    assert places[:2] == [("circle", -0.5, 0.0), ("circle", 0.5, 0.0)]
+    lagrange = [(-1.198406, 0.0), (0.0, -0.866025), (0.0, 0.0), (0.0, 0.866025), (1.198406, 0.0)]
+    assert [(x, y) for _, x, y in places[2:]] == lagrange
+    well.show_map(MapSpec(CASES["III"], Plane.X_Y, 0.4))
+    assert len(source(well, "marked_places").data["marker"]) == 0
