@@ -1,4 +1,4 @@
-"""The drawer "Help": keys, the equations of the system in view, terms, and the content of the page as a table."""
+"""The drawer "Help": how to read the pictures, the equations of the system in view, terms, a table of the page, and keys."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import panel as pn
 
 from app.job_clients.shown_results import ShownResults
 from app.state.glossary import glossary_list
+from app.state.help_texts import HELP_TEXTS
 from app.state.view_state import ViewState
 from app.views.components.collapsible_section import Fold
 from app.views.components.texts import TextPane, escape_facts
@@ -16,16 +17,24 @@ from app.views.panels.browser_events import key_legend
 from engine import Fate, System, compute_statistics
 from engine.foundations.wording import format_number, format_share, format_whole
 from engine.propagation.fates import UNRESOLVED
+from plots.layers.table import PICTURES
 
 
 def help_panes(state: ViewState, results: ShownResults) -> list[pn.viewable.Viewable]:
     """Return the parts of the drawer. Terms and table open on demand."""
     return [
-        TextPane(f"<h3>Keys</h3>{key_legend()}", sizing_mode="stretch_width", margin=(0, 10)),
+        TextPane(f"<h3>How to read the pictures</h3>{_meanings()}", sizing_mode="stretch_width", margin=(0, 10)),
         _equations_pane(state),
         *Fold("Terms", lambda: [TextPane(glossary_list(), sizing_mode="stretch_width", margin=(0, 10))]).parts(),
         *AccessibleTable(state, results).fold.parts(),
+        TextPane(f"<h3>Keys</h3>{key_legend()}", sizing_mode="stretch_width", margin=(0, 10)),
     ]
+
+
+def _meanings() -> str:
+    """Return what the well, the basins, the times and the crossings mean, a paragraph each."""
+    titles = {"well": "The well"} | {name: PICTURES[name].title for name in ("basins", "times", "crossings")}
+    return "".join(f"<p><b>{title}.</b> {escape(HELP_TEXTS[name])}</p>" for name, title in titles.items())
 
 
 def _equations_pane(state: ViewState) -> pn.viewable.Viewable:

@@ -5,9 +5,16 @@ from __future__ import annotations
 from app.job_clients.orbit_requests import StartOrbit
 from app.job_clients.shown_results import ShownResults
 from app.state.view_state import ViewState
-from app.views.panels.help import AccessibleTable
+from app.views.panels.help import AccessibleTable, help_panes
 from engine import CASES, MapSpec, Plane, System, compute_map
 from tests.disc import disc_map
+
+
+def test_help_begins_with_the_meaning_of_the_pictures_and_ends_with_the_keys() -> None:
+    first, *_, last = help_panes(ViewState(), ShownResults())
+    assert first.object.startswith("<h3>How to read the pictures</h3><p><b>The well.</b> The zero-velocity curve")
+    assert first.object.count("<p>") == 4
+    assert last.object.startswith("<h3>Keys</h3>")
 
 
 def test_the_table_is_written_while_it_is_open() -> None:
