@@ -9,11 +9,12 @@ import pytest
 from playwright.sync_api import expect
 
 from app.job_clients.error_messages import ZOOM_ENDS
+from app.state.permalink import preset_view
 from engine import Window
 from plots.links.presets import PRESETS
 from tests.browser.explorer_page import ExplorerPage
 
-DEEP = next(preset for preset in PRESETS if preset.key == "closer")
+DEEP = preset_view(next(preset for preset in PRESETS if preset.key == "closer"))
 
 
 # Width and height of the frame of the basins, in pixels.
@@ -27,14 +28,14 @@ _MOVED_OR_LIMITED = """([address, limit]) =>
 
 @pytest.fixture(scope="module")
 def window() -> Window:
-    assert DEEP.view.window is not None
-    return DEEP.view.window
+    assert DEEP.window is not None
+    return DEEP.window
 
 
 @pytest.fixture(scope="module")
 def opened(open_for_all: Callable[..., ExplorerPage], window: Window) -> ExplorerPage:
     edges = ",".join(map(repr, (window.x_low, window.x_high, window.ordinate_low, window.ordinate_high)))
-    view = DEEP.view
+    view = DEEP
     link = f"?case={view.system.case}&plane={view.plane.key}&h={view.energy!r}&t_max=1000&resolution=112&window={edges}"
     return open_for_all(link=link)
 

@@ -13,7 +13,7 @@ from playwright.sync_api import Browser, Page, expect
 from engine import CASES, Fate, MapSpec, Plane, classify_orbits, compute_map
 from plots.live.live_figure import live_figure
 from plots.live.live_view import LiveView
-from plots.pictures.palette import PAPER, rgba
+from plots.pictures.palette import DEFAULT_COLOURS, rgba
 from tests.browser.conftest import Watch
 from tests.conftest import TIMEOUT_MS
 
@@ -109,7 +109,7 @@ def test_the_map_of_another_energy_is_that_of_the_library(open_figure: Callable[
     fates = classify_orbits(III, OTHER, states[np.repeat(is_start, len(offsets))], t_max=90.0).fate.reshape(-1, len(offsets))
     is_robust = (fates == fates[:, :1]).all(axis=1) & (fates[:, 0] > Fate.BOUNDED)
     colours = page.locator("#map").evaluate(_READ, places[is_start][is_robust].tolist())
-    expected = rgba([entry.colour for entry in PAPER.end_entries(III.outcomes)])[fates[is_robust, 0] - 1]
+    expected = rgba([entry.colour for entry in DEFAULT_COLOURS.end_entries(III.outcomes)])[fates[is_robust, 0] - 1]
     assert is_robust.sum() > 20
     np.testing.assert_array_equal(colours, expected)
 

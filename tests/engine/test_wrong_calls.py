@@ -152,7 +152,7 @@ WRONG_CALLS = (
     ),
     (
         "MapSpec(III, Slice(C.X, C.H, fixed=((C.Y, 0.5), (C.PY, -2.0))), (0.1, 0.3)).find_window()",
-        "py=-2: no start on (x, h), py = -2, y = 0.5, px > 0 has a real px at energy=0.3; must be at most 0.5916 in magnitude",
+        "py=-2: no start on (x, h), py = −2, y = 0.5, px > 0 has a real px at energy=0.3; must be at most 0.5916 in magnitude",
     ),
     (
         "MapSpec(well, Plane.X_PX, -1.0).find_window()",

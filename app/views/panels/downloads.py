@@ -108,7 +108,9 @@ def file_choices(results: ShownResults, state: ViewState) -> dict[str, File]:
         states = [known for known in map(state.start_state, starts) if known is not None]
         if not live_refusal(frame.spec):
             live_starts = [one.start for one in results.orbits]
-            energies = min(state.energies.low, state.energy), max(state.energies.high, state.energy)
+            # The map may belong to the view before the last change.
+            energy = state.energy if frame.spec.common_energy is None else frame.spec.common_energy
+            energies = min(state.energies.low, energy), max(state.energies.high, energy)
             make = partial(live_figure, LiveView(frame.spec, energies, live_starts, palette=state.colours), frame)
             choices[LIVE] = name(".html"), lambda: make().encode()
         choices[MAPS] = name(".nc"), partial(netcdf_bytes, frame, results.analyses)

@@ -73,6 +73,13 @@ def test_the_event_loop_runs_while_a_file_is_made(downloads_view: Downloads) -> 
     run_on_new_loop(save)
 
 
+def test_the_last_map_can_be_saved_while_that_of_another_system_is_computed(results: ShownResults) -> None:
+    state = ViewState(system=System("III"), energy=0.45)
+    assert state.energies.low > 0.19
+    offered = Downloads(state, results, lambda: None, lambda: None, lambda copied: None, may_embed=True)
+    assert not offered.data[LIVE].disabled
+
+
 def test_only_files_that_the_results_allow_can_be_saved(downloads_view: Downloads, results: ShownResults) -> None:
     def enabled() -> set[str]:
         return {label for label, save in downloads_view.data.items() if not save.disabled}
