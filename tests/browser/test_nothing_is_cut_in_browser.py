@@ -9,7 +9,6 @@ import pytest
 from playwright.sync_api import Browser, Page
 from playwright.sync_api import TimeoutError as PlaywrightTimeout
 
-from plots.links.presets import PRESETS, Preset
 from tests.browser.conftest import QUICK
 from tests.conftest import TIMEOUT_MS
 
@@ -75,9 +74,3 @@ def cut_parts(reader: Browser, address: str) -> dict[str, list[str]]:
 @pytest.mark.parametrize("name", LINKS)
 def test_no_content_is_cut(reader: Browser, server: str, name: str) -> None:
     assert cut_parts(reader, server + LINKS[name]) == {}
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("preset", PRESETS, ids=lambda preset: preset.key)
-def test_no_content_of_a_preset_is_cut(reader: Browser, server: str, preset: Preset) -> None:
-    assert cut_parts(reader, f"{server}?{preset.link}") == {}

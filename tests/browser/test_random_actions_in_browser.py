@@ -166,7 +166,7 @@ def expected_texts(state: ViewState, shown: Shown) -> dict[str, list[str]]:
         channels = [f"exit {k + 1}" for k in range(state.potential.channels)]
         layers = {"bounded and chaotic": "judge" in state.layers, "tones: from": "origins" in state.layers}
         times = state.lock_times or fitted_scale(shown.frame)
-        texts[LEGEND] = [f"≤ {times.low:g}", *channels, *(name for name, is_on in layers.items() if is_on)]
+        texts[LEGEND] = [typeset(f"≤ {times.low:g}"), *channels, *(name for name, is_on in layers.items() if is_on)]
     if shown.frame is not None and state.analysis == Analysis.STATISTICS:
         statistics = compute_statistics(shown.frame, state.box)
         texts[SHARES] = [typeset(format_share(share, 2)) for fate, share in statistics.shares.items() if fate >= Fate.BOUNDED]

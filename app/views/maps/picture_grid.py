@@ -138,7 +138,7 @@ class PictureGrid:
             self._texts[name].write_above(self._panes[name].object, short=self._kinds[name] not in _WITH_STRIP)
 
     def _write_strips(self) -> None:
-        kinds = {name: kind for name, kind in self._kinds.items() if kind in _WITH_STRIP and name in self._texts}
+        kinds = {name: kind for name, kind in self._kinds.items() if name in self._texts}
         arrangements = " ".join({"many", "crowded", "enlarged"}.intersection(self._column.css_classes))
         strips = (
             f"<div class='foot legend {kind} {arrangements}' data-picture='{name}'>"
