@@ -3,19 +3,18 @@ periodic orbit."""
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
-from typing import ClassVar
 
 import numpy as np
 
 from app.job_clients.latest_request import LatestRequest, Locked
 from app.job_clients.orbit_requests import StartOrbit
 from app.state.view_state import ViewState
-from engine import Orbit, PeriodicOrbit, Stability, compute_separation, find_divergent_start
+from engine import Fate, Orbit, PeriodicOrbit, Stability, compute_separation, find_divergent_start
+from engine.foundations.wording import format_number
 from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job, Queue
-from engine.propagation.fates import describe_fate
+from engine.propagation.fates import outcome_of
 from engine.results import DivergentStart, Separation
 from plots.links.map_view import Start
 from plots.pictures.orbit_curves import initial_state
@@ -25,6 +24,7 @@ from plots.studies.study import Changes
 
 # Largest difference of equal states, in units of the well. Periodic orbits close to 1e-10.
 _EQUAL = 1e-9
+_SEARCHING = "Searching for the nearest start that ends elsewhere …"
 _PATH_LEAVES = "Rounding errors grow on this unstable orbit: the path that is drawn leaves it after some periods."
 
 Pair = tuple[int, int]
@@ -78,74 +78,61 @@ class SeparationRequests:
         return Job(compute_separation, arguments, queue=Queue.LONG_CALL) if t_end > 0.0 else None
 
 
-class _StartSearch[Found](ABC):
-    """Searches from the chosen start of one session. `notify` shows the progress, and why a search has failed.
-
-    A result is dropped if another start is chosen, or if the system, the slice, the section, the energy or t_max has changed.
-    """
-
-    _progress: ClassVar[str]
-
-    def __init__(self, state: ViewState, jobs: JobSubmitter, notify: Callable[[str], None], locked: Locked) -> None:
-        self._state, self._notify = state, notify
-        self._origin: Start | None = None
-        self._request = LatestRequest(jobs, self._on_result, notify, locked)
-        state.param.watch(lambda *events: self._request.cancel(), ["system", "plane", "section", "energy", "t_max"])
-
-    def search(self) -> None:
-        """Search from the chosen start."""
-        self._request.cancel()
-        self._origin = self._state.chosen_start
-        # Orbits may have been removed in the meantime.
-        if self._origin is not None:
-            self._notify(self._progress)
-            self._request.submit(self._job(self._origin))
-
-    def _on_result(self, found: Found) -> None:
-        if self._origin is not None and self._state.chosen_start == self._origin:
-            self._show(self._origin, found)
-
-    @abstractmethod
-    def _job(self, start: Start) -> Job[Found]:
-        """Return the job of a search from a start."""
-
-    @abstractmethod
-    def _show(self, origin: Start, found: Found) -> None:
-        """Show what a search from a start has found."""
-
-
-class DivergentStartRequests(_StartSearch[DivergentStart | None]):
-    """Finds divergent starts, the nearest that escape elsewhere, and adds them to the state."""
-
-    _progress = "Searching for the nearest start that escapes elsewhere …"
-
-    def _job(self, start: Start) -> Job[DivergentStart | None]:
-        state = self._state
-        return Job(find_divergent_start, (state.potential, state.plane, state.energy, *start, state.t_max))
-
-    def _show(self, origin: Start, found: DivergentStart | None) -> None:
-        if found is None:
-            self._notify("No start near this one escapes elsewhere.")
-            return
-        added = self._state.add_start((found.x, found.ordinate))
-        hint = "" if added else " Remove an orbit, and search again to see it."
-        self._notify(f"The divergent start is {found.distance:.2g} away. {describe_fate(found.fate, found.outcomes)}{hint}")
-
-
-class PeriodicOrbitRequests(_StartSearch[PeriodicOrbit]):
-    """Finds periodic orbits, and adds their starts to the state.
+class NeighbourRequests:
+    """Requests the nearest start that ends elsewhere than the chosen start, for one session.
 
     Parameters
     ----------
     state, jobs, notify, locked
-        As for the other searches.
+        The view state, what computes, what shows why a search has failed, and a wrapper to run under the session's lock.
+    show
+        Shows a sentence, and the neighbour if it is known.
+    """
+
+    def __init__(
+        self,
+        state: ViewState,
+        jobs: JobSubmitter,
+        show: Callable[[str, Start | None], None],
+        notify: Callable[[str], None],
+        locked: Locked,
+    ) -> None:
+        self._state, self._show = state, show
+        self._request = LatestRequest(jobs, self._show_found, notify, locked, begin=lambda job: show(_SEARCHING, None))
+
+    def follow(self, orbits: Sequence[StartOrbit]) -> None:
+        """Request the neighbour of the chosen start, once its orbit is known."""
+        state = self._state
+        orbit = orbits[state.chosen].orbit if state.chosen < len(orbits) else None
+        if orbit is None or not (orbit.fate == Fate.BOUNDED or orbit.fate >= 1) or state.chosen_start is None:
+            self._request.cancel()
+            self._show("", None)
+            return
+        arguments = (state.potential, state.plane, state.energy, *state.chosen_start, state.t_max)
+        self._request.submit(Job(find_divergent_start, arguments, queue=Queue.LONG_CALL))
+
+    def _show_found(self, found: DivergentStart | None) -> None:
+        if found is None:
+            self._show("No start near this one leaves elsewhere.", None)
+            return
+        ending = outcome_of(found.fate, found.outcomes).present
+        self._show(f"A start {format_number(found.distance, 2)} away {ending}.", (found.x, found.ordinate))
+
+
+class PeriodicOrbitRequests:
+    """Finds the periodic orbit nearest to the chosen start of one session, and adds its start to the state.
+
+    A result is dropped if another start is chosen, or if the system, the slice, the section, the energy or t_max has changed.
+
+    Parameters
+    ----------
+    state, jobs, notify, locked
+        As for neighbours; `notify` shows the progress as well.
     change
         Changes the view.
     name
         Called with the start of a periodic orbit in the view, and the orbit.
     """
-
-    _progress = "Searching for the nearest periodic orbit …"
 
     def __init__(
         self,
@@ -156,14 +143,24 @@ class PeriodicOrbitRequests(_StartSearch[PeriodicOrbit]):
         change: Callable[[Changes], None],
         name: Callable[[Start, PeriodicOrbit], None],
     ) -> None:
-        super().__init__(state, jobs, notify, locked)
-        self._change, self._name = change, name
+        self._state, self._notify, self._change, self._name = state, notify, change, name
+        self._origin: Start | None = None
+        self._request = LatestRequest(jobs, self._show, notify, locked)
+        state.param.watch(lambda *events: self._request.cancel(), ["system", "plane", "section", "energy", "t_max"])
 
-    def _job(self, start: Start) -> Job[PeriodicOrbit]:
-        return nearest_orbit_job(self._state.subject)
+    def search(self) -> None:
+        """Search from the chosen start."""
+        self._request.cancel()
+        self._origin = self._state.chosen_start
+        # Orbits may have been removed in the meantime.
+        if self._origin is not None:
+            self._notify("Searching for the nearest periodic orbit …")
+            self._request.submit(nearest_orbit_job(self._state.subject))
 
-    def _show(self, origin: Start, found: PeriodicOrbit) -> None:
-        state = self._state
+    def _show(self, found: PeriodicOrbit) -> None:
+        state, origin = self._state, self._origin
+        if origin is None or state.chosen_start != origin:
+            return
         if _is_at(found, state.start_state(origin)):
             changes: Changes = {"start": origin}
         else:

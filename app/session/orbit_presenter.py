@@ -12,7 +12,7 @@ import panel as pn
 from param.parameterized import Event
 
 from app.browser.components.orbit_components import OrbitPlayer
-from app.job_clients.chosen_orbit_requests import DivergentStartRequests, PeriodicOrbitRequests, SeparationRequests
+from app.job_clients.chosen_orbit_requests import NeighbourRequests, PeriodicOrbitRequests, SeparationRequests
 from app.job_clients.orbit_requests import OrbitRequests, StartOrbit
 from app.session.context import SessionContext
 from app.views.maps.markers import NO_POINTS, Markers
@@ -69,7 +69,7 @@ class OrbitPresenter:
         self._draw_restricted_later = locked(self._draw_restricted)
         actions = OrbitActions(
             add=locked(add_start),
-            find_divergent_start=lambda: self._divergent_start_requests.search(),
+            add_neighbour=self._add_neighbour,
             find_periodic_orbit=lambda: self._periodic_orbit_requests.search(),
             open_section=self._open_section,
             show_all_times=lambda: self._set_interval(None),
@@ -82,7 +82,8 @@ class OrbitPresenter:
         self._separation_plot: SeparationPlot = SeparationPlot(state)
         self.inspector = Inspector(self.controls, self.player, self.plots, self._separation_plot, latest)
         self._orbit_requests = OrbitRequests(state, jobs, self._show, self.controls.say, latest)
-        self._divergent_start_requests = DivergentStartRequests(state, jobs, self.controls.say, locked)
+        self._neighbour: Start | None = None
+        self._neighbour_requests = NeighbourRequests(state, jobs, self._show_neighbour, self.controls.say, locked)
         self._periodic_orbit_requests = PeriodicOrbitRequests(
             state, jobs, self.controls.say, locked, context.change, self._orbit_requests.name_periodic
         )
@@ -103,9 +104,10 @@ class OrbitPresenter:
 
     def _announce_added_start(self, orbits: Sequence[StartOrbit]) -> None:
         """Show verdict and path of the added start in a message, because on a phone the panel and the path are out of view."""
-        for orbit, colour in zip(orbits, self._state.colours.orbits, strict=False):
+        for slot, orbit in enumerate(orbits):
             if orbit.start == self._added_start and orbit.curves is not None:
                 self._added_start = None
+                colour = self._state.colours.path_colour(orbit.curves.orbit.fate, orbit.curves.orbit.outcomes, slot)
                 self._notice.show(orbit.headline(), path_picture(orbit.curves, colour))
 
     def _update_message(self, *events: Event) -> None:
@@ -114,6 +116,14 @@ class OrbitPresenter:
         changed = {event.name: event for event in events}
         if "plane" in changed and "starts" in changed and changed["starts"].old and not changed["starts"].new:
             self.controls.say(ORBITS_REMOVED)
+
+    def _show_neighbour(self, sentence: str, neighbour: Start | None) -> None:
+        self._neighbour = neighbour
+        self.controls.show_neighbour(sentence, is_known=neighbour is not None)
+
+    def _add_neighbour(self) -> None:
+        if self._neighbour is not None and not self._state.add_start(self._neighbour):
+            self.controls.say("Remove an orbit to add another.")
 
     def _open_section(self) -> None:
         """Open the Poincaré section of the system of the chosen orbit, at the energy of the orbit."""
@@ -144,6 +154,7 @@ class OrbitPresenter:
                 self._mark()
                 self._draw()
                 self._separation_requests.follow(orbits)
+                self._neighbour_requests.follow(orbits)
             self._show_texts()
             self._announce_added_start(orbits)
             # The inspector adds its panes last: a text that changes before it is in the document gets links to stylesheets of

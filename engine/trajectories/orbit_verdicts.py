@@ -8,7 +8,7 @@ from typing import ClassVar
 
 from engine.evidence.birkhoff_averages import TORUS_DIGITS
 from engine.foundations.validation import checks_types
-from engine.foundations.wording import format_time
+from engine.foundations.wording import format_count, format_time
 from engine.propagation.fates import Evidence, Fate, describe_evidence, describe_fate, name_fate, outcome_of
 from engine.systems.outcomes import Outcome
 from engine.trajectories.birkhoff_digits import BirkhoffDigits
@@ -103,9 +103,11 @@ class OrbitVerdict(SectionResult):
         return f"{self._participle} {until}, {self.character}"
 
     def headline(self) -> str:
-        """Return the verdict in a short sentence without its reasons."""
+        """Return the verdict in a few rounded words: "Escapes through exit 4 at t = 66.22, after 12 crossings"."""
         if self.fate >= 1:
-            return f"{outcome_of(self.fate, self.outcomes).past} at t = {format_time(self.t_end)}{self._character_inside}"
+            action, crossings = outcome_of(self.fate, self.outcomes).present, format_count(self.crossings, "crossing")
+            time = format_time(self.t_end, digits=4)
+            return f"{action[0].upper()}{action[1:]} at t = {time}, after {crossings}{self._character_inside}"
         summary = self.summarize()
         return summary[0].upper() + summary[1:]
 

@@ -172,6 +172,10 @@ class Palette:
         """Return the labels and colours of the outcomes that occur, by fate."""
         return {fate: entry for fate, entry in enumerate(self.end_entries(outcomes), 1) if outcomes[fate - 1].occurs}
 
+    def path_colour(self, fate: int, outcomes: Sequence[Outcome], slot: int) -> str:
+        """Return the colour of a path: that of its end or, without an end, that of the orbit in a slot of the list of orbits."""
+        return self.entry(fate, outcomes).colour if fate >= 1 else self.orbits[slot % len(self.orbits)]
+
     @property
     def outcome_colours(self) -> list[str]:
         """Colours of the pixel codes of fates that are not ends. These codes come first in all pictures."""

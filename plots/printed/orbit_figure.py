@@ -15,7 +15,7 @@ from engine.slices.planes import SPACE
 from plots.pictures.histories import ENVELOPE_ALPHA, History, has_log_time
 from plots.pictures.orbit_curves import OrbitCurves, find_well_window
 from plots.pictures.orbit_quantities import ORBIT_QUANTITIES, OrbitQuantity
-from plots.pictures.palette import THRESHOLD, Palette
+from plots.pictures.palette import MARK_EDGE, THRESHOLD, Palette
 from plots.printed.figure_axes import add_figure_legend, add_panel_legend, new_figure, set_title, style_axes, write_below
 from plots.printed.figure_style import SCREEN, FigureStyle
 from plots.printed.potential_figure import draw_well
@@ -95,7 +95,10 @@ def draw_path(
 
 
 def _draw_paths(axes: Axes, orbits: Sequence[OrbitCurves], window: Window, palette: Palette) -> None:
-    for curves, colour in zip(orbits, cycle(palette.orbits), strict=False):
+    for slot, curves in enumerate(orbits):
+        colour = palette.path_colour(curves.orbit.fate, curves.orbit.outcomes, slot)
+        number_colour = palette.orbits[slot % len(palette.orbits)]
+        axes.scatter(curves.orbit.x[:1], curves.orbit.y[:1], 24, number_colour, edgecolors=MARK_EDGE, linewidths=0.8, zorder=3)
         if curves.visits is None:
             draw_curve(axes, [np.column_stack(curves.path)], window, colors=colour, linewidths=1.0)
         else:

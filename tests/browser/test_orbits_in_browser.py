@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import expect
 
+from plots.pictures.palette import DEFAULT_COLOURS
 from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 
@@ -61,7 +62,7 @@ def test_the_inspector_is_hidden_while_there_are_no_orbits(explorer: ExplorerPag
     for part in parts:
         expect(part).to_be_hidden()
     explorer.click("basins", 0.2, 0.1)
-    expect(explorer.text("Escaped through")).to_be_visible()
+    expect(explorer.text("Escapes through")).to_be_visible()
     for part in parts:
         expect(part).to_be_visible()
     drawn = "name => Bokeh.documents[0].get_model_by_name(name).renderers.some(one => one.data_source.data.xs.length === 1)"
@@ -70,7 +71,7 @@ def test_the_inspector_is_hidden_while_there_are_no_orbits(explorer: ExplorerPag
 
 def test_a_time_moves_along_path_sali_and_r2_together(explorer: ExplorerPage) -> None:
     explorer.click("basins", 0.1, 0.05)
-    expect(explorer.text("Escaped through")).to_be_visible()
+    expect(explorer.text("Escapes through")).to_be_visible()
     explorer.page.get_by_role("slider", name="Time along the orbits").press("ArrowRight")
     explorer.wait_for_data("points", "data.x.length == 1")
     first = explorer.model_data("points")
@@ -107,14 +108,23 @@ def test_nothing_moves_with_further_orbits_messages_and_the_player(open_explorer
     assert places(explorer) == before
     explorer.page.evaluate(_PAINTED)
     assert explorer.page.evaluate(_SHIFTS, [begin, end_of_histories]) == []
-    explorer.press("Find divergent start")
-    # The line of the message opens when the button is pressed, and keeps its height when the search ends.
-    expect(explorer.page.locator(".note").first).to_contain_text(re.compile("divergent start is|start that escapes elsewhere"))
-    begin = explorer.page.evaluate(_PAINTED)
-    expect(explorer.text("The divergent start is")).to_be_visible()
+    explorer.press("Add this neighbour")
+    explorer.wait_for_data("r2_histories", "data.xs.length == 3")
     explorer.wait_for_data("separation_source", "data.t.length > 100")
     explorer.page.evaluate(_PAINTED)
     assert explorer.page.evaluate(_SHIFTS, [begin, end_of_histories]) == []
+
+
+def test_a_line_joins_the_chosen_start_with_its_orbit_and_the_path_has_the_colour_of_its_exit(explorer: ExplorerPage) -> None:
+    explorer.click("basins", 0.1, 0.05)
+    explorer.wait_for_data("paths", "data.xs.length == 1")
+    places = [(picture, explorer.model_data(source)) for picture, source in (("basins", "starts"), ("well", "points"))]
+    line = explorer.page.locator(".start-line line")
+    expect(line).to_be_visible()
+    ends = [float(line.get_attribute(name) or "nan") for name in ("x1", "y1", "x2", "y2")]
+    expected = [explorer.point(picture, data["x"][0], data["y"][0]) for picture, data in places]
+    assert ends == pytest.approx([coordinate for point in expected for coordinate in point], abs=1.0)
+    assert explorer.model_data("paths")["colour"] == [DEFAULT_COLOURS.channels[0]]
 
 
 def test_messages_disappear_with_their_subject(explorer: ExplorerPage) -> None:
@@ -123,10 +133,10 @@ def test_messages_disappear_with_their_subject(explorer: ExplorerPage) -> None:
     expect(explorer.text("Type a number into both boxes first.")).to_be_visible()
     explorer.click("basins", 0.1, 0.05)
     expect(explorer.text("Type a number into both boxes first.")).to_have_count(0)
-    explorer.press("Find divergent start")
-    expect(explorer.text("The divergent start is")).to_be_visible()
+    explorer.press("Nearest periodic orbit")
+    expect(explorer.text("no periodic orbit")).to_be_visible()
     explorer.press("Remove")
-    expect(explorer.text("The divergent start is")).to_have_count(0)
+    expect(explorer.text("no periodic orbit")).to_have_count(0)
 
 
 def test_an_interval_drawn_over_a_history_is_shown_by_path_curves_and_player(explorer: ExplorerPage) -> None:

@@ -5,6 +5,7 @@ import {Card} from "./gestures/card.js"
 import {Frames} from "../../../plots/browser/modules/workers/frames.js"
 import {highlightPixels} from "./painting/legend.js"
 import {Overlay} from "./painting/overlay.js"
+import {StartLine} from "./painting/start_line.js"
 import {EnergyPlayer} from "../../../plots/browser/modules/gestures/player.js"
 import {Pool, workerCount} from "../../../plots/browser/modules/workers/pool.js"
 import {hasVectors} from "../../../plots/browser/modules/workers/vectors.js"
@@ -40,8 +41,10 @@ export function start(model, el) {
   const pool = new Pool(() => new Worker(worker, {type: "module"}))
   const frames = new Frames(pool, workerCount(), (view, pixels, isMoving) => preview.show(view, pixels, isMoving))
   const store = storeOf(model.document)
+  const overlay = new Overlay(el)
   /** @type {Preview} */
-  const preview = new Preview(find, findSource, frames, new Overlay(el), store)
+  const preview = new Preview(find, findSource, frames, overlay, store)
+  const startLine = new StartLine(el, () => overlay.isShown)
   const player = new EnergyPlayer(
     energy => store.energy.hold(energy),
     energy => {
@@ -52,6 +55,7 @@ export function start(model, el) {
   )
   const card = new Card(
     el,
+    startLine,
     () => preview.scene,
     () => find("maps").data,
     () => model.view,

@@ -108,7 +108,7 @@ class PictureTexts:
     offsets
         What the labels of the axes mean, see `label_axes`.
     note
-        HTML that only the largest picture has.
+        HTML about all pictures, which only the picked picture has.
     under_way
         What is being computed.
     """
@@ -133,10 +133,10 @@ class PictureTexts:
         # The model is reused, because Bokeh would search all models of the page for a new model.
         plot.elements[0].html = html
 
-    def below(self, *, is_largest: bool) -> str:
+    def below(self, *, is_picked: bool) -> str:
         """Return the HTML below the frame."""
         meanings = "".join(f"<small>{offset}</small>" for offset in self.offsets)
-        return f"<i class='axis-name'>{_axis_name(self.axes[0])} →</i>{self.legend}{meanings}{self.note if is_largest else ''}"
+        return f"<i class='axis-name'>{_axis_name(self.axes[0])} →</i>{self.legend}{meanings}{self.note if is_picked else ''}"
 
 
 def _axis_name(name: str) -> str:

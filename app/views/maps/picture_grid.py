@@ -1,4 +1,4 @@
-"""The arrangement of the pictures: side by side, or one picture enlarged above a row of the other pictures."""
+"""The arrangement of the pictures: two large pictures above a row of the others, or one enlarged picture above all others."""
 
 from __future__ import annotations
 
@@ -18,16 +18,17 @@ SHORT_TITLES = {"well": WELL_TITLE} | {name: picture.short_title for name, pictu
 """Short titles of all pictures, in order."""
 
 FIRST_PICTURE = "basins"
-"""The picture that is largest, or on narrow screens the only picture, until another is chosen."""
+"""The only picture of a narrow page, until another is chosen."""
 
-# Largest number of pictures of the same size. Among more pictures, one is twice as large as the others.
-_MOST_EQUAL = 4
-# Largest number of pictures of which one is twice as large; of more pictures, one is three times as large as the others.
-_MOST_HALF = 6
-# Kinds of pictures with axes, and a strip below them.
-_WITH_STRIP = ("picked", "equal")
-# Numbers of pictures that leave the last cell empty.
-_WITH_GAP = (5, 7)
+# Number of pictures of the first row, which are the well and the basins, or the maps of two views.
+_LARGE = 2
+# Arrangement and kind of the other pictures, by their number: with whole titles, with short titles, without axes.
+_OTHERS = {1: ("pair", "equal"), 2: ("pair", "equal"), 3: ("three", "third"), 4: ("four", "compact")}
+# The same for more pictures, which have no legends.
+_MORE = ("many", "compact")
+_ARRANGEMENTS = {"enlarged", _MORE[0], *(arrangement for arrangement, _ in _OTHERS.values())}
+# Kinds of pictures with whole titles.
+_WITH_TITLE = ("picked", "equal")
 
 
 class PictureGrid:
@@ -47,6 +48,7 @@ class PictureGrid:
         # Pictures that show nothing.
         self._empty_pictures: frozenset[str] = frozenset()
         # Before the first map, the pictures do not belong to the system.
+        self._is_single = alone
         which = ["alone"] if alone else []
         classes = ["maps", "stale", *which]
         # Texts around pictures, and the kind of each picture on the page.
@@ -73,13 +75,13 @@ class PictureGrid:
         self._place()
 
     def write(self, name: str, texts: PictureTexts) -> None:
-        """Write around a picture. A compact or small picture has only its title, in short."""
+        """Write around a picture. A compact picture has a short title and no axes, and a small picture has only its title."""
         self._texts[name] = texts
         self._write_title(name)
         self._write_strips()
 
     def mark_empty(self, name: str, empty: bool) -> None:
-        """Set whether a picture shows nothing. An empty picture of a layer does not become the largest picture."""
+        """Set whether a picture shows nothing. The picture of a layer is not picked while it is empty."""
         empty_pictures = self._empty_pictures | {name} if empty else self._empty_pictures - {name}
         if empty_pictures != self._empty_pictures:
             self._empty_pictures = empty_pictures
@@ -87,19 +89,21 @@ class PictureGrid:
 
     def mark_stale(self, stale: bool) -> None:
         """Grey out pictures that do not belong to the controls, or show them normally."""
-        self._set_class("stale", stale)
+        self._set_classes({"stale"}, *["stale"] * stale)
 
     def _choose(self, name: str | None) -> None:
-        # With None, or with the largest picture, the picker only follows the page.
-        if name is not None and name != self._largest_picture:
+        # With None, or with the picked picture, the picker only follows the page.
+        if name is not None and name != self._picked_picture:
             with pn.io.hold():
                 self._state.focus = name
 
     @property
-    def _largest_picture(self) -> str:
-        """The largest picture: the enlarged picture, or else the picture of the last layer that shows something."""
+    def _picked_picture(self) -> str:
+        """The enlarged picture. On a page with a single picture, else that of the last layer that shows something."""
+        if self._is_enlarged:
+            return self._state.focus
         layers = [name for name in self._panes if name in LAYERS_BY_PICTURE and name not in self._empty_pictures]
-        return self._state.focus if self._is_enlarged else [FIRST_PICTURE, *layers][-1]
+        return [FIRST_PICTURE, *(layers if self._is_single or self._state.narrow else [])][-1]
 
     @property
     def _is_enlarged(self) -> bool:
@@ -108,17 +112,16 @@ class PictureGrid:
 
     def _place(self) -> None:
         # A Bokeh pane on the page cannot change its CSS classes, but its figure can.
-        largest = self._largest_picture
-        is_enlarged = self._is_enlarged
-        count = len(self._panes)
-        is_many = count > _MOST_EQUAL
-        other_kind = "small" if is_enlarged else "compact" if is_many else "equal"
+        arrangement, other_kind = _OTHERS.get(len(self._panes) - _LARGE, _MORE)
+        if self._is_enlarged:
+            arrangement, other_kind = "enlarged", "small"
+        large = () if self._is_enlarged else tuple(self._panes)[:_LARGE]
+        kinds = {name: "equal" if name in large else other_kind for name in self._panes}
+        self._kinds = kinds | {name: "picked" for name in kinds if name == self._picked_picture}
         with pn.io.hold():
-            self._set_class("enlarged", is_enlarged)
-            self._set_class("many", is_many and not is_enlarged)
-            self._set_class("crowded", count > _MOST_HALF and not is_enlarged)
-            self._set_class("gap", count in _WITH_GAP and not is_enlarged)
-            self._kinds = {name: "picked" if name == largest else other_kind for name in self._panes}
+            # Bokeh computes the layout when figures change, so the places of the figures and the strips must be final before.
+            self._set_classes(_ARRANGEMENTS, arrangement)
+            self._write_strips()
             for name, pane in self._panes.items():
                 plot: figure = pane.object
                 classes = ["well" if name == "well" else "map", self._kinds[name]]
@@ -126,8 +129,7 @@ class PictureGrid:
                     plot.css_classes = classes
                     set_borders(plot, classes[1])
                     self._write_title(name)
-            self._write_strips()
-            self.picker.param.update(options={SHORT_TITLES[name]: name for name in self._panes}, value=largest)
+            self.picker.param.update(options={SHORT_TITLES[name]: name for name in self._panes}, value=self._picked_picture)
             # A narrow page shows only one picture, and offers a choice.
             parts = [*([self.picker] if self._state.narrow else []), *self._panes.values(), self.strips]
             if parts != self._column.objects:
@@ -135,21 +137,20 @@ class PictureGrid:
 
     def _write_title(self, name: str) -> None:
         if name in self._kinds and name in self._texts:
-            self._texts[name].write_above(self._panes[name].object, short=self._kinds[name] not in _WITH_STRIP)
+            self._texts[name].write_above(self._panes[name].object, short=self._kinds[name] not in _WITH_TITLE)
 
     def _write_strips(self) -> None:
         kinds = {name: kind for name, kind in self._kinds.items() if name in self._texts}
-        arrangements = " ".join({"many", "crowded", "enlarged"}.intersection(self._column.css_classes))
+        [arrangement] = _ARRANGEMENTS.intersection(self._column.css_classes) or [""]
         strips = (
-            f"<div class='foot legend {kind} {arrangements}' data-picture='{name}'>"
-            f"{self._texts[name].below(is_largest=kind == 'picked')}</div>"
+            f"<div class='foot legend {kind} {arrangement}' data-picture='{name}'>"
+            f"{self._texts[name].below(is_picked=kind == 'picked')}</div>"
             for name, kind in kinds.items()
         )
         self.strips.object = "".join(strips)
 
-    def _set_class(self, name: str, on: bool) -> None:
-        """Set or remove a CSS class of the grid."""
-        other_classes = [each for each in self._column.css_classes if each != name]
-        classes = [*other_classes, name] if on else other_classes
+    def _set_classes(self, old: set[str], *new: str) -> None:
+        """Replace CSS classes of the grid."""
+        classes = [*(each for each in self._column.css_classes if each not in old), *new]
         if classes != self._column.css_classes:
             self._column.css_classes = classes

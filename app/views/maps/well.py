@@ -46,6 +46,7 @@ class WellView:
         self._ranges = Range1d(-1.0, 1.0), Range1d(-1.0, 1.0)
         self._line_style = line_style(orbit_colours(state))
         self._paths, self._trails = line_source("paths"), line_source("trails")
+        self._paths.data["colour"] = []
         # Density images of long paths.
         self._shades = ColumnDataSource({name: [] for name in ("image", "x", "y", "dw", "dh", "alpha")}, name="shades")
         self._points = ColumnDataSource({"x": [], "y": [], "slot": []}, name="points")
@@ -67,7 +68,7 @@ class WellView:
         style = self._line_style
         return [
             (self._shades, ImageRGBA(dw="dw", dh="dh", global_alpha="alpha")),
-            (self._paths, MultiLine(**style)),
+            (self._paths, MultiLine(**style | {"line_color": "colour"})),
             (self._trails, MultiLine(line_color=LIGHT.halo, line_width=5, line_alpha=0.7)),
             (self._trails, MultiLine(**style | {"line_width": 2.5})),
             (self._points, Scatter(size=11, fill_color=style["line_color"], line_color=MARK_EDGE, line_width=1.5)),
@@ -89,10 +90,11 @@ class WellView:
         self._orbits = in_front(orbits, chosen)
         alphas = opacities(self._orbits, chosen)
         path_lines = [_NO_LINE if one.visits is not None else one.path for _, one in self._orbits]
-        self._paths.data = line_columns(self._orbits, path_lines, alphas)
+        colours = [self._path_colour(slot, one) for slot, one in self._orbits]
+        self._paths.data = line_columns(self._orbits, path_lines, alphas) | {"colour": colours}
         long_paths = [(slot, one) for slot, one in self._orbits if one.visits is not None]
         self._shades.data = {
-            "image": [one.shaded(self._state.colours.orbits[slot]) for slot, one in long_paths],
+            "image": [one.shaded(self._path_colour(slot, one)) for slot, one in long_paths],
             "x": [one.window.x_low for _, one in long_paths],
             "y": [one.window.ordinate_low for _, one in long_paths],
             "dw": [one.window.width for _, one in long_paths],
@@ -101,6 +103,9 @@ class WellView:
         }
         self._outline()
         self.set_time(self._time)
+
+    def _path_colour(self, slot: int, curves: OrbitCurves) -> str:
+        return self._state.colours.path_colour(curves.orbit.fate, curves.orbit.outcomes, slot)
 
     def set_time(self, t: float | None) -> None:
         """Mark each orbit at a time, with its trail; None marks the starts."""

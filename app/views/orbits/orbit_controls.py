@@ -37,7 +37,7 @@ class OrbitActions:
     """Callbacks of the buttons. `add` takes x and ordinate of a typed start, and `copy` takes a text."""
 
     add: Callable[[float, float], None]
-    find_divergent_start: Callable[[], None]
+    add_neighbour: Callable[[], None]
     find_periodic_orbit: Callable[[], None]
     open_section: Callable[[], None]
     show_all_times: Callable[[], None]
@@ -55,7 +55,7 @@ class OrbitControls:
         self.ordinate = pn.widgets.TextInput(label="px", value="0", max_length=_LONGEST_NUMBER, width=_BOX_WIDTH)
         self.button = button("Integrate", self._submit, kind="primary", align="end")
         self.list = OrbitList(self._choose, visible=False)
-        self.divergent_start = button("Find divergent start", actions.find_divergent_start, margin=0)
+        self.add_neighbour = button("Add this neighbour", actions.add_neighbour, margin=0, disabled=True)
         self.periodic_orbit = button("Nearest periodic orbit", actions.find_periodic_orbit, margin=0)
         self.remove = button("Remove", lambda: state.remove_start(state.chosen), margin=0)
         self.clear = button("Clear all", lambda: state.param.update(starts=(), chosen=0), margin=0)
@@ -65,6 +65,7 @@ class OrbitControls:
         self._interval_row = flex_row(self.interval, all_times, justify="space-between", align="center")
         self._interval_row.param.update(margin=(0, 10), visible=False)
         self.text = TextPane("", name="verdict", sizing_mode="stretch_width", margin=(0, 10), css_classes=["verdict"])
+        self.neighbour = TextPane("", name="neighbour", sizing_mode="stretch_width", margin=(0, 10), css_classes=["neighbour"])
         self.note = TextPane(HINT, name="note", sizing_mode="stretch_width", margin=(0, 10), css_classes=["note"])
         self.reason = TextPane("", name="reason", sizing_mode="stretch_width", margin=(0, 10))
         self.values = TextPane("", name="values", sizing_mode="stretch_width", margin=(0, 10))
@@ -83,10 +84,10 @@ class OrbitControls:
     def head(self, player: pn.viewable.Viewable) -> pn.viewable.Viewable:
         """Return the list of the orbits, the verdict on the chosen orbit, buttons, and the player."""
         orbits = flex_row(self.list, self.clear, justify="space-between", align="center")
-        buttons = flex_row(self.divergent_start, self.periodic_orbit, self.remove, self.open_section, gap="6px")
+        buttons = flex_row(self.add_neighbour, self.periodic_orbit, self.remove, self.open_section, gap="6px")
         orbits.margin = buttons.margin = (5, 10)
         return pn.Column(
-            orbits, self.text, buttons, player,
+            orbits, self.text, self.neighbour, buttons, player,
             sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT,
         )  # fmt: skip
 
@@ -127,6 +128,11 @@ class OrbitControls:
         """Remove a message about earlier orbits; without orbits, show `HINT`."""
         self.say("" if has_orbits else HINT)
 
+    def show_neighbour(self, sentence: str, *, is_known: bool) -> None:
+        """Show a sentence on the nearest start that ends elsewhere, and allow to add it if it is known."""
+        self.neighbour.object = escape(sentence)
+        self.add_neighbour.disabled = not is_known
+
     def show_indicators(self, verdicts: Sequence[IndicatorVerdict]) -> None:
         """Show the verdict of each chaos indicator on the chosen orbit."""
         self._verdicts = verdicts
@@ -143,7 +149,7 @@ class OrbitControls:
         chosen_orbit = orbits[chosen]
         self.x.value, self.ordinate.value = (f"{number!r}" for number in chosen_orbit.start)
         # From a start without an orbit nothing can be searched.
-        self.divergent_start.disabled = self.periodic_orbit.disabled = bool(chosen_orbit.problem)
+        self.periodic_orbit.disabled = bool(chosen_orbit.problem)
         self.text.object = escape(chosen_orbit.headline())
         self.reason.object = escape(chosen_orbit.describe())
         self.values.object = _value_table(chosen_orbit.orbit)

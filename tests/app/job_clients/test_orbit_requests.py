@@ -1,4 +1,4 @@
-"""Orbits, their digits, divergent starts and separations are requested, and late results are dropped."""
+"""Orbits, their digits, neighbours and separations are requested, and late results are dropped."""
 
 from __future__ import annotations
 
@@ -8,13 +8,14 @@ from collections.abc import Callable, Iterator
 import numpy as np
 import pytest
 
-from app.job_clients.chosen_orbit_requests import DivergentStartRequests, PeriodicOrbitRequests, SeparationRequests
+from app.job_clients.chosen_orbit_requests import NeighbourRequests, PeriodicOrbitRequests, SeparationRequests
 from app.job_clients.orbit_requests import OrbitRequests, StartOrbit
 from app.state.view_state import ViewState
 from engine import Plane, System, find_periodic_orbit, integrate_orbit, read_section
 from engine.jobs.client import JobClient
 from engine.jobs.manager import Jobs
 from engine.results import Separation
+from plots.links.map_view import Start
 from tests.app.session.session_lock import context_of
 from tests.engine.jobs.inbox import wait_until_idle
 from tests.waiting import SECONDS
@@ -106,37 +107,45 @@ def test_a_cached_orbit_is_delivered_at_once_and_follows_the_energy(session: Ses
     recorder.wait_for(lambda: recorder.all_computed(1) and recorder.orbits[0].orbit.energy == pytest.approx(0.3))  # type: ignore[union-attr]
 
 
-def test_the_divergent_start_has_another_fate_and_is_chosen(session: Session) -> None:
+def test_the_neighbour_of_the_chosen_start_ends_elsewhere(session: Session) -> None:
     state, _, recorder, jobs = session
-    search = DivergentStartRequests(state, jobs, recorder.notify, unlocked)
+    found: list[tuple[str, Start | None]] = []
+    neighbours = NeighbourRequests(state, jobs, lambda *shown: found.append(shown), recorder.notify, unlocked)
     state.add_start((0.1, 0.05))
-    search.search()
+    recorder.wait_for(lambda: recorder.all_computed(1))
+    neighbours.follow(recorder.orbits)
+    recorder.wait_for(lambda: found[-1][1] is not None)
+    sentence, neighbour = found[-1]
+    assert neighbour is not None
+    state.add_start(neighbour)
     recorder.wait_for(lambda: recorder.all_computed(2))
     first, second = (one.orbit for one in recorder.orbits)
     assert first is not None
     assert second is not None
     assert first.fate != second.fate
-    assert state.chosen == 1
-    assert "divergent start is" in recorder.messages[-1]
+    assert sentence.endswith(f"away {second.outcomes[second.fate - 1].present}.")
 
 
-def test_a_divergent_start_that_arrives_too_late_is_not_added(session: Session) -> None:
+def test_no_neighbour_is_searched_while_the_orbit_is_not_known(session: Session) -> None:
     state, _, recorder, jobs = session
-    search = DivergentStartRequests(state, jobs, recorder.notify, unlocked)
+    found: list[tuple[str, Start | None]] = []
+    neighbours = NeighbourRequests(state, jobs, lambda *shown: found.append(shown), recorder.notify, unlocked)
     state.add_start((0.1, 0.05))
-    search.search()
-    state.energy = 0.3
     recorder.wait_for(lambda: recorder.all_computed(1))
+    neighbours.follow([StartOrbit(state.starts[0])])
     wait_until_idle(jobs)
-    assert len(state.starts) == 1
+    assert found == [("", None)]
 
 
-def test_a_search_without_result_gives_a_message(session: Session) -> None:
+def test_a_start_without_a_neighbour_that_leaves_gets_a_sentence(session: Session) -> None:
     state, _, recorder, jobs = session
+    found: list[tuple[str, Start | None]] = []
+    neighbours = NeighbourRequests(state, jobs, lambda *shown: found.append(shown), recorder.notify, unlocked)
     state.energy = 0.1
     state.add_start((0.1, 0.05))
-    DivergentStartRequests(state, jobs, recorder.notify, unlocked).search()
-    recorder.wait_for(lambda: "No start near this one escapes elsewhere." in recorder.messages)
+    recorder.wait_for(lambda: recorder.all_computed(1))
+    neighbours.follow(recorder.orbits)
+    recorder.wait_for(lambda: ("No start near this one leaves elsewhere.", None) in found)
 
 
 def test_the_last_two_orbits_are_compared(session: Session) -> None:

@@ -126,5 +126,5 @@ def test_a_collision_is_named_in_the_sentence_and_in_the_list() -> None:
 
 def test_a_headline_says_where_an_orbit_ends_or_how_long_it_stays() -> None:
     escaping, bounded = (judge_orbit(integrate_orbit(CASES["I"], (0.1, 0.0, 0.05, py), 1e3)) for py in (0.6, 0.3))
-    assert escaping.headline() == "Escaped through exit 1 at t = 15.1781"
+    assert escaping.headline() == "Escapes through exit 1 at t = 15.18, after 1 crossing"
     assert bounded.headline().startswith("Bounded for ever, ")

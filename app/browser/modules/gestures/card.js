@@ -29,11 +29,13 @@ const STYLE = `position:fixed;pointer-events:none;z-index:5;display:none;backgro
 export class Card {
   /**
    * @param {HTMLElement} el  gets the card
+   * @param {import("../painting/start_line.js").StartLine} startLine  joins the start with its orbit
    * @param {() => import("../../../../plots/browser/modules/workers/frames.js").Scene | null} scene  what the pictures show
    * @param {() => any} maps  the columns of the data source of the maps
    * @param {() => {colours: string[], labels: string[]}} view  colours and labels of the outcomes
    */
-  constructor(el, scene, maps, view) {
+  constructor(el, startLine, scene, maps, view) {
+    this.#startLine = startLine
     this.#scene = scene
     this.#maps = maps
     this.#view = view
@@ -54,6 +56,7 @@ export class Card {
     document.addEventListener("scroll", () => this.#hide(), {capture: true, passive: true})
   }
 
+  #startLine
   #scene
   #maps
   #view
@@ -144,12 +147,13 @@ export class Card {
     const {units} = scene.slice
     const energy = scene.energy / integrator.system.units.energy
     const path = findPath(integrator, scene.slice, energy, [start[0] / units[0], start[1] / units[1]], LONGEST_TIME)
-    if (path) this.#draw(picture, event.clientX, path)
+    if (path) this.#draw(picture, event, path)
     else this.#hide()
   }
 
   #hide() {
     this.#canvas.style.display = "none"
+    this.#startLine.point(null)
   }
 
   /**
@@ -173,14 +177,14 @@ export class Card {
    * Draw an orbit in the well, with the limiting curve and the exits, and its outcome as text.
    *
    * @param {import("../painting/pictures.js").Picture} picture  under the pointer
-   * @param {number} pointerLeft  distance of the pointer from the left of the screen, in pixels
+   * @param {PointerEvent} event
    * @param {import("../../../../plots/browser/modules/engine/path.js").Path} path
    */
-  #draw(picture, pointerLeft, path) {
+  #draw(picture, event, path) {
     const [integrator, context] = [this.#integrator, this.#canvas.getContext("2d")]
     if (!integrator || !context) return
     const {system} = integrator
-    const box = placeFor(picture, pointerLeft)
+    const box = placeFor(picture, event.clientX)
     const energy = path.energy * system.units.energy
     const window = windowAt(integrator, "x_y", energy)
     if (!window) return this.#hide()
@@ -192,7 +196,8 @@ export class Card {
     const {colours, labels} = this.#view()
     const well = {window, energy, limit, colours, ink}
     drawWell(context, box, integrator, well)
-    drawOrbit(context, box, well, path, system.units)
+    const [left, top] = drawOrbit(context, box, well, path, system.units)
+    this.#startLine.point({from: [event.clientX, event.clientY], to: [box.left + left, box.top + top], colour: ink})
     const text = describeOutcome(path, system.units.time, labels)
     writeText(context, text, box, ink, paper)
     this.#canvas.setAttribute("aria-label", text)

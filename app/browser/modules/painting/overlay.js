@@ -39,6 +39,11 @@ export class Overlay {
   #image = new PixelImage()
   #isShown = false
 
+  /** Whether the canvases cover the pictures. */
+  get isShown() {
+    return this.#isShown
+  }
+
   /** Paint all pictures on their canvases, and the well if it changes. @param {Painting} painting */
   show(painting) {
     this.#isShown = true

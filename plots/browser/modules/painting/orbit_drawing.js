@@ -37,13 +37,14 @@ export function drawWell(context, box, integrator, {window, energy, limit, colou
 }
 
 /**
- * Draw an orbit in a well, with a point at its start.
+ * Draw an orbit in a well, with a point at its start; return the place of the start in the box.
  *
  * @param {CanvasRenderingContext2D} context
  * @param {{width: number, height: number}} box
  * @param {Well} well
  * @param {Pick<import("../engine/path.js").Path, "x" | "y" | "channel">} path
  * @param {{length: number}} units  units of the well, in units of the page
+ * @returns {[number, number]}
  */
 export function drawOrbit(context, box, {window, colours, ink}, path, units) {
   const {xs, ys} = toPageUnits(path, units)
@@ -51,8 +52,10 @@ export function drawOrbit(context, box, {window, colours, ink}, path, units) {
   context.fillStyle = ink
   context.beginPath()
   const [scaleX, scaleY] = [box.width / (window.xHigh - window.xLow), box.height / (window.ordinateHigh - window.ordinateLow)]
-  context.arc((xs[0] - window.xLow) * scaleX, (window.ordinateHigh - ys[0]) * scaleY, START_RADIUS, 0, 2 * Math.PI)
+  const [left, top] = [(xs[0] - window.xLow) * scaleX, (window.ordinateHigh - ys[0]) * scaleY]
+  context.arc(left, top, START_RADIUS, 0, 2 * Math.PI)
   context.fill()
+  return [left, top]
 }
 
 /**

@@ -37,7 +37,7 @@ def test_every_picture_has_a_short_title() -> None:
 def test_two_views_stand_side_by_side_before_the_well_and_their_difference() -> None:
     maps = make_maps(ViewState(compared=View()))
     assert [pane.object.name for pane in panes(maps.grid)] == ["basins", "compared", "well", "differences"]
-    assert not {"enlarged", "many"} & set(maps.grid.layout().css_classes)
+    assert "pair" in maps.grid.layout().css_classes
 
 
 def test_one_picture_is_enlarged_and_the_others_have_no_axes() -> None:
@@ -49,28 +49,27 @@ def test_one_picture_is_enlarged_and_the_others_have_no_axes() -> None:
         assert pane.object.below[0].visible == pane.object.left[0].visible == (pane.object.name == "times")
 
 
-def test_one_of_many_pictures_is_twice_as_large_and_the_rest_have_no_axes() -> None:
-    pictures = grid(*LAYERS_BY_PICTURE)
-    assert "many" in pictures.layout().css_classes
-    last = [*LAYERS_BY_PICTURE][-1]
-    assert named(pictures, "picked") == [last]
-    assert len(named(pictures, "compact")) == len(ALWAYS) + len(LAYERS_BY_PICTURE) - 1
-    assert not any(pane.object.left[0].visible for pane in panes(pictures) if pane.object.name != last)
-
-
 @pytest.mark.parametrize(
-    ("layers", "classes"), [(0, set()), (1, {"many", "gap"}), (2, {"many"}), (3, {"many", "crowded", "gap"})]
+    ("layers", "arrangement", "kind", "has_axes"),
+    [(0, "pair", "equal", True), (1, "three", "third", True), (2, "four", "compact", False), (3, "many", "compact", False)],
 )
-def test_the_size_of_the_largest_picture_and_the_empty_cell_follow_from_the_number_of_pictures(
-    layers: int, classes: set[str]
+def test_two_pictures_keep_their_places_above_the_others_of_which_few_have_axes(
+    layers: int, arrangement: str, kind: str, has_axes: bool
 ) -> None:
     pictures = grid(*[*LAYERS_BY_PICTURE][:layers])
-    assert {"many", "crowded", "gap"} & set(pictures.layout().css_classes) == classes
+    assert arrangement in pictures.layout().css_classes
+    first, second, *others = panes(pictures)
+    assert [pane.object.name for pane in (first, second)] == ["well", "basins"]
+    assert all(pane.object.left[0].visible for pane in (first, second))
+    assert all(pane.object.css_classes[1] == kind and pane.object.left[0].visible is has_axes for pane in others)
 
 
-@pytest.mark.parametrize(("on_demand", "largest"), [((), "basins"), (("characters",), "characters"), (("origins",), "origins")])
-def test_the_picture_of_an_active_layer_is_the_largest(on_demand: tuple[str, ...], largest: str) -> None:
-    assert named(grid(*on_demand), "picked") == [largest]
+def test_the_only_picture_of_a_narrow_page_is_that_of_the_last_layer() -> None:
+    state = ViewState(layers=frozenset({LAYERS_BY_PICTURE["characters"].name}))
+    pictures = make_maps(state).grid
+    assert named(pictures, "picked") == ["basins"]
+    state.narrow = True
+    assert named(pictures, "picked") == ["characters"]
 
 
 def test_a_picture_that_is_not_on_the_page_is_enlarged_when_it_appears() -> None:
@@ -94,8 +93,8 @@ def test_the_picker_of_a_narrow_page_offers_the_pictures_and_reports_the_choice(
     assert pictures.picker.value == "well"
 
 
-def test_the_picture_of_a_layer_that_shows_nothing_is_not_the_largest() -> None:
-    pictures = grid("characters")
+def test_the_picture_of_a_layer_that_shows_nothing_is_not_picked() -> None:
+    pictures = grid("characters", narrow=True)
     pictures.mark_empty("characters", empty=True)
     assert named(pictures, "picked") == ["basins"]
     pictures.mark_empty("characters", empty=False)
