@@ -131,11 +131,12 @@ def _picture_alone(explorer: Explorer) -> pn.viewable.Viewable:
 
 
 def _stage(explorer: Explorer) -> pn.viewable.Viewable:
-    """Return progress bar, maps, notes, and the chosen analysis, which the stylesheet arranges."""
+    """Return progress bar, maps, energy, notes, and the chosen analysis, which the stylesheet arranges."""
     return _column(
         explorer.maps.progress.bar,
         explorer.maps.toolbar.layout(*explorer.maps.progress.layout()),
         explorer.maps.view.grid.layout(),
+        explorer.controls.energy,
         explorer.analyses.notes,
         explorer.analysis.layout(),
         explorer.drawers.layout(),

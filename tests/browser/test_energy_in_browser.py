@@ -9,7 +9,7 @@ import pytest
 from playwright.sync_api import Locator, expect
 
 from engine import CASES, Fate, MapSpec, Plane, compute_map
-from plots.pictures.palette import OUTCOMES
+from plots.pictures.palette import DEFAULT_COLOURS, OUTCOMES
 from tests.browser.explorer_page import ExplorerPage
 
 # Number of zooms in which the browser must draw a preview.
@@ -20,6 +20,16 @@ WATCH = """() => {
     window.sent = 0
     const send = WebSocket.prototype.send
     WebSocket.prototype.send = function (data) { window.sent += 1; return send.call(this, data) }
+}"""
+
+# Colours of a column of the picture on the slider, at a place from 0 to 1, from the top.
+STRIP = """place => {
+    const view = [...Bokeh.index.all_views()].find(view => view.model.class_name === 'EnergySlider')
+    const canvas = view.shadow_el.querySelector('canvas'), {width, height} = canvas
+    const context = new OffscreenCanvas(width, height).getContext('2d', {willReadFrequently: true})
+    context.drawImage(canvas, 0, 0)
+    const {data} = context.getImageData(Math.floor(place * width), 0, 1, height)
+    return Array.from({length: height}, (_, row) => [...data.subarray(4 * row, 4 * row + 4)])
 }"""
 
 
@@ -37,6 +47,21 @@ def exact_energy(explorer: ExplorerPage) -> Locator:
 def moving_picture(explorer: ExplorerPage) -> Locator:
     """Return the canvas over one of the pictures while the energy moves."""
     return explorer.page.locator("canvas[data-energy]").first
+
+
+def test_the_slider_shows_the_shares_of_the_outcomes_at_each_energy(explorer: ExplorerPage) -> None:
+    slider = explorer.page.get_by_role("slider", name="Energy h", exact=True)
+    expect(slider).to_have_attribute("title", "Shares of a coarse map at t = 100; grey: still inside")
+    low, high = (float(slider.get_attribute(name) or "nan") for name in ("min", "max"))
+    # An energy of which the strip has a column.
+    place = 0.25
+    explorer.page.wait_for_function(f"place => ({STRIP})(place).every(colour => colour[3] > 0)", arg=place)
+    colours = [tuple(colour) for colour in explorer.page.evaluate(STRIP, place)]
+    fate = compute_map(MapSpec(CASES["I"], Plane.X_PX, low + place * (high - low), (32, 32), t_max=100.0)).fate
+    allowed = fate[~np.isin(fate, (Fate.FORBIDDEN, Fate.OUTSIDE))]
+    for channel, colour in enumerate(DEFAULT_COLOURS.channels[:2], 1):
+        share = colours.count((*bytes.fromhex(colour[1:]), 255)) / len(colours)
+        assert share == pytest.approx(np.mean(allowed == channel), abs=1.0 / len(colours))
 
 
 def test_pixels_follow_the_slider_without_the_server(explorer: ExplorerPage) -> None:

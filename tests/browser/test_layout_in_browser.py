@@ -112,7 +112,7 @@ def test_nothing_idle_is_shown(wide: ExplorerPage) -> None:
     assert set(figures(wide)) == set(PICTURES)
 
 
-@pytest.mark.parametrize(("page", "height", "least"), [("wide", 1000, 330), ("middling", 720, 205)])
+@pytest.mark.parametrize(("page", "height", "least"), [("wide", 1000, 300), ("middling", 720, 200)])
 def test_well_and_basins_are_above_the_other_pictures_and_all_are_seen_beside_the_orbits(
     page: str, height: int, least: int, request: pytest.FixtureRequest
 ) -> None:
@@ -170,7 +170,7 @@ def test_on_a_phone_the_map_comes_first_with_the_energy_below_it(phone: Explorer
     assert slider is not None
     assert play is not None
     assert bottom <= slider["y"] < bottom + 60
-    assert play["y"] <= slider["y"] <= play["y"] + play["height"]
+    assert slider["y"] + slider["height"] <= play["y"] <= slider["y"] + slider["height"] + 60
 
 
 # Sum of the layout shifts since the page was opened.
@@ -302,6 +302,7 @@ def test_an_item_of_a_legend_lights_its_pixels(explorer: ExplorerPage) -> None:
     explorer.start_engine()
     before = explorer.page.evaluate(palette)
     item = explorer.page.locator(".foot[data-picture=basins] .patch").first
+    explorer.hover("basins", 0.0, 0.0)
     item.hover()
     lit = explorer.page.evaluate(palette)
     colour = DEFAULT_COLOURS.channels[0]

@@ -108,7 +108,10 @@ class EnergyBox(JSComponent):
 
 
 class EnergySlider(JSComponent):
-    """A slider for the energy of the page's store. For an energy beyond an end of the slider, the thumb is at that end."""
+    """A slider for the energy of the page's store. For an energy beyond an end of the slider, the thumb is at that end.
+
+    The engine in the browser paints the shares of the outcomes at all energies of the slider behind the thumb.
+    """
 
     label = param.String(default="Energy h", doc="text beside the slider")
     disabled = param.Boolean(doc="whether the slider cannot be moved")
@@ -116,6 +119,9 @@ class EnergySlider(JSComponent):
     low = param.Number(default=0.0, doc="energy at the left end")
     high = param.Number(default=1.0, doc="energy at the right end")
     decimals = param.Integer(default=3, doc="number of decimals of the energies that can be chosen")
+    openings = param.List(doc="energies at which exits open, marked if they are on the slider")
+    marked = param.List(doc="other marked energies")
+    legend = param.String(doc="text about the openings; empty for none")
 
     _esm = _code("energy_slider")
 

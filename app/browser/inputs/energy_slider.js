@@ -5,21 +5,28 @@ import {storeOf} from "../modules/view_store.js"
 const MOST_DECIMALS = 12
 
 /**
- * The slider of the energy. While it moves, only the other parts of the page receive its energy; when it is released, the server does.
+ * The slider of the energy, with marks, before a canvas for `modules/gestures/share_strip.js`. While it moves, only the other parts of the page receive its energy; when it is released, the server does.
  *
  * @param {{model: any, el: HTMLElement}} component
  */
 export function render({model, el}) {
-  const label = document.createElement("label")
+  const [head, rail, marks] = ["div", "div", "div"].map(tag => document.createElement(tag))
+  const [label, legend] = [document.createElement("label"), document.createElement("small")]
   const [name, number] = [document.createElement("span"), document.createElement("output")]
-  const slider = document.createElement("input")
+  const [canvas, slider] = [document.createElement("canvas"), document.createElement("input")]
   el.classList.add("energy-slider")
+  head.className = "head"
+  rail.className = "rail"
   slider.type = "range"
   slider.step = "any"
   label.htmlFor = slider.id = "energy"
   label.append(name, number)
-  el.append(label, slider)
-  const {energy} = storeOf(model.document)
+  head.append(label, legend)
+  rail.append(canvas, marks, slider)
+  el.append(head, rail)
+  const store = storeOf(model.document)
+  store.rail = {slider, canvas}
+  const {energy} = store
   const rounded = (/** @type {number} */ value) => Number(value.toFixed(Math.max(model.decimals, 0)))
   // An energy beyond an end of the slider stays until the user moves the thumb.
   const clamped = (/** @type {number} */ value) => Math.min(Math.max(value, model.low), model.high)
@@ -36,6 +43,25 @@ export function render({model, el}) {
     const decimals = Number(value.toFixed(MOST_DECIMALS)).toString().split(".")[1]?.length ?? 0
     number.textContent = value.toFixed(Math.min(Math.max(decimals, model.decimals, 0), MOST_DECIMALS))
     slider.setAttribute("aria-valuetext", number.textContent)
+  }
+  const mark = () => {
+    const {low, high, openings, marked} = model
+    const kinds = [
+      ["opening", openings],
+      ["marked", marked],
+    ]
+    const ticks = kinds.flatMap(([kind, energies]) =>
+      energies
+        .filter((/** @type {number} */ value) => value >= low && value <= high)
+        .map((/** @type {number} */ value) => {
+          const tick = document.createElement("i")
+          tick.className = kind
+          tick.style.left = `${(100 * (value - low)) / (high - low)}%`
+          return tick
+        }),
+    )
+    marks.replaceChildren(...ticks)
+    legend.textContent = model.legend
   }
   // A drag that ends at the energy where it began fires no change event.
   const release = () => {
@@ -56,5 +82,7 @@ export function render({model, el}) {
   slider.addEventListener("keydown", press)
   model.on("lifecycle:remove", energy.listen(follow))
   model.on(["low", "high", "decimals", "label", "note", "disabled"], follow)
+  model.on(["low", "high", "openings", "marked", "legend"], mark)
+  mark()
   follow()
 }

@@ -11,6 +11,7 @@ import {Pool, workerCount} from "../../../plots/browser/modules/workers/pool.js"
 import {hasVectors} from "../../../plots/browser/modules/workers/vectors.js"
 import {setPresent} from "./gestures/present.js"
 import {Preview} from "./gestures/preview.js"
+import {ShareStrip} from "./gestures/share_strip.js"
 import {storeOf} from "./view_store.js"
 
 /**
@@ -63,7 +64,9 @@ export function start(model, el) {
   // The last system from the server, and its compiled modules.
   /** @type {{system: import("../../../plots/browser/modules/engine/system.js").System, modules: import("../../../plots/browser/modules/engine/integrator.js").Modules} | null} */
   let compiled = null
+  const strip = store.rail && new ShareStrip(store.rail, frames, energy => preview.sceneAt(energy))
   const updatePresent = () => {
+    strip?.follow(model.view, compiled?.system ?? null)
     const colours = () => model.view.colours ?? []
     const labels = () => model.view.labels ?? []
     setPresent(

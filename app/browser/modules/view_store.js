@@ -10,6 +10,11 @@ import {SharedValue} from "./counted_value.js"
  * @property {SharedValue} energy
  * @property {SharedValue} window  an `engine/starts.Window`; null until it is known
  * @property {(message: object) => void} send  set by the component, before any message
+ * @property {Rail | null} rail  set by the slider of the energy; null without a slider
+ *
+ * The slider of the energy, and the canvas behind it.
+ *
+ * @typedef {{slider: HTMLInputElement, canvas: HTMLCanvasElement}} Rail
  */
 
 /**
@@ -36,6 +41,6 @@ function makeStore(data) {
     return value
   }
   /** @type {ViewStore} */
-  const store = {energy: share("energy"), window: share("window"), send: () => {}}
+  const store = {energy: share("energy"), window: share("window"), send: () => {}, rail: null}
   return store
 }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from html import escape as escape_text
 from typing import Any
@@ -21,7 +21,6 @@ from app.views.panels.analysis_choice import ComparisonSwitch, LayerSwitches
 from app.views.panels.engine_component import BrowserEngine
 from engine import CASES, Plane, Slice
 from engine.foundations.wording import format_number
-from engine.systems.catalogue.entry import EnergyRange
 from plots.pictures.palette import PALETTES
 
 LOCK_SCALE = "Lock colour scale"
@@ -41,15 +40,6 @@ PLAY = "▶ Play"
 
 STOP = "■ Stop"
 """Label of the button that stops the animation."""
-
-# Space at the ends of the rail of a slider: half the width of the thumb, see theme.css.
-_THUMB = "8px"
-# Style of a tick below the slider.
-_TICK = "position:absolute;left:{share:.2%};width:1px;height:6px;background:var(--ui-edge-strong)"
-# Style of the label of a tick.
-_TICK_LABEL = (
-    "position:absolute;top:7px;left:clamp(0px, calc({share:.2%} - 80px), calc(100% - 160px));width:160px;text-align:center"
-)
 
 
 class Controls:
@@ -98,7 +88,6 @@ class Controls:
         self.axes = button(
             AXES, lambda: toggle_drawer("slice"), kind="light", css_classes=["half", "choice"], margin=(8, 10, 8, 4)
         )
-        self.ticks = TextPane(sizing_mode="stretch_width", height=24, margin=(0, 10), css_classes=["ticks"])
         self.energy = EnergySlider(name="energy", sizing_mode="stretch_width", margin=(0, 10), css_classes=["energy"])
         self.play = button(PLAY, engine.play, min_width=84, css_classes=["half", "play-energy"], margin=(0, 10), align="end")
         self.exact_energy = EnergyBox(sizing_mode="stretch_width", css_classes=["half", "exact-energy"], margin=(0, 0, 0, 10))
@@ -113,9 +102,9 @@ class Controls:
         self._connect()
 
     def layout(self) -> list[pn.viewable.Viewable]:
-        """Return the parts of a column: system, plane, energy, quality and layers."""
+        """Return the parts of a column: system, plane, exact energy, quality and layers. The energy slider is elsewhere."""
         system = [self.case, self.other, self.facts, self.plane, self.axes]
-        energy = [self.energy, self.ticks, self.exact_energy, self.play]
+        energy = [self.exact_energy, self.play]
         return [*system, *energy, *(part for fold in self._folds for part in fold.parts())]
 
     def _begin_touch(self) -> None:
@@ -180,8 +169,9 @@ class Controls:
         state, energies = self.state, self.state.energies
         self.case.value = self._listed_case()
         self.other.color = "light" if self._listed_case() else "primary"
-        self.energy.param.update(low=energies.low, high=energies.high, decimals=energies.decimals)
-        self.ticks.object = _ticks(state.potential.well.saddle_energies, energies)
+        openings = np.sort(state.potential.well.saddle_energies).tolist()
+        marks = {"openings": openings, "marked": list(energies.marked), "legend": _openings_legend(openings)}
+        self.energy.param.update(low=energies.low, high=energies.high, decimals=energies.decimals, **marks)
         self.exact_energy.step = 10.0**-energies.decimals
         self._follow_plane()
         self._follow_energy()
@@ -213,14 +203,7 @@ class Controls:
         self.exact_energy.disabled = self.play.disabled = is_energy_axis
 
 
-def _ticks(openings: np.ndarray, energies: EnergyRange) -> str:
-    """Return HTML of ticks below the slider, where exits open and at the marked energies, with a label at the lowest opening."""
-    width = energies.high - energies.low
-    shares = [(energy - energies.low) / width for energy in (*openings, *energies.marked)]
-    ticks = "".join(f"<i style='{_TICK.format(share=share)}'></i>" for share in dict.fromkeys(shares) if 0.0 <= share <= 1.0)
-    label = ""
-    if openings.size and energies.low <= openings.min() <= energies.high:
-        place = _TICK_LABEL.format(share=(openings.min() - energies.low) / width)
-        label = f"<span style='{place}'>escape energy {format_number(openings.min())}</span>"
-    style = f"position:relative;height:22px;margin:0 {_THUMB};font-size:12px;color:var(--ui-quiet)"
-    return f"<div style='{style}'>{ticks}{label}</div>"
+def _openings_legend(openings: Sequence[float]) -> str:
+    """Return the text about the energies at which exits open; empty without exits over saddles."""
+    texts = dict.fromkeys(format_number(energy) for energy in openings)
+    return f"┊ exits open at h = {', '.join(texts)}" if texts else ""

@@ -14,7 +14,7 @@ from app.job_clients.latest_request import LatestRequest, Locked
 from app.job_clients.shown_results import ShownResults
 from app.state.view_state import ViewState
 from app.views.components.view_store import ViewStore
-from engine import Window
+from engine import Fate, Window
 from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job, Queue
 from plots.browser.browser_system import (
@@ -29,6 +29,9 @@ from plots.browser.browser_system import (
 from plots.browser.javascript import component_code
 from plots.layers.map_images import LAYER_COLUMNS
 from plots.pictures.image_columns import pixel_coding
+
+# Fates of allowed starts that reach no outcome, in the order of a stack of shares.
+_FATES_INSIDE = (Fate.BOUNDED, Fate.NOT_COMPUTED, Fate.FAILED)
 
 
 class BrowserEngine(ViewStore):
@@ -123,6 +126,7 @@ class BrowserEngine(ViewStore):
 def describe_view(state: ViewState) -> dict[str, Any]:
     """Return the view of a state in the form of `ServerView` in app/browser/modules/gestures/preview.js."""
     outcomes = state.potential.outcomes_at(state.energy)
+    colours = [entry.colour for entry in state.colours.end_entries(outcomes)]
     return {
         "system": system_key(state.potential, state.section),
         "plane": slice_name(state.plane),
@@ -130,7 +134,9 @@ def describe_view(state: ViewState) -> dict[str, Any]:
         "slice": describe_slice(state.plane, state.potential, state.section) if state.plane.parameter is None else None,
         "window": None if state.window is None else window_in_browser(state.window),
         "resolution": state.resolution,
-        "colours": [entry.colour for entry in state.colours.end_entries(outcomes)],
+        "energies": [state.energies.low, state.energies.high],
+        "colours": colours,
+        "stack": [*enumerate(colours, 1), *((int(fate), state.colours.outcomes[fate].colour) for fate in _FATES_INSIDE)],
         "labels": [end.label for end in outcomes],
         "coding": {**pixel_coding(outcomes, state.section), "layers": list(LAYER_COLUMNS)},
     }

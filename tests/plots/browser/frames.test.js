@@ -104,6 +104,31 @@ for (const [undecided, horizons] of /** @type {[number, number[]][]} */ ([
   })
 }
 
+test("other views are computed only at rest, and a scene replaces the one under way, which is computed again", () => {
+  mock.timers.enable({apis: ["setTimeout"]})
+  const {frames, asked, shown} = startFrames({undecided: -3})
+  const extras = [0.8, 0.9].map(energy => ({...view, energy}))
+  frames.setExtras(() => (extras.length > 0 ? {view: extras[0], receive: () => void extras.shift()} : null))
+  frames.request(scene(0.3))
+  mock.timers.tick(100)
+  for (let k = 0; k < 3; k++) {
+    asked[k].finish()
+    mock.timers.tick(100)
+  }
+  frames.request(scene(0.4))
+  for (let k = 4; k < asked.length; k++) {
+    asked[k].finish()
+    mock.timers.tick(100)
+  }
+  const energies = asked.map(({view: {energy}}) => energy)
+  assert.deepEqual(
+    energies.filter((energy, k) => energy !== energies[k - 1]),
+    [0.3, 0.8, 0.4, 0.8, 0.9],
+  )
+  assert.deepEqual(new Set(shown.map(({energy}) => energy)), new Set([0.3, 0.4]))
+  mock.timers.reset()
+})
+
 test("a preview has no more pixels than the map", () => {
   mock.timers.enable({apis: ["setTimeout"]})
   const {frames, asked} = startFrames()

@@ -21,8 +21,10 @@ import {LEAST_SIDE} from "../../../../plots/browser/modules/workers/frames.js"
  * @property {string} plane  name of the slice
  * @property {import("../../../../plots/browser/modules/engine/system.js").Slice | null} slice  null for a slice that only the server can compute
  * @property {import("../../../../plots/browser/modules/engine/starts.js").Window | null} window  null for the default window of the energy
+ * @property {[number, number]} energies  range of the slider
  * @property {string[]} colours  of the outcomes, exits first
  * @property {string[]} labels  of the outcomes
+ * @property {[number, string][]} stack  fates of allowed starts and their colours, in the order of a stack of shares
  * @property {import("../../../../plots/browser/modules/painting/columns.js").Coding} coding
  * @property {number} resolution  pixels along a side of the server's map
  */
@@ -99,9 +101,27 @@ export class Preview {
 
   /** The scene to show; null if the browser cannot compute it. @returns {import("../../../../plots/browser/modules/workers/frames.js").Scene | null} */
   get scene() {
-    const [view, system, window] = [this.#view, this.#system, this.#sceneWindow]
+    return this.#sceneIn(this.#sceneWindow, this.#energy.value)
+  }
+
+  /**
+   * Return the scene of the view at another energy; null if the browser cannot compute it.
+   *
+   * @param {number} energy
+   */
+  sceneAt(energy) {
+    const [view, integrator] = [this.#view, this.#integrator]
+    return this.#sceneIn(view?.window ?? (view && integrator && windowAt(integrator, view.plane, energy)), energy)
+  }
+
+  /**
+   * @param {import("../../../../plots/browser/modules/engine/starts.js").Window | null} window
+   * @param {number} energy
+   * @returns {import("../../../../plots/browser/modules/workers/frames.js").Scene | null}
+   */
+  #sceneIn(window, energy) {
+    const [view, system] = [this.#view, this.#system]
     if (!view?.slice || !system || view.system !== system.key || !window) return null
-    const energy = this.#energy.value
     // Without an axis of energy, the index is −1.
     const highest = [window.xHigh, window.ordinateHigh][energyAxis(view.slice)] ?? energy
     if (!coversEnergy(system, highest / system.units.energy)) return null

@@ -7,20 +7,25 @@
  * A figure without a server has no other map of the view. There, pictures at rest are computed again for twice the time, until no
  * pixel is undecided or the longest time is reached.
  *
+ * Afterwards, views that the page does not show are computed, one after the other, until a scene is requested.
+ *
  * @typedef {import("../engine/pixels.js").View} View
  * @typedef {import("../engine/pixels.js").Pixels} Pixels
  * @typedef {Omit<View, "columns" | "rows" | "horizon">} Scene  slice, energy and window to draw
+ *
+ * A view that the page does not show, and a function that takes its pixels.
+ *
+ * @typedef {{view: View, receive: (pixels: Pixels) => void}} Extra
  */
 
 /** Smallest number of pixels along a side, while the view moves. */
 export const LEAST_SIDE = 76
 /** Longest time while the view moves, in units of the well. */
 const MOVING_HORIZON = 30
-/** Pictures at rest: pixels along a side, and longest time in units of the well. */
-const RESTING = [
-  {side: 112, horizon: 100},
-  {side: 224, horizon: 100},
-]
+/** Longest time at rest, in units of the well. */
+export const RESTING_HORIZON = 100
+/** Pixels along a side of the pictures at rest. */
+const RESTING_SIDES = [112, 224]
 /** Time for computing pixels in a frame of the display, in ms. The rest of the frame is for painting. */
 const FRAME_MS = 10
 /** Smallest factor of the side from one frame to the next. */
@@ -37,7 +42,7 @@ export class Frames {
    * @param {import("./pool.js").Pool} pool
    * @param {number} workerCount  number of workers of the pool
    * @param {(view: View, pixels: Pixels, isMoving: boolean) => void} show
-   * @param {number} longest  longest time of pictures at rest, in units of the well; 0 for that of `RESTING`
+   * @param {number} longest  longest time of pictures at rest, in units of the well; 0 for `RESTING_HORIZON`
    */
   constructor(pool, workerCount, show, longest = 0) {
     this.#pool = pool
@@ -54,12 +59,14 @@ export class Frames {
   #system = null
   /** The scene to compute next. @type {Scene | null} */
   #scene = null
-  /** @type {"nothing" | "moving" | "resting"} */
+  /** @type {"nothing" | "moving" | "resting" | "extra"} */
   #computing = "nothing"
+  /** @type {() => Extra | null} */
+  #nextExtra = () => null
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   #restTimer
   #side = LEAST_SIDE
-  #largestSide = RESTING[RESTING.length - 1].side
+  #largestSide = RESTING_SIDES[RESTING_SIDES.length - 1]
 
   /**
    * @param {import("../engine/system.js").System} system
@@ -82,12 +89,23 @@ export class Frames {
     if (this.#computing !== "moving") this.#begin()
   }
 
-  /** Stop computing. */
+  /** Stop computing pictures. */
   stop() {
     clearTimeout(this.#restTimer)
     this.#scene = null
     this.#computing = "nothing"
     this.#pool.cancel()
+    this.#restTimer = setTimeout(() => this.#computeExtra(), REST_MS)
+  }
+
+  /**
+   * Compute other views while no scene is to be computed.
+   *
+   * @param {() => Extra | null} next  returns the first of these views that is not computed; null if there is none
+   */
+  setExtras(next) {
+    this.#nextExtra = next
+    if (this.#computing === "extra" || this.#computing === "nothing") this.stop()
   }
 
   /** Compute a picture of the newest view, with as many pixels as can be computed in a frame. */
@@ -99,12 +117,14 @@ export class Frames {
     const side = Math.min(this.#side, scene.mostPixels)
     const startTime = performance.now()
     // With two parts for each worker, workers that finish early take another part.
-    this.#compute({...scene, columns: side, rows: side, horizon: MOVING_HORIZON}, 2 * this.#workerCount, () => {
+    const view = {...scene, columns: side, rows: side, horizon: MOVING_HORIZON}
+    this.#compute(view, 2 * this.#workerCount, pixels => {
+      this.#show(view, pixels, true)
       // The time for a picture is proportional to the square of the side. Browsers round times, so a difference may be 0.
       const change = Math.sqrt(FRAME_MS / Math.max(performance.now() - startTime, 1))
       const nextSide = Math.round(side * Math.min(Math.max(change, LEAST_CHANGE), LARGEST_CHANGE))
       this.#side = Math.min(Math.max(nextSide, LEAST_SIDE), this.#largestSide)
-      this.#computing = "nothing"
+      this.#computing = "resting"
       if (this.#scene) this.#begin()
       else this.#restTimer = setTimeout(() => this.#refine(scene, 0), REST_MS)
     })
@@ -114,22 +134,21 @@ export class Frames {
    * Compute a picture of a view at rest, then the next, finer one.
    *
    * @param {Scene} scene
-   * @param {number} level  index in `RESTING`
+   * @param {number} level  index in `RESTING_SIDES`
    */
   #refine(scene, level) {
-    if (level === RESTING.length) {
-      this.#computing = "nothing"
+    if (level === RESTING_SIDES.length) {
+      this.#computeExtra()
       return
     }
-    const {horizon} = RESTING[level]
-    const side = Math.min(RESTING[level].side, scene.mostPixels)
+    const side = Math.min(RESTING_SIDES[level], scene.mostPixels)
     // The picture on the page is finer already.
     if (side < this.#side) {
       this.#refine(scene, level + 1)
       return
     }
-    const view = {...scene, columns: side, rows: side, horizon}
-    const isLast = level === RESTING.length - 1
+    const view = {...scene, columns: side, rows: side, horizon: RESTING_HORIZON}
+    const isLast = level === RESTING_SIDES.length - 1
     this.#computeResting(view, pixels => (isLast ? this.#lengthen(view, pixels) : this.#refine(scene, level + 1)))
   }
 
@@ -144,39 +163,56 @@ export class Frames {
     if (horizon > view.horizon && this.#system && fate.includes(this.#system.layout.fates.not_computed)) {
       const longer = {...view, horizon}
       this.#computeResting(longer, pixels => this.#lengthen(longer, pixels))
-    } else this.#computing = "nothing"
+    } else this.#computeExtra()
   }
 
   /**
+   * Compute and show a picture of a view at rest.
+   *
    * @param {View} view
    * @param {(pixels: Pixels) => void} onDone
    */
   #computeResting(view, onDone) {
     this.#computing = "resting"
-    this.#compute(view, Math.ceil((view.columns * view.rows) / PART_PIXELS), onDone)
+    this.#compute(view, partsAtRest(view), pixels => {
+      this.#show(view, pixels, false)
+      onDone(pixels)
+    })
+  }
+
+  /** Compute the views that the page does not show. */
+  #computeExtra() {
+    this.#computing = "nothing"
+    const extra = this.#system && this.#nextExtra()
+    if (!extra) return
+    this.#computing = "extra"
+    this.#compute(extra.view, partsAtRest(extra.view), pixels => {
+      extra.receive(pixels)
+      this.#computeExtra()
+    })
   }
 
   /**
-   * Compute and show a picture.
+   * Compute a picture.
    *
    * @param {View} view
    * @param {number} count  number of parts into which the rows are divided
-   * @param {(pixels: Pixels) => void} onDone
+   * @param {(pixels: Pixels) => void} receive
    */
-  #compute(view, count, onDone) {
+  #compute(view, count, receive) {
     if (!this.#system) return
     const collector = new PixelCollector(this.#system, view)
     const parts = collector.divide(count)
     let missingParts = parts.length
     this.#pool.compute(view, parts, (part, pixels) => {
       collector.add(part, pixels)
-      if (--missingParts > 0) return
-      const computed = collector.finish()
-      this.#show(view, computed, this.#computing === "moving")
-      onDone(computed)
+      if (--missingParts === 0) receive(collector.finish())
     })
   }
 }
+
+/** Return the number of parts of a picture at rest. @param {View} view */
+const partsAtRest = ({columns, rows}) => Math.ceil((columns * rows) / PART_PIXELS)
 
 /** Collects the pixels of a view. In a symmetric view, only one of two mirror images is computed. */
 export class PixelCollector {

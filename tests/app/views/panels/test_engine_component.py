@@ -9,11 +9,12 @@ from app.job_clients.shown_results import ShownResults
 from app.state.system_review import review_for_page
 from app.state.view_state import ViewState
 from app.views.panels.engine_component import BrowserEngine, describe_view
-from engine import Coordinate, MapSpec, ParameterAxis, Plane, Slice, System, Window, compute_map, read_section
+from engine import Coordinate, Fate, MapSpec, ParameterAxis, Plane, Slice, System, Window, compute_map, read_section
 from engine.jobs.job import Job
 from engine.jobs.subscription import Subscription
 from engine.systems.system import TYPED
 from plots.browser.browser_system import system_key
+from plots.pictures.palette import PALETTES
 
 
 @dataclass
@@ -65,11 +66,20 @@ def test_another_system_is_requested_with_the_first_frame_of_its_map() -> None:
 
 
 def test_a_view_follows_the_state() -> None:
-    view = describe_view(ViewState(system=System("III"), energy=0.45, plane=Plane.X_Y, palette="safe"))
+    state = ViewState(system=System("III"), energy=0.45, plane=Plane.X_Y, palette="safe")
+    view = describe_view(state)
     assert (view["plane"], view["window"]) == ("x_y", None)
     assert view["colours"][0] == "#009e73"
     assert view["labels"] == ["exit 1", "exit 2", "exit 3", "exit 4"]
     assert view["coding"]["ends"] == [0, 1, 2, 3]
+    assert view["energies"] == [state.energies.low, state.energies.high]
+
+
+def test_shares_of_starts_that_stay_have_the_greys_of_the_maps() -> None:
+    state = ViewState(system=System("I"), palette="safe")
+    outcomes = PALETTES["safe"].outcomes
+    inside = [(fate, outcomes[fate].colour) for fate in (Fate.BOUNDED, Fate.NOT_COMPUTED, Fate.FAILED)]
+    assert describe_view(state)["stack"] == [(1, "#009e73"), (2, "#d55e00"), *inside]
 
 
 def test_a_view_has_its_chosen_window() -> None:

@@ -1,0 +1,96 @@
+// @ts-check
+/** The picture on the slider of the energy: the shares of the outcomes at each energy, stacked, for the slice and window in view. */
+
+import {contextFor} from "../../../../plots/browser/modules/painting/canvas.js"
+import {energyAxis} from "../../../../plots/browser/modules/engine/starts.js"
+import {RESTING_HORIZON} from "../../../../plots/browser/modules/workers/frames.js"
+import {Shares} from "../../../../plots/browser/modules/workers/shares.js"
+
+/** Largest width of the column of an energy, in pixels of the page. */
+const WIDEST_COLUMN = 6
+
+export class ShareStrip {
+  /**
+   * @param {import("../view_store.js").Rail} rail  of the slider
+   * @param {import("../../../../plots/browser/modules/workers/frames.js").Frames} frames
+   * @param {(energy: number) => import("../../../../plots/browser/modules/workers/frames.js").Scene | null} sceneAt
+   */
+  constructor({canvas, slider}, frames, sceneAt) {
+    this.#canvas = canvas
+    this.#slider = slider
+    this.#frames = frames
+    this.#sceneAt = sceneAt
+    new ResizeObserver(() => this.#resize()).observe(canvas)
+  }
+
+  #canvas
+  #slider
+  #frames
+  #sceneAt
+  /** What the shares belong to, as text. */
+  #key = ""
+  /** @type {Shares | null} */
+  #shares = null
+  /** Fates and their colours, from the top of the stack. @type {[number, string][]} */
+  #stack = []
+
+  /**
+   * Show the shares of a view. Those of another slice, window or system are dropped.
+   *
+   * @param {import("./preview.js").ServerView} view
+   * @param {import("../../../../plots/browser/modules/engine/system.js").System | null} system  of the engine
+   */
+  follow({system: key, slice, window, energies, stack}, system) {
+    const isKnown = slice && energyAxis(slice) < 0 && system?.key === key
+    const newKey = isKnown ? JSON.stringify([key, slice, window, energies]) : ""
+    this.#stack = stack
+    if (newKey !== this.#key) {
+      const [low, high] = energies
+      this.#key = newKey
+      this.#shares = newKey
+        ? new Shares(
+            place => this.#sceneAt(low + (high - low) * place),
+            place => this.#paint(place),
+          )
+        : null
+      const time = isKnown ? RESTING_HORIZON * system.units.time : 0
+      this.#slider.title = isKnown ? `Shares of a coarse map at t = ${time}; grey: still inside` : ""
+      this.#slider.toggleAttribute("data-pictured", !!newKey)
+    }
+    this.#resize()
+  }
+
+  /** Binary logarithm of the number of intervals between the energies. */
+  get #levels() {
+    return Math.max(Math.ceil(Math.log2(this.#canvas.clientWidth / WIDEST_COLUMN)), 0)
+  }
+
+  /** Paint all columns in the present size, and compute those that are missing. */
+  #resize() {
+    const {clientWidth: width, clientHeight: height} = this.#canvas
+    contextFor(this.#canvas, {width, height})?.clearRect(0, 0, width, height)
+    const shares = this.#shares
+    for (const place of shares?.counts.keys() ?? []) this.#paint(place)
+    shares?.refine(this.#levels)
+    this.#frames.setExtras(() => shares?.next() ?? null)
+  }
+
+  /** Paint the column of an energy. @param {number} place */
+  #paint(place) {
+    const counts = this.#shares?.counts.get(place)
+    const context = this.#canvas.getContext("2d")
+    if (!counts || !context) return
+    // Columns that begin and end between two pixels of the screen would leave gaps.
+    const {width, height} = this.#canvas
+    const [left, right] = [-0.5, 0.5].map(side => Math.round((place + side / 2 ** this.#levels) * width))
+    const total = this.#stack.reduce((sum, [fate]) => sum + (counts.get(fate) ?? 0), 0)
+    context.setTransform(1, 0, 0, 1, 0, 0)
+    let sum = 0
+    for (const [fate, colour] of this.#stack) {
+      const top = Math.round((sum / total) * height)
+      sum += counts.get(fate) ?? 0
+      context.fillStyle = colour
+      context.fillRect(left, top, right - left, Math.round((sum / total) * height) - top)
+    }
+  }
+}
