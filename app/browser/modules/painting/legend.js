@@ -11,12 +11,17 @@ export const fade = (palette, colour) => palette.map(other => (other === colour 
 export function highlightPixels() {
   /** @type {{mapper: any, palette: string[], faded: string[]} | null} */
   let highlight = null
-  document.addEventListener("pointerover", event => {
+  /** @type {HTMLElement | undefined} */
+  let lastEntry
+  // Events "pointerover" do not leave a shadow tree that also contains the element before.
+  document.addEventListener("pointermove", event => {
+    const [entry, legend] = [".patch", ".foot"].map(selector => closest(event, selector))
+    if (entry === lastEntry) return
+    lastEntry = entry
     // If the server has set other colours in the meantime, they stay.
     if (highlight && highlight.mapper.palette === highlight.faded)
       highlight.mapper.setv({palette: highlight.palette}, {sync: false})
     highlight = null
-    const [entry, legend] = [".patch", ".foot"].map(selector => closest(event, selector))
     const mapper = legend && mapperOf(legend.dataset.picture)
     const colour = entry?.style.getPropertyValue("--colour")
     if (!mapper || !colour || !mapper.palette.includes(colour)) return
