@@ -1,4 +1,7 @@
-"""Requests for the map of the view state. A listener gets the frames of the map: partial results, then the complete map."""
+"""Requests for the map of the view state. A listener gets the frames of the map: partial results, then the complete map.
+
+While the view does not change, the map is also computed with the pixels of its picture on the screen.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +10,7 @@ from dataclasses import replace
 from typing import Any, Protocol
 
 from app.job_clients.latest_request import SKIPPED, LatestRequest, Locked
+from app.state.view import sharper_resolution
 from app.state.view_state import ViewState
 from engine import EscapeMap, MapSpec
 from engine.jobs.client import JobSubmitter
@@ -42,6 +46,9 @@ class MapListener(Protocol):
 
     def map_arrived(self, frame: EscapeMap, columns: Columns) -> None:
         """Show a frame of the map. The last frame is complete."""
+
+    def map_sharpened(self, sharper_map: EscapeMap, columns: Columns) -> None:
+        """Show the complete map with more pixels."""
 
     def map_stopped(self) -> None:
         """Show that the user has cancelled the map."""
@@ -79,13 +86,18 @@ class MapRequests:
         prepare: Callable[[MapSpec], object] = lambda spec: None,
     ) -> None:
         self._state, self._listener, self._is_crowded, self._prepare = state, listener, is_crowded, prepare
-        self._has_frame = self._has_complete_map = False
+        self._has_frame = False
+        # The complete map in view, if it has arrived, with the most pixels so far.
+        self._complete_map: EscapeMap | None = None
         # The job that was requested last for the current map.
         self._last_job: Job[Any] | None = None
         # The map of the last delivered frame, and its image columns.
         self._delivered_columns: tuple[MapSpec, Columns] | None = None
         self._request = LatestRequest(
             jobs, self._show, listener.map_failed, locked, convert=self._with_columns, begin=self._begin
+        )
+        self._sharper_request = LatestRequest(
+            jobs, self._show_sharper, lambda sentence: None, locked, convert=self._sharper_columns
         )
         state.param.watch(
             lambda *events: self.request_map(), ["system", "plane", "section", "energy", "t_max", "resolution", "window"]
@@ -98,14 +110,28 @@ class MapRequests:
 
     def stop_map(self) -> None:
         """Cancel an incomplete map for the user."""
-        if not self._has_complete_map:
+        if self._complete_map is None:
             self._cancel()
             self._listener.map_stopped()
 
+    def sharpen(self, pixels: int) -> None:
+        """Request the complete map in view with more pixels, for a picture with this number of pixels along a side on the screen.
+
+        All other computations go first, and only the view changes: numbers and files are those of the map of the view state.
+        With 0 pixels, or if the map has enough, a request under way is cancelled.
+        """
+        present = self._complete_map
+        side = None if present is None else sharper_resolution(present.spec.resolution[0], pixels)
+        if present is None or side is None or self._is_crowded():
+            self._sharper_request.cancel()
+        else:
+            self._sharper_request.submit(map_job(replace(present.spec, resolution=(side, side)), Queue.SPARE))
+
     def _cancel(self) -> None:
-        self._has_frame = self._has_complete_map = False
+        self._has_frame, self._complete_map = False, None
         self._last_job = None
         self._request.cancel()
+        self._sharper_request.cancel()
 
     def _begin(self, job: Job[Any]) -> None:
         """Tell the listener about the first job of a map, and about the job after the compilation."""
@@ -131,7 +157,15 @@ class MapRequests:
         frame, columns = result
         self._state.found_axis = frame.spec.plane.parameter
         self._listener.map_arrived(frame, columns)
-        self._has_frame, self._has_complete_map = True, frame.complete
+        self._has_frame, self._complete_map = True, frame if frame.complete else None
+
+    def _sharper_columns(self, frame: EscapeMap) -> Any:
+        """Return a complete map with its columns; `SKIPPED` for a frame, which may be coarser than the map in view."""
+        return (frame, map_columns(frame)) if frame.complete else SKIPPED
+
+    def _show_sharper(self, result: tuple[EscapeMap, Columns]) -> None:
+        self._complete_map = result[0]
+        self._listener.map_sharpened(*result)
 
 
 def _show_same_plane(one: MapSpec, other: MapSpec) -> bool:

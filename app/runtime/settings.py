@@ -73,6 +73,9 @@ class Settings:
     ----------
     largest_resolution
         Largest number of pixels along a side of a map.
+    sharpest_resolution
+        Largest number of pixels along a side of a map that is drawn again with more pixels, as many as its picture has on the
+        screen; 0 for never.
     longest_t_max
         Largest t_max, the time until which orbits are integrated (dimensionless).
     most_orbits
@@ -105,6 +108,7 @@ class Settings:
     """
 
     largest_resolution: int = _setting(1024, _integer(16, 4096))
+    sharpest_resolution: int = _setting(900, _integer(0, 4096))
     longest_t_max: float = _setting(1e6, _number(1.0, 1e8))
     most_orbits: int = _setting(DEFAULT_MOST_ORBITS, _integer(1000, 10**9))
     most_sessions: int = _setting(200, _integer(1, 100_000))

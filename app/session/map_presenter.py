@@ -46,7 +46,9 @@ class MapPresenter:
         self._requested_at: float | None = None
         # The start that the last click added; None if the start was in the list already.
         self._added_start: Start | None = None
-        self.engine = BrowserEngine(state, context.results, context.jobs, locked, self._zoom_to, history.end_gesture)
+        self.engine = BrowserEngine(
+            state, context.results, context.jobs, locked, self._zoom_to, history.end_gesture, self._sharpen
+        )
         self.view = MapsView(
             state,
             MapActions(locked(self.add_start), locked(self._zoom_to_point), locked(self._count_in)),
@@ -134,6 +136,9 @@ class MapPresenter:
 
     # Requests and their results.
 
+    def _sharpen(self, pixels: int) -> None:
+        self.requests.sharpen(pixels)
+
     def map_requested(self, *, compiling: bool = False) -> None:
         """Show that a map is requested."""
         self._requested_at = time.monotonic()
@@ -154,6 +159,11 @@ class MapPresenter:
             self.view.grid.mark_stale(False)
             self.progress.show(frame)
             self._results.frame = frame
+
+    def map_sharpened(self, sharper_map: EscapeMap, columns: dict[str, list[Any]]) -> None:
+        """Paint the complete map with more pixels."""
+        with pn.io.hold():
+            self.view.sharpen(sharper_map, columns)
 
     def map_stopped(self) -> None:
         """Show that the map is cancelled."""

@@ -42,6 +42,13 @@ def allowed_resolutions() -> dict[str, int]:
     return _up_to(process_state().settings.largest_resolution, RESOLUTION_CHOICES)
 
 
+def sharper_resolution(resolution: int, pixels: int) -> int | None:
+    """Return the resolution that follows this one while a picture has more pixels on the screen; None if there is none."""
+    sharpest = process_state().settings.sharpest_resolution
+    larger = [each for each in allowed_resolutions().values() if resolution < each <= sharpest]
+    return min(larger, default=None) if resolution < pixels else None
+
+
 PICTURES = ("well", *(name for name in PICTURE_ENTRIES if name != "curves"))
 """Names of the pictures: the well, the maps of starts, and the comparison with another view."""
 

@@ -22,6 +22,9 @@ class Queue(Enum):
     BACKGROUND = "background"
     """The function submits many short calls."""
 
+    SPARE = "spare"
+    """The function submits many short calls, which run only while no other calls wait."""
+
     LONG_CALL = "long call"
     """The function itself is one call, which takes up to some seconds."""
 

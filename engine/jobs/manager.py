@@ -46,7 +46,7 @@ class _Run:
     client: Hashable
     account: Hashable
     map_priority: MapPriority | None
-    """Priority of a map on display; None for other jobs, whose short calls have `Priority.BACKGROUND`."""
+    """Priority of a map on display; None for other jobs."""
     cancel: threading.Event = field(default_factory=threading.Event)
     partial_result: Any = None
     """The last partial result."""
@@ -68,7 +68,7 @@ class _Run:
         """Return the priority of the short calls."""
         if self.map_priority is not None:
             return self.map_priority()
-        return Priority.BACKGROUND
+        return Priority.UNSETTLED if self.job.queue is Queue.SPARE else Priority.BACKGROUND
 
 
 class Jobs:
@@ -280,6 +280,7 @@ class Jobs:
         return {
             Queue.FIRST_FRAME: short_calls,
             Queue.BACKGROUND: short_calls,
+            Queue.SPARE: short_calls,
             Queue.LONG_CALL: self._scheduler.executor(client, lambda: Priority.LONG_CALL),
             # One of these calls may occupy a thread for seconds, so all clients of an account share a turn.
             Queue.LIMITED: self._limited_calls.executor((account,), lambda: Priority.BACKGROUND),

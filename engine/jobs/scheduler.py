@@ -50,7 +50,7 @@ class Priority(IntEnum):
     """Part of a larger computation, about 50 ms long. Under load, most calls have this priority."""
 
     UNSETTLED = 3
-    """Like `BACKGROUND`, for a result that is likely to be replaced before anyone sees it."""
+    """Like `BACKGROUND`, for a result that is likely to be replaced before anyone sees it, or that can wait."""
 
 
 class _Call(NamedTuple):

@@ -14,11 +14,11 @@ from engine.slices.parameter_family import find_members
 from engine.systems.system import TYPED
 
 
-def map_job(spec: MapSpec) -> Job[EscapeMap]:
+def map_job(spec: MapSpec, queue: Queue = Queue.FIRST_FRAME) -> Job[EscapeMap]:
     """Return the job of a map; the job continues a cached map that was interrupted or has a smaller t_max."""
     columns, rows = spec.resolution
     orbits = min(columns * rows, LARGEST_RUN)
-    return Job(compute_map, (spec,), queue=Queue.FIRST_FRAME, orbits=orbits, find_earlier=_find_shorter_map)
+    return Job(compute_map, (spec,), queue=queue, orbits=orbits, find_earlier=_find_shorter_map)
 
 
 def members_job(axis: ParameterAxis | None) -> Job[None] | None:

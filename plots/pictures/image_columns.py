@@ -29,6 +29,10 @@ _WITHOUT_ORBIT = (_OUTCOME_CODES[Fate.OUTSIDE], _OUTCOME_CODES[Fate.FORBIDDEN])
 _LEAST_CROSSINGS = np.array([least for least, _ in CROSSING_CLASSES])
 
 
+PIXEL_COLUMNS = ("fate", "crossing_class", "crossings", "escape_time")
+"""The images of a map by itself."""
+
+
 def map_columns(frame: EscapeMap) -> dict[str, list[Any]]:
     """Return the columns of a map: images in the smallest integer types, and their position in the plane.
 

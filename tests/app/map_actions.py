@@ -26,9 +26,11 @@ def make_browser_engine(
     state: ViewState | None = None,
     on_zoom: Callable[[Window | None], None] = lambda window: None,
     on_rest: Callable[[], None] = lambda: None,
+    on_pixels: Callable[[int], None] = lambda pixels: None,
 ) -> BrowserEngine:
     """Return the engine in the browser, with the store of energy and window, without a page."""
-    return BrowserEngine(state or ViewState(), ShownResults(), Jobs(), lambda function: function, on_zoom, on_rest)
+    at_once = lambda function: function  # noqa: E731
+    return BrowserEngine(state or ViewState(), ShownResults(), Jobs(), at_once, on_zoom, on_rest, on_pixels)
 
 
 def make_maps(state: ViewState | None = None, store: ViewStore | None = None, **actions: Any) -> MapsView:

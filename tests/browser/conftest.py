@@ -46,6 +46,8 @@ def server(tmp_path_factory: pytest.TempPathFactory, host: str) -> Iterator[str]
     log = tmp_path_factory.mktemp("server") / "log"
     with pytest.MonkeyPatch.context() as patch, ExitStack() as stack:
         patch.setenv("ESCAPE_EXPLORER_FRAME_ANCESTORS", host)
+        # Tests read the pixels of the chosen resolution.
+        patch.setenv("ESCAPE_EXPLORER_SHARPEST_RESOLUTION", "0")
         address = stack.enter_context(served_app(log))
         yield address
         # The log is read before the server stops, because Bokeh then logs errors of pages that are still connecting.

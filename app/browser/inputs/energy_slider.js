@@ -45,24 +45,20 @@ export function render({model, el}) {
     slider.setAttribute("aria-valuetext", number.textContent)
   }
   const mark = () => {
-    const {low, high, openings, marked} = model
-    const kinds = [
-      ["opening", openings],
-      ["marked", marked],
-    ]
-    const ticks = kinds.flatMap(([kind, energies]) =>
-      energies
-        .filter((/** @type {number} */ value) => value >= low && value <= high)
-        .map((/** @type {number} */ value) => {
-          const tick = document.createElement("i")
-          tick.className = kind
-          tick.style.left = `${(100 * (value - low)) / (high - low)}%`
-          return tick
-        }),
-    )
-    marks.replaceChildren(...ticks)
+    marks.replaceChildren(...marksOf("opening", model.openings), ...marksOf("marked", model.marked))
     legend.textContent = model.legend
   }
+  /** Return marks at those of some energies that are on the slider. @param {string} kind @param {number[]} energies */
+  const marksOf = (kind, energies) =>
+    energies
+      .map(value => (value - model.low) / (model.high - model.low))
+      .filter(share => share >= 0 && share <= 1)
+      .map(share => {
+        const element = document.createElement("i")
+        element.className = kind
+        element.style.left = `${100 * share}%`
+        return element
+      })
   // A drag that ends at the energy where it began fires no change event.
   const release = () => {
     if (energy.isFinal) return

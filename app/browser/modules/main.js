@@ -11,6 +11,7 @@ import {Pool, workerCount} from "../../../plots/browser/modules/workers/pool.js"
 import {hasVectors} from "../../../plots/browser/modules/workers/vectors.js"
 import {setPresent} from "./gestures/present.js"
 import {Preview} from "./gestures/preview.js"
+import {keepSharp} from "./gestures/sharpness.js"
 import {ShareStrip} from "./gestures/share_strip.js"
 import {storeOf} from "./view_store.js"
 
@@ -42,6 +43,7 @@ export function start(model, el) {
   const pool = new Pool(() => new Worker(worker, {type: "module"}))
   const frames = new Frames(pool, workerCount(), (view, pixels, isMoving) => preview.show(view, pixels, isMoving))
   const store = storeOf(model.document)
+  keepSharp(find("maps"), store)
   const overlay = new Overlay(el)
   /** @type {Preview} */
   const preview = new Preview(find, findSource, frames, overlay, store)

@@ -32,7 +32,7 @@ from plots.layers.picture import ShownMap
 from plots.layers.table import LAYERS, map_legend
 from plots.layers.table import PICTURES as PICTURE_ENTRIES
 from plots.links.map_view import Start
-from plots.pictures.image_columns import NO_LAYER
+from plots.pictures.image_columns import NO_LAYER, PIXEL_COLUMNS
 from plots.pictures.palette import PALETTES
 from plots.pictures.time_scale import WITHOUT_ESCAPES, TimeScale, fitted_scale
 from plots.texts.legends import legend_items, picture_legend
@@ -102,6 +102,8 @@ class MapsView:
         self._fitted_times = WITHOUT_ESCAPES
         self._mappers = {name: LinearColorMapper() for name in MAPS}
         self._spec: MapSpec | None = None
+        # The map whose pixels are on the page: that of the view, or the same with more pixels.
+        self._pixels: MapSpec | None = None
         # Results of the layers that are on, by layer. A result may be incomplete.
         self._results: dict[str, Any] = {}
         # Layers that are being computed.
@@ -140,6 +142,7 @@ class MapsView:
             self._store.set_home(replace(frame.spec, window=None))
             self._spec, self._results = frame.spec, {}
             self._show_curves(frame.spec)
+        self._pixels = frame.spec
         # The window may have changed and changed back before a map of the other window was shown.
         self._store.follow(frame.spec.find_window())
         if frame.stride == 1:
@@ -147,6 +150,11 @@ class MapsView:
         self._fates = frozenset(np.unique(frame.fate).tolist())
         self._scale_times()
         self.source.data = columns | self.compared.difference(columns, frame.spec.plane)
+
+    def sharpen(self, sharper_map: EscapeMap, columns: dict[str, list[Any]]) -> None:
+        """Show the pixels of the map in view computed with a higher resolution. Layers and differences keep theirs."""
+        self._pixels = sharper_map.spec
+        self.source.data = {**self.source.data, **{name: columns[name] for name in PIXEL_COLUMNS}}
 
     def show_compared(self, frame: EscapeMap | None, title: str = "") -> None:
         """Show the map of the other view with its title; None removes the map."""
@@ -203,10 +211,10 @@ class MapsView:
 
     def snapped(self, x: float, ordinate: float) -> Start:
         """Return the start of the pixel at a point: the centre of the pixel. Outside the map, return the point itself."""
-        pixel = self._spec.pixel_at(x, ordinate) if self._spec is not None else None
-        if self._spec is None or pixel is None:
+        pixel = self._pixels.pixel_at(x, ordinate) if self._pixels is not None else None
+        if self._pixels is None or pixel is None:
             return x, ordinate
-        columns, rows = self._spec.pixel_centres()
+        columns, rows = self._pixels.pixel_centres()
         return float(columns[pixel[1]]), float(rows[pixel[0]])
 
     def _tap(self, event: PointEvent) -> None:

@@ -49,6 +49,9 @@ class BrowserEngine(ViewStore):
         See `LatestRequest`.
     on_zoom, on_rest
         See `ViewStore`.
+    on_pixels
+        Called when the pictures rest, with the number of pixels along a side of the largest map on the screen, and with 0 when a
+        gesture begins.
     """
 
     address = param.String(default=ADDRESS, doc="address of the first module")
@@ -67,9 +70,11 @@ class BrowserEngine(ViewStore):
         locked: Locked,
         on_zoom: Callable[[Window | None], None],
         on_rest: Callable[[], None],
+        on_pixels: Callable[[int], None],
     ) -> None:
         super().__init__(state, locked, on_zoom, on_rest)
         self._command_numbers = count()
+        self._take_pixels = locked(on_pixels)
         self._end_animation = locked(lambda: self.param.update(playing=False))
         self._system_request = LatestRequest(jobs, self._show_system, lambda sentence: None, locked)
         self._results = results
@@ -105,6 +110,8 @@ class BrowserEngine(ViewStore):
         match message:
             case {"playing": False}:
                 self._end_animation()
+            case {"pixels": int(pixels)}:
+                self._take_pixels(pixels)
             case _:
                 super()._handle_msg(message)
 

@@ -48,6 +48,9 @@ class Recorder:
     def map_arrived(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
         self.record("map arrived", frame)
 
+    def map_sharpened(self, sharper_map: EscapeMap, columns: dict[str, list[Any]]) -> None:
+        self.record("map sharpened", (sharper_map, columns))
+
     def map_stopped(self) -> None:
         self.record("map stopped")
 
@@ -236,3 +239,53 @@ def test_an_energy_without_an_interior_is_refused_in_every_window(session: Sessi
     state.param.update(energy=energy, window=window)
     recorder.wait_for(lambda: "map failed" in recorder.names())
     assert recorder.last_frame() is None
+
+
+def sharper_maps(recorder: Recorder) -> list[EscapeMap]:
+    return [value[0] for name, value in recorder.calls if name == "map sharpened"]
+
+
+def test_a_complete_map_gets_the_pixels_of_its_picture_step_by_step(session: Session) -> None:
+    state, requests, recorder, _ = session
+    requests.sharpen(200)
+    requests.request_map()
+    recorder.wait_for(recorder.complete)
+    assert sharper_maps(recorder) == []
+    requests.sharpen(200)
+    recorder.wait_for(lambda: len(sharper_maps(recorder)) == 1)
+    [sharper] = sharper_maps(recorder)
+    assert sharper.complete
+    assert sharper.spec == replace(state.map_spec(), resolution=(224, 224))
+    assert next(value[1] for name, value in recorder.calls if name == "map sharpened")["fate"][0].shape == (224, 224)
+    # The map of the view stays that of the chosen resolution.
+    assert recorder.last_frame().spec.resolution == (112, 112)  # type: ignore[union-attr]
+
+
+def complete_frame(state: ViewState) -> EscapeMap:
+    frame = compute_map(state.map_spec())
+    assert frame.complete
+    return frame
+
+
+def test_more_pixels_are_computed_after_everything_else_and_not_for_an_old_view_or_small_picture() -> None:
+    state, jobs = ViewState(system=System("I"), energy=0.3, resolution=112, t_max=1e2), ManualJobs()
+    requests = MapRequests(state, jobs, Recorder(), lambda function: function)
+    requests.request_map()
+    jobs.listeners[-1](complete_frame(state))
+    requests.sharpen(112)
+    requests.sharpen(0)
+    assert len(jobs.jobs) == 1
+    requests.sharpen(113)
+    assert [job.queue for job in jobs.jobs[1:]] == [Queue.SPARE]
+    state.energy = 0.31
+    requests.sharpen(113)
+    assert [job.queue for job in jobs.jobs[2:]] == [Queue.FIRST_FRAME]
+
+
+def test_a_crowded_server_computes_no_more_pixels() -> None:
+    state, jobs = ViewState(system=System("I"), energy=0.3, resolution=112, t_max=1e2), ManualJobs()
+    requests = MapRequests(state, jobs, Recorder(), lambda function: function, lambda: True)
+    requests.request_map()
+    jobs.listeners[-1](complete_frame(state))
+    requests.sharpen(900)
+    assert len(jobs.jobs) == 1

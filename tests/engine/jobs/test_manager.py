@@ -253,6 +253,24 @@ def test_all_but_the_first_frame_is_put_off_while_the_process_is_crowded() -> No
     wait_until(lambda: jobs.stats().processor_time == 2.0)
 
 
+def test_spare_calls_wait_for_all_others() -> None:
+    order: list[str] = []
+
+    def append(name: str, *, execution: Execution) -> str:
+        assert execution.executor is not None
+        execution.executor.submit(order.append, name).result()
+        return name
+
+    jobs, inbox = Jobs(threads=1), Inbox()
+    jobs.pause_background(True)
+    for name, queue in (("spare", Queue.SPARE), ("background", Queue.BACKGROUND)):
+        jobs.request(Job(append, (name,), queue=queue), inbox.result, inbox.error)
+    wait_until(lambda: jobs.stats().calls_waiting == 2)
+    jobs.pause_background(False)
+    wait_until(lambda: len(order) == 2)
+    assert order == ["background", "spare"]
+
+
 def test_finished_job_leaves_no_reference_cycles() -> None:
     jobs, inbox = Jobs(cache_bytes=0), Inbox()
     gc.collect()

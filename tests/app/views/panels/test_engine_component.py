@@ -37,7 +37,7 @@ def make_engine(state: ViewState) -> tuple[BrowserEngine, ShownResults, Requests
     """Return the engine of a page, with its results and its requests."""
     results, requests = ShownResults(), Requests()
     at_once = lambda function: function  # noqa: E731
-    engine = BrowserEngine(state, results, requests, at_once, lambda window: None, lambda: None)
+    engine = BrowserEngine(state, results, requests, at_once, lambda window: None, lambda: None, lambda pixels: None)
     return engine, results, requests
 
 
