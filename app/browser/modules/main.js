@@ -5,6 +5,7 @@ import {Card} from "./gestures/card.js"
 import {Frames} from "../../../plots/browser/modules/workers/frames.js"
 import {highlightPixels} from "./painting/legend.js"
 import {Overlay} from "./painting/overlay.js"
+import {Relief} from "./painting/relief.js"
 import {StartLine} from "./painting/start_line.js"
 import {EnergyPlayer} from "../../../plots/browser/modules/gestures/player.js"
 import {Pool, workerCount} from "../../../plots/browser/modules/workers/pool.js"
@@ -44,9 +45,10 @@ export function start(model, el) {
   const frames = new Frames(pool, workerCount(), (view, pixels, isMoving) => preview.show(view, pixels, isMoving))
   const store = storeOf(model.document)
   keepSharp(find("maps"), store)
-  const overlay = new Overlay(el)
+  const relief = new Relief()
+  const overlay = new Overlay(el, relief)
   /** @type {Preview} */
-  const preview = new Preview(find, findSource, frames, overlay, store)
+  const preview = new Preview(find, findSource, frames, overlay, relief, store)
   const startLine = new StartLine(el, () => overlay.isShown)
   const player = new EnergyPlayer(
     energy => store.energy.hold(energy),
@@ -59,6 +61,7 @@ export function start(model, el) {
   const card = new Card(
     el,
     startLine,
+    relief,
     () => preview.scene,
     () => find("maps").data,
     () => model.view,

@@ -22,6 +22,7 @@ from app.views.maps.map_toolbar import MapTools
 from app.views.maps.markers import Markers
 from app.views.maps.overlays import Overlays
 from app.views.maps.picture_grid import PictureGrid
+from app.views.maps.relief import shade_relief
 from app.views.maps.two_fingers import TwoFingers
 from app.views.maps.well import WellView, well_spec
 from engine import EscapeMap, Fate, MapSpec, Window
@@ -72,7 +73,9 @@ class MapActions:
 def prepare_curves(spec: MapSpec) -> None:
     """Trace the curves over a map and in the well, and cache them for `MapsView.show`. Tracing takes up to half a second."""
     trace_curves(spec)
-    trace_curves(well_spec(spec.potential, highest_energy(spec.energy)))
+    well = well_spec(spec.potential, highest_energy(spec.energy))
+    trace_curves(well)
+    shade_relief(well)
     find_marked_places(spec.potential)
 
 

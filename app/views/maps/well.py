@@ -1,4 +1,4 @@
-"""The first picture: the well in (x, y) with its exits and equipotentials, and the chosen orbits in it."""
+"""The first picture: the well in (x, y) as a relief, with its exits and equipotentials, and the chosen orbits in it."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from app.state.view_state import ViewState
 from app.views.components.orbit_lines import in_front, line_columns, line_source, line_style, opacities, orbit_colours
 from app.views.components.plots import FigurePane, LaterGlyphs, PictureTexts, SourcedGlyphs, map_figure, set_range
 from app.views.maps.map_curves import MapCurves
+from app.views.maps.relief import Relief
 from engine import MapSpec, Potential, Window
 from engine.slices.axes import highest_energy
 from engine.slices.planes import SPACE
@@ -57,6 +58,7 @@ class WellView:
         # Map and palette of the drawn curves. Maps of other windows, and most orbits, need no new curves.
         self._outline_key: tuple[MapSpec, Palette] | None = None
         self.plot = map_figure("well", TITLE, *self._ranges)
+        self._relief = Relief(self.plot)
         self._outlines.draw(self.plot, full=True)
         self._orbit_glyphs = LaterGlyphs(self._make_orbits)
         self._orbit_glyphs.add_figure(self.plot)
@@ -139,6 +141,7 @@ class WellView:
         if (outlined_spec, self._state.colours) == self._outline_key:
             return
         self._outline_key = outlined_spec, self._state.colours
+        self._relief.show(outlined_spec)
         self._outlines.show(outlined_spec)
         self._outlines.show_marks(outlined_spec.potential)
         self._go_to(outlined_spec.find_window())

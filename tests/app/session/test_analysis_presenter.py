@@ -138,8 +138,8 @@ def test_a_picture_says_that_its_layer_is_being_computed_until_it_is(begin: Call
     # No result can arrive while the test holds the lock.
     with session.changed:
         session.show(frame)
-        # Beside five pictures and more, there is no room for the names of layers.
-        assert notes() == ["computing …", "…", ""]
+        # Only the two large pictures have room for the names of layers.
+        assert notes() == ["…", "computing pixels to trust …", ""]
     session.wait_for(lambda: {*session.analyses} == {"origins", "trust"})
     assert notes() == ["", "", ""]
 

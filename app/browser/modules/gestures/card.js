@@ -30,12 +30,14 @@ export class Card {
   /**
    * @param {HTMLElement} el  gets the card
    * @param {import("../painting/start_line.js").StartLine} startLine  joins the start with its orbit
+   * @param {import("../painting/relief.js").Relief} relief
    * @param {() => import("../../../../plots/browser/modules/workers/frames.js").Scene | null} scene  what the pictures show
    * @param {() => any} maps  the columns of the data source of the maps
    * @param {() => {colours: string[], labels: string[]}} view  colours and labels of the outcomes
    */
-  constructor(el, startLine, scene, maps, view) {
+  constructor(el, startLine, relief, scene, maps, view) {
     this.#startLine = startLine
+    this.#relief = relief
     this.#scene = scene
     this.#maps = maps
     this.#view = view
@@ -57,6 +59,7 @@ export class Card {
   }
 
   #startLine
+  #relief
   #scene
   #maps
   #view
@@ -195,6 +198,7 @@ export class Card {
     const limit = this.#limits.trace(integrator, {slice: system.space, window, energy})
     const {colours, labels} = this.#view()
     const well = {window, energy, limit, colours, ink}
+    this.#relief.paint(context, box, window)
     drawWell(context, box, integrator, well)
     const [left, top] = drawOrbit(context, box, well, path, system.units)
     this.#startLine.point({from: [event.clientX, event.clientY], to: [box.left + left, box.top + top], colour: ink})

@@ -41,10 +41,12 @@ export class Preview {
    * @param {(picture: string, name: string) => any} findSource  finds a data source of a picture
    * @param {import("../../../../plots/browser/modules/workers/frames.js").Frames} frames
    * @param {import("../painting/overlay.js").Overlay} overlay
+   * @param {import("../painting/relief.js").Relief} relief
    * @param {import("../view_store.js").ViewStore} store
    */
-  constructor(find, findSource, frames, overlay, {energy, window}) {
+  constructor(find, findSource, frames, overlay, relief, {energy, window}) {
     this.#overlay = overlay
+    this.#relief = relief
     this.#find = find
     this.#frames = frames
     this.#energy = energy
@@ -61,6 +63,7 @@ export class Preview {
   #find
   #frames
   #overlay
+  #relief
   #energy
   #window
   #maps
@@ -94,8 +97,10 @@ export class Preview {
 
   /** @param {ServerView} view */
   setView(view) {
-    const viewChanged = this.#view && (view.system !== this.#view.system || view.plane !== this.#view.plane)
+    const systemChanged = this.#view !== null && view.system !== this.#view.system
+    const viewChanged = systemChanged || (this.#view !== null && view.plane !== this.#view.plane)
     this.#view = view
+    if (systemChanged) this.#relief.changeSystem()
     if (viewChanged) this.#restore()
   }
 

@@ -27,18 +27,19 @@ const STYLE = "position:fixed;pointer-events:none;z-index:1;display:none;backgro
  */
 
 export class Overlay {
-  /** @param {HTMLElement} el */
-  constructor(el) {
+  /** @param {HTMLElement} el @param {import("./relief.js").Relief} relief */
+  constructor(el, relief) {
     this.#el = el
+    this.#relief = relief
     document.addEventListener("scroll", () => this.hide(), {capture: true, passive: true})
   }
 
   #el
+  #relief
   /** @type {Map<string, HTMLCanvasElement>} */
   #canvases = new Map()
   #image = new PixelImage()
   #isShown = false
-
   /** Whether the canvases cover the pictures. */
   get isShown() {
     return this.#isShown
@@ -59,7 +60,9 @@ export class Overlay {
     }
     const picture = well && wellPicture()
     const context = picture && this.#canvasFor("well", picture.box, energy)
-    if (picture && context) strokeLines(context, picture.view.model, well.window, picture.box, well.lines)
+    if (!picture || !context) return
+    this.#relief.paint(context, picture.box, well.window)
+    strokeLines(context, picture.view.model, well.window, picture.box, well.lines)
   }
 
   /** Hide the canvases after Bokeh has painted the next frame. */

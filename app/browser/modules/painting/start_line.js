@@ -3,8 +3,8 @@
 
 import {mapPictures, wellPicture} from "./pictures.js"
 
-/** Style of the line, which is over the pictures, and below cards and drawers. */
-const STYLE = `position:fixed;inset:0;width:100%;height:100%;pointer-events:none;z-index:4;
+/** Style of the line, which is over the pictures and the card, and below drawers. */
+const STYLE = `position:fixed;inset:0;width:100%;height:100%;pointer-events:none;z-index:6;
   filter:drop-shadow(0 0 1px var(--ui-page)) drop-shadow(0 0 1px var(--ui-page))`
 
 /** Attributes of a line of dots. */

@@ -48,7 +48,7 @@ export function drawWell(context, box, integrator, {window, energy, limit, colou
  */
 export function drawOrbit(context, box, {window, colours, ink}, path, units) {
   const {xs, ys} = toPageUnits(path, units)
-  strokeLine(context, window, box, {xs, ys}, path.channel > 0 ? colours[path.channel - 1] : ink, 1)
+  strokeLine(context, window, box, {xs, ys}, path.channel > 0 ? colours[path.channel - 1] : ink, 1.5)
   context.fillStyle = ink
   context.beginPath()
   const [scaleX, scaleY] = [box.width / (window.xHigh - window.xLow), box.height / (window.ordinateHigh - window.ordinateLow)]
