@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
+from typing import Any
 
 import pytest
 from playwright.sync_api import (
@@ -61,10 +62,11 @@ _HARMLESS = re.compile(r"GL Driver Message|bokeh\.models\.dom\.TextView\(\w+\)\.
 
 
 class Watch:
-    """Records errors, warnings, failed requests, and requests to other hosts."""
+    """Records errors, warnings, failed requests, and requests that do not begin with an origin, by default that of the app."""
 
-    def __init__(self, page: Page) -> None:
+    def __init__(self, page: Page, origin: str = "http://127.0.0.1:") -> None:
         self.problems: list[str] = []
+        self._origins = (origin, "data:", "blob:")
         page.on("console", self._console)
         page.on("pageerror", lambda error: self.problems.append(f"page error: {error.stack}"))
         page.on("request", self._request)
@@ -75,7 +77,7 @@ class Watch:
             self.problems.append(f"console: {message.text}")
 
     def _request(self, request: Request) -> None:
-        if not request.url.startswith(("http://127.0.0.1:", "data:", "blob:")):
+        if not request.url.startswith(self._origins):
             self.problems.append(f"external request: {request.url}")
 
     def _response(self, response: Response) -> None:
@@ -95,6 +97,25 @@ def open_for_all(chromium: Browser, server: str) -> Iterator[Callable[..., Explo
     """Yield the function of `open_explorer` for pages that the tests of a module share, and leave as they were."""
     with _opening(chromium, server) as open_page:
         yield open_page
+
+
+@pytest.fixture
+def open_offline(chromium: Browser) -> Iterator[Callable[..., Page]]:
+    """Yield a function that opens a file without a network, in a window of a given width, which may read files of its folder."""
+    contexts: list[BrowserContext] = []
+    watches: list[Watch] = []
+
+    def open_file(file: Path, width: int = 1280, theme: str = "light", **options: Any) -> Page:
+        window = {"width": width, "height": 900}
+        contexts.append(chromium.new_context(viewport=window, color_scheme=theme, offline=True, **options))
+        page = contexts[-1].new_page()
+        page.set_default_timeout(TIMEOUT_MS)
+        watches.append(Watch(page, f"{file.parent.as_uri()}/"))
+        page.goto(file.as_uri())
+        return page
+
+    yield open_file
+    _close(contexts, watches)
 
 
 @contextmanager
@@ -125,6 +146,11 @@ def _opening(chromium: Browser, server: str) -> Iterator[Callable[..., ExplorerP
         return explorer
 
     yield open_page
+    _close(contexts, watches)
+
+
+def _close(contexts: list[BrowserContext], watches: list[Watch]) -> None:
+    """Close pages, which must have had no problems."""
     for context in contexts:
         context.close()
     assert [problem for watch in watches for problem in watch.problems] == []

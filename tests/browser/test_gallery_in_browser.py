@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 
 from engine.foundations.execution import DEFAULT_EXECUTION
 from plots.links.presets import PRESETS
 from plots.live.gallery import entry_files, preset_entry, shared_files
 from plots.pictures.palette import PAPER
-from tests.browser.conftest import Watch
-from tests.conftest import TIMEOUT_MS
 
 KEYS = ("crossings", "strength")
 
@@ -31,23 +30,9 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def open_gallery(chromium: Browser, folder: Path) -> Iterator[Callable[..., Page]]:
-    """Yield a function that opens the list without a network in a window of a given width."""
-    contexts, watches = [], []
-
-    def open_page(width: int = 1280, theme: str = "light") -> Page:
-        contexts.append(chromium.new_context(viewport={"width": width, "height": 900}, color_scheme=theme, offline=True))
-        page = contexts[-1].new_page()
-        page.set_default_timeout(TIMEOUT_MS)
-        watches.append(Watch(page))
-        page.goto((folder / "index.html").as_uri())
-        return page
-
-    yield open_page
-    for context in contexts:
-        context.close()
-    problems = [problem for watch in watches for problem in watch.problems]
-    assert [problem for problem in problems if not problem.startswith(f"external request: {folder.as_uri()}/")] == []
+def open_gallery(open_offline: Callable[..., Page], folder: Path) -> Callable[..., Page]:
+    """Return a function that opens the list in a window of a given width."""
+    return partial(open_offline, folder / "index.html")
 
 
 def test_a_card_opens_a_figure_that_the_browser_computes(open_gallery: Callable[..., Page]) -> None:

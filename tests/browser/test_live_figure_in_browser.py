@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 
 from engine import CASES, Fate, MapSpec, Plane, classify_orbits, compute_map
 from plots.live.live_figure import live_figure
 from plots.live.live_view import LiveView
 from plots.pictures.palette import DEFAULT_COLOURS, rgba
-from tests.browser.conftest import Watch
 from tests.conftest import TIMEOUT_MS
 
 FIRST, OTHER = 0.45, 0.3
@@ -45,24 +44,15 @@ def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def open_figure(chromium: Browser, file: Path) -> Iterator[Callable[..., Page]]:
-    """Yield a function that opens the figure without a network in a window of a given width."""
-    contexts, watches = [], []
+def open_figure(open_offline: Callable[..., Page], file: Path) -> Callable[..., Page]:
+    """Return a function that opens the figure in a window of a given width."""
 
     def open_page(width: int = 1280, theme: str = "light") -> Page:
-        contexts.append(chromium.new_context(viewport={"width": width, "height": 900}, color_scheme=theme, offline=True))
-        page = contexts[-1].new_page()
-        page.set_default_timeout(TIMEOUT_MS)
-        watches.append(Watch(page))
-        page.goto(file.as_uri())
+        page = open_offline(file, width, theme)
         expect(page.locator("#live")).to_be_visible()
         return page
 
-    yield open_page
-    for context in contexts:
-        context.close()
-    problems = [problem for watch in watches for problem in watch.problems]
-    assert [problem for problem in problems if not problem.startswith("external request: file:")] == []
+    return open_page
 
 
 def set_energy(page: Page, energy: float) -> None:
@@ -179,10 +169,7 @@ def test_a_print_in_the_dark_theme_has_dark_lines_and_square_pictures(open_figur
     assert page.locator("#play").is_hidden()
 
 
-def test_without_scripts_there_is_a_still_picture(chromium: Browser, file: Path) -> None:
-    context = chromium.new_context(java_script_enabled=False, offline=True)
-    page = context.new_page()
-    page.goto(file.as_uri())
+def test_without_scripts_there_is_a_still_picture(open_offline: Callable[..., Page], file: Path) -> None:
+    page = open_offline(file, java_script_enabled=False)
     expect(page.locator("#still")).to_be_visible()
     expect(page.locator("#live")).to_be_hidden()
-    context.close()

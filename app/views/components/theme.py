@@ -13,6 +13,7 @@ from panel.theme.base import Design, Inherit, Theme
 from panel.viewable import Viewable
 
 from plots.pictures.palette import DARK, LIGHT
+from plots.texts.page_colours import page_colours
 
 THEME_KEY = "escape-explorer-theme"
 """Key of the chosen theme, "light" or "dark", in the browser's local storage."""
@@ -25,8 +26,8 @@ _STYLESHEET = Path(__file__).parents[2] / "static" / "theme.css"
 
 @cache
 def theme_css() -> str:
-    """Return the text of the stylesheet."""
-    return _STYLESHEET.read_text(encoding="utf-8")
+    """Return the text of the stylesheet, which begins with the colours."""
+    return page_colours() + _STYLESHEET.read_text(encoding="utf-8")
 
 
 def theme_colour(name: str) -> str:
