@@ -22,7 +22,7 @@ class Preset:
     key
         Stem of the file name of its thumbnail.
     title, caption
-        A few words, and a few sentences, for the page.
+        A few words, and a few sentences that are true on the page and below a figure without it.
     group
         One of `GROUPS`.
     picture

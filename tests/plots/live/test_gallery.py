@@ -60,6 +60,11 @@ def test_views_along_a_parameter_and_views_with_layers_are_still_pictures_and_al
     assert [entry.live_view.caption for entry in ENTRIES if not entry.refusal and not entry.caption] == []
 
 
+def test_no_caption_speaks_of_controls_that_a_figure_lacks() -> None:
+    controls = re.compile(r"\b(tabs?|buttons?|press|click|follow|analys[ie]s|the page)\b|\"", re.IGNORECASE)
+    assert [entry.key for entry in ENTRIES if controls.search(entry.caption)] == []
+
+
 def test_a_folder_refers_to_its_own_files_only(files: dict[str, str | bytes]) -> None:
     pages = [content for name, content in files.items() if name.endswith(".html")]
     addresses = {address for page in pages for address in References(page).addresses if not address.startswith("#")}
