@@ -148,7 +148,8 @@ def _tabulate(curves_at: _CurvesAt, channel: int, saddle: float, highest: float)
         interpolated = [_points(_interpolate(nodes, rows, sigma**2), _POSITIONS) for sigma in test_sigmas.tolist()]
         if np.abs(np.array(interpolated) - [_points(curve, _POSITIONS) for curve in test_curves]).max() < _SAFETY * LARGEST_ERROR:
             column_count = np.flatnonzero(np.abs(rows).max(axis=0) > _NEGLIGIBLE).max() + 1
-            return ExitTable(saddle, saddle + share * (highest - saddle), nodes, rows[:, :column_count].copy())
+            # In this order the whole range ends exactly at `highest`.
+            return ExitTable(saddle, highest - (1.0 - share) * (highest - saddle), nodes, rows[:, :column_count].copy())
     return ExitTable(saddle, saddle, no_nodes, no_rows)
 
 

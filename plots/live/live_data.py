@@ -44,8 +44,7 @@ def figure_data(view: LiveView, found: EscapeMap, execution: Execution) -> dict[
     """
     spec, outcomes, palette = view.spec, view.spec.outcomes, view.palette
     (low, high), (columns, rows) = view.find_energies(), spec.resolution
-    system = make_browser_system(spec.potential, low, high, spec.section, execution=execution).to_dict()
-    high = _highest_energy(view, system)
+    system = _find_system(view, execution)
     if spec.backward and system["backward"]:
         system["table"] = system["backward"]
     return {
@@ -56,7 +55,7 @@ def figure_data(view: LiveView, found: EscapeMap, execution: Execution) -> dict[
         "axes": list(spec.plane.axis_symbols),
         "energy": spec.common_energy or 0.0,
         "low": low,
-        "high": high,
+        "high": min(high, max(min(_tabulated_energies(system), default=high), view.map_energies[1])),
         "decimals": max(math.ceil(_DIGITS - math.log10(high - low)), 0),
         "window": window_in_browser(spec.find_window()),
         "home": spec.given_window is None,
@@ -72,13 +71,22 @@ def figure_data(view: LiveView, found: EscapeMap, execution: Execution) -> dict[
     }
 
 
-def _highest_energy(view: LiveView, system: dict[str, Any]) -> float:
-    """Return the highest energy of the figure: that of the request, or the lowest one up to which an exit is tabulated."""
+def _find_system(view: LiveView, execution: Execution) -> dict[str, Any]:
+    """Return the system with exits up to the highest energy of the figure, or, if those end below the map, up to that of the map.
+
+    Near a maximum between two exits, where exits change fast, tables up to a lower energy can reach farther.
+    """
     low, high = view.find_energies()
-    energy = view.spec.common_energy
-    unit = view.spec.potential.units.energy
-    tabulated = [unit * table["highest"] for table in system["exits"] if "highest" in table]
-    return min([high, *(each for each in tabulated if each > (low if energy is None else energy))])
+    for highest in (high, view.map_energies[1]):
+        system = make_browser_system(view.spec.potential, low, highest, view.spec.section, execution=execution).to_dict()
+        if min(_tabulated_energies(system), default=highest) >= view.map_energies[1]:
+            break
+    return system
+
+
+def _tabulated_energies(system: dict[str, Any]) -> list[float]:
+    """Return the energies up to which the exits of a system are tabulated, in the units of its potential."""
+    return [system["units"]["energy"] * table["highest"] for table in system["exits"] if "highest" in table]
 
 
 def text_of_bytes(content: bytes) -> str:

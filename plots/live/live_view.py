@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 from engine import CASES, POTENTIALS, MapSpec, Potential, System
 from engine.foundations.validation import checked_number
@@ -79,13 +80,20 @@ class LiveView:
         """The title, or else system and slice."""
         return self.title or view_title(self.spec)
 
+    @cached_property
+    def map_energies(self) -> tuple[float, float]:
+        """The lowest and the highest energy of the map, which differ on a slice with an axis h."""
+        if self.spec.common_energy is not None:
+            return self.spec.common_energy, self.spec.common_energy
+        x_low, x_high, ordinate_low, ordinate_high = self.spec.find_window().edges
+        return (x_low, x_high) if self.spec.plane.energy_axis == 0 else (ordinate_low, ordinate_high)
+
     def find_energies(self) -> tuple[float, float]:
         """Return the lowest and the highest energy of the figure."""
         if self.energies is not None:
             return self.energies
-        suggested = _suggested_energies(self.spec.potential)
-        present = [] if self.spec.common_energy is None else [self.spec.common_energy]
-        return min([suggested.low, *present]), max([suggested.high, *present])
+        suggested, (low, high) = _suggested_energies(self.spec.potential), self.map_energies
+        return min(suggested.low, low), max(suggested.high, high)
 
 
 def live_refusal(spec: MapSpec) -> str:

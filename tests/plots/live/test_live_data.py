@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -45,6 +46,21 @@ def test_a_reader_can_choose_only_energies_at_which_the_exits_are_tabulated() ->
     unit = data["system"]["units"]["energy"]
     assert data["energy"] < data["high"] < LiveView(spec).find_energies()[1]
     assert data["high"] == min(table["highest"] * unit for table in data["system"]["exits"])
+
+
+def test_exits_are_tabulated_up_to_the_energy_of_the_map_where_a_longer_table_ends_below_it() -> None:
+    spec = MapSpec(POTENTIALS["Separable"], Plane.X_PX, 0.16, (4, 4), t_max=10.0)
+    data = figure_data(LiveView(spec), compute_map(spec), DEFAULT_EXECUTION)
+    longer = figure_data(LiveView(replace(spec, energy=0.1)), compute_map(spec), DEFAULT_EXECUTION)
+    assert longer["high"] < spec.energy == data["high"]
+    unit = data["system"]["units"]["energy"]
+    assert [table["highest"] * unit for table in data["system"]["exits"]] == [spec.energy] * 2
+
+
+def test_exits_are_tabulated_up_to_the_highest_energy_of_a_window_on_a_slice_with_an_axis_of_energy() -> None:
+    spec = MapSpec(CASES["III"], Plane.X_H, (0.3, 0.6), (4, 4), (-0.5, 0.5, 0.4, 1.3), t_max=10.0)
+    data = figure_data(LiveView(spec), compute_map(spec), DEFAULT_EXECUTION)
+    assert min(table["highest"] for table in data["system"]["exits"]) * data["system"]["units"]["energy"] == 1.3
 
 
 @needs_node
