@@ -12,6 +12,7 @@ import {energyAxis, windowAt} from "../engine/starts.js"
 import {coversEnergy} from "../engine/system.js"
 import {EnergyPlayer} from "../gestures/player.js"
 import {number} from "../numbers.js"
+import {describeOutcome} from "../painting/orbit_drawing.js"
 import {Frames} from "../workers/frames.js"
 import {Pool, workerCount} from "../workers/pool.js"
 import {hasVectors} from "../workers/vectors.js"
@@ -265,12 +266,12 @@ class LiveFigure {
     part("orbits").hidden = this.#starts.length === 0
     const rows = this.#starts.map((start, index) => {
       const path = this.#pathFrom(start)
-      const outcome = path && path.channel > 0 ? labels[path.channel - 1] : path ? "none" : "no orbit"
-      const numbers = path ? [number(path.time * system.units.time, 6), String(path.crossings)] : ["", ""]
-      return [String(index + 1), ...start.map(value => String(Number(value.toPrecision(10)))), outcome, ...numbers]
+      // On a narrow screen, the two numbers of a start stand one below the other.
+      const place = start.map(value => String(Number(value.toPrecision(10)))).join(", ")
+      return [String(index + 1), place, path ? describeOutcome(path, system.units.time, labels) : "No orbit"]
     })
     part("orbit-rows").replaceChildren(...rows.map(row))
-    part("orbit-axes").replaceChildren(...["orbit", ...axes, "outcome", "t", "crossings"].map(text => cell("th", text)))
+    part("orbit-axes").replaceChildren(...["orbit", axes.join(", "), "outcome"].map(text => cell("th", text)))
   }
 
   /** @param {boolean} isPlaying */
