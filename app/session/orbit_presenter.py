@@ -26,8 +26,8 @@ from engine import Orbit, Section, Slice
 from plots.links.map_view import Start
 from plots.pictures.orbit_curves import OrbitCurves, restrict_curves
 
-ORBITS_REMOVED = "The orbits are removed, because they start on another slice. The Back button of the browser shows them again."
-"""Message after a change of the slice."""
+ORBITS_REMOVED = "Orbits without a start on this slice are left out. The Back button of the browser shows them again."
+"""Message after a change of the slice to one on which not all orbits have a place."""
 
 Interval = tuple[float, float]
 """Start and end of a time interval, dimensionless."""
@@ -108,14 +108,18 @@ class OrbitPresenter:
             if orbit.start == self._added_start and orbit.curves is not None:
                 self._added_start = None
                 colour = self._state.colours.path_colour(orbit.curves.orbit.fate, orbit.curves.orbit.outcomes, slot)
-                self._notice.show(orbit.headline(), path_picture(orbit.curves, colour))
+                self._notice.show_picture(orbit.headline(), path_picture(orbit.curves, colour))
 
     def _update_message(self, *events: Event) -> None:
-        """Show the hint without orbits, or that a change of the plane has removed the orbits; clear other messages."""
+        """Show the hint without orbits, or that a change of the plane has left out orbits; clear other messages."""
         self.controls.end_message(has_orbits=bool(self._state.starts))
         changed = {event.name: event for event in events}
-        if "plane" in changed and "starts" in changed and changed["starts"].old and not changed["starts"].new:
-            self.controls.say(ORBITS_REMOVED)
+        starts = changed.get("starts")
+        if starts is not None and len(starts.new) < len(starts.old):
+            # A picture may show an orbit that is left out.
+            self._notice.clear()
+            if "plane" in changed:
+                self._notice.show(ORBITS_REMOVED)
 
     def _show_neighbour(self, sentence: str, neighbour: Start | None) -> None:
         self._neighbour = neighbour

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import param
 
+from app.state.places import find_place
 from app.state.system_review import PageReview, review_catalogue_entry, review_job
 from app.state.view import ANALYSES, FIRST_VIEW, PICTURES, View, allowed_resolutions, allowed_t_max
 from app.state.watched_starts import WatchedStarts
@@ -22,6 +23,7 @@ from engine import (
     Slice,
     System,
     Window,
+    find_returns,
     integrate_orbit,
     start_states,
 )
@@ -283,15 +285,36 @@ class ViewState(param.Parameterized):
         self.param.update(**values)
 
     def show_slice(self, plane: Slice) -> None:
-        """Set a slice, and remove window and starts."""
-        self.param.update(plane=plane, window=None, starts=(), chosen=0)
+        """Set a slice without a window, and keep the orbits that have a place on the slice, at their start or at the section."""
+        places = [] if plane.parameter or self.plane.parameter else [self._place_on(plane, start) for start in self.starts]
+        starts = tuple(dict.fromkeys(place for place in places if place is not None))
+        chosen = places[self.chosen] if self.chosen < len(places) else None
+        index = starts.index(chosen) if chosen is not None else 0
+        self.param.update(plane=plane, window=None, starts=starts, chosen=index)
+
+    def _place_on(self, plane: Slice, start: Start) -> Start | None:
+        """Return where the orbit of a start begins on another slice, or meets the slice first if it is that of the section."""
+        state = self.start_state(start)
+        if state is None:
+            return None
+        place = find_place(plane, self.potential, self.energy, state)
+        if place is not None or plane != self.section.plane or not self.is_ready:
+            return place
+        energy = self.plane.energies(self.energy, *start)
+        try:
+            returns = find_returns(self.potential, energy, [state], t_max=self.t_max, section=self.section)
+        except ValueError:
+            # The exits are not defined at this energy.
+            return None
+        return find_place(plane, self.potential, self.energy, tuple(returns.states[0, 0].tolist()))
 
     def show_section(self, section: Section, *, with_slice: bool) -> None:
         """Set the section at which crossings are counted and, with `with_slice`, show a slice of starts on it."""
-        if with_slice and self.plane != section.plane:
-            self.param.update(section=section, plane=section.plane, window=None, starts=(), chosen=0)
-        else:
+        # One call of each watcher for both changes.
+        with param.parameterized.batch_call_watchers(self):
             self.section = section
+            if with_slice and section.plane is not None and self.plane != section.plane:
+                self.show_slice(section.plane)
 
     def show_system(self, reviewed: PageReview, energy: float | None = None) -> None:
         """Set a reviewed system at an energy, by default its initial energy, and remove window and starts."""

@@ -1,4 +1,4 @@
-"""Short messages in the corner of the page: passing messages, warnings, and lasting messages about the server."""
+"""Short messages in the corner of the page: passing messages, pictures, warnings, and lasting messages about the server."""
 
 from __future__ import annotations
 
@@ -19,6 +19,9 @@ CONNECTION_LOST = "The connection to the server is lost. This page returns with 
 
 RELOAD = "Reload"
 """Label of the button below this message."""
+
+CLOSE = "Close"
+"""Label of the button below a picture."""
 
 MODEL_NAME = "notice"
 """Name by which the server finds the Bokeh model of the pane in a document."""
@@ -46,9 +49,16 @@ class Notice:
         """Return the pane, which may be anywhere on the page."""
         return self._pane
 
-    def show(self, sentence: str, picture: str = "") -> None:
-        """Show a message for `PASSING_SECONDS`, with a picture (HTML) above the message."""
-        self._pane.object = _passing(sentence, picture)
+    def show(self, sentence: str) -> None:
+        """Show a message for `PASSING_SECONDS`."""
+        self._pane.object = _passing(sentence)
+
+    def show_picture(self, sentence: str, picture: str) -> None:
+        """Show a picture (HTML) above a message until the visitor closes it, or until `clear`."""
+        close = f"<form method='dialog'><button>{CLOSE}</button></form>"
+        self._pane.object = (
+            f"<dialog open class='notice' {_moment()}>{picture}<p role='status'>{escape(sentence)}</p>{close}</dialog>"
+        )
 
     def warn(self, sentence: str) -> None:
         """Show a warning until `clear`."""
@@ -82,11 +92,15 @@ def _set_text(document: Document, html: str) -> None:
         model.text = escape(html)
 
 
-def _passing(sentence: str, picture: str = "") -> str:
-    # The time makes a repeated message different, so the browser shows the message again.
+def _passing(sentence: str) -> str:
     duration = f"style='animation-duration: {PASSING_SECONDS}s'"
-    return _html(sentence, f"class='notice passing' {duration} data-time='{time.monotonic_ns()}'", picture=picture)
+    return _html(sentence, f"class='notice passing' {duration} {_moment()}")
 
 
-def _html(sentence: str, attributes: str = "class='notice'", role: str = "status", picture: str = "") -> str:
-    return f"<div role='{role}' {attributes}>{picture}{escape(sentence)}</div>"
+def _moment() -> str:
+    """Return an attribute that makes a repeated message different, so that the browser shows the message again."""
+    return f"data-time='{time.monotonic_ns()}'"
+
+
+def _html(sentence: str, attributes: str = "class='notice'", role: str = "status") -> str:
+    return f"<div role='{role}' {attributes}>{escape(sentence)}</div>"

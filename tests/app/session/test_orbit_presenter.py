@@ -96,14 +96,17 @@ def test_an_orbit_opens_the_section_of_its_system_at_its_energy(
     assert (values["plane"], values["energy"], values["starts"]) == (Plane.X_PX, energy, ((0.1, 0.0),))
 
 
-def test_another_slice_removes_the_orbits_and_says_so(begin: Callable[[Slice], Session]) -> None:
+def test_another_slice_leaves_out_orbits_without_a_place_on_it_and_says_so(begin: Callable[[Slice], Session]) -> None:
     session = begin(Plane.X_PX)
-    session.state.add_start((-0.3, 0.0))
+    session.state.param.update(starts=((-0.3, 0.1), (0.1, 0.0)))
+    notice = session.context.notice.layout()
     session.state.show_slice(Plane.X_Y)
-    note = session.presenter.controls.note
-    assert (note.visible, note.object) == (True, ORBITS_REMOVED)
-    session.state.add_start((0.1, 0.0))
-    assert not note.visible
+    assert session.state.starts == ((0.1, 0.0),)
+    assert ORBITS_REMOVED in notice.object
+    session.context.notice.clear()
+    session.state.show_slice(Plane.X_PX)
+    assert session.state.starts == ((0.1, 0.0),)
+    assert notice.object == ""
 
 
 def test_the_chosen_orbit_is_removed_and_the_others_stay(begin: Callable[[Slice], Session]) -> None:

@@ -9,7 +9,19 @@ import numpy as np
 import pytest
 
 from app.state.view_state import ViewState
-from engine import CASES, Coordinate, ParameterAxis, Plane, Slice, System, Window, read_section
+from engine import (
+    CASES,
+    Coordinate,
+    MapSpec,
+    ParameterAxis,
+    Plane,
+    Slice,
+    System,
+    Window,
+    compute_map,
+    integrate_orbit,
+    read_section,
+)
 from engine.systems.catalogue.table import PAPER_ENERGIES
 from plots.links.map_view import default_settings
 from plots.pictures.palette import MOST_ORBITS
@@ -49,6 +61,25 @@ def test_an_existing_start_is_chosen() -> None:
     view.add_start(starts_of(3)[0])
     assert view.starts == tuple(starts_of(3))
     assert view.chosen == 0
+
+
+def test_orbits_stay_on_another_slice_at_their_start_or_where_they_meet_the_section() -> None:
+    # Orbits are followed to the section as soon as the kernels are compiled.
+    compute_map(MapSpec(CASES["II"], Plane.X_Y, 0.2, (2, 2), t_max=10.0))
+    view = ViewState(system=System("II"), plane=Plane.X_Y, energy=0.2, starts=((0.1, 0.2), (0.0, 5.0), (0.3, 0.0)), chosen=2)
+    state = view.start_state((0.1, 0.2))
+    assert state is not None
+    view.show_slice(Plane.X_PX)
+    assert view.starts[1] == (0.3, 0.0) == view.chosen_start
+    assert view.starts[0] == pytest.approx(integrate_orbit(CASES["II"], state, 100.0).find_section_crossings()[0], rel=1e-9)
+
+
+def test_an_orbit_without_a_place_on_another_slice_is_left_out() -> None:
+    view = ViewState(system=System("II"), plane=Plane.X_PX, energy=0.2, starts=((0.1, 0.2), (0.1, 0.0)), chosen=0)
+    view.show_slice(Plane.X_Y)
+    assert (view.starts, view.chosen) == (((0.1, 0.0),), 0)
+    view.show_slice(Slice(Coordinate.X, ParameterAxis("epsilon", 0.5, 2.0, System("II"))))
+    assert view.starts == ()
 
 
 @pytest.mark.parametrize(("place", "chosen"), [(0, 1), (2, 1)])

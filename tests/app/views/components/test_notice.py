@@ -27,6 +27,16 @@ def test_a_warning_is_text_in_an_alert_until_it_is_cleared() -> None:
     assert notice.layout().object == ""
 
 
+def test_a_picture_stays_until_it_is_closed_or_cleared() -> None:
+    notice = Notice()
+    notice.show_picture("Exit <1>", "<svg></svg>")
+    html = notice.layout().object
+    assert "passing" not in html
+    assert "<svg></svg><p role='status'>Exit &lt;1&gt;</p><form method='dialog'>" in html
+    notice.clear()
+    assert notice.layout().object == ""
+
+
 def test_the_server_finds_the_notice_in_a_document() -> None:
     document = Document()
     # Without a notice the document stays unchanged.
