@@ -65,6 +65,18 @@ def test_every_preset_has_a_card_and_pictures_are_loaded(explorer: ExplorerPage)
     close(explorer, "Gallery")
 
 
+def test_the_gallery_of_a_phone_shows_four_whole_cards(open_explorer: Callable[..., ExplorerPage]) -> None:
+    phone = open_explorer(390, 844, QUICK, touch=True)
+    phone.press("Gallery")
+    fourth = card(phone, PRESETS[3])
+    expect(fourth).to_be_in_viewport(ratio=1)
+    # Nothing covers the card.
+    box = fourth.bounding_box()
+    assert box is not None
+    lowest = [box["x"] + box["width"] / 2, box["y"] + box["height"] - 2]
+    assert fourth.evaluate("(card, [x, y]) => card.getRootNode().elementFromPoint(x, y) === card", lowest)
+
+
 def test_the_equations_are_those_of_the_system(explorer: ExplorerPage) -> None:
     explorer.press("Help")
     expect(explorer.text("Equations: Case I")).to_be_visible()

@@ -57,6 +57,7 @@ export function render({model, el}) {
   let chosen = null
   const show = (/** @type {Card | null} */ card) => {
     const described = card ?? chosen
+    caption.className = described ? "" : "hint"
     caption.replaceChildren(...(described ? [make("b", {}, described.title), ` ${described.caption}`] : [model.hint]))
   }
   const strips = model.groups.map((/** @type {string} */ group) => {

@@ -49,6 +49,14 @@ p {
   position: sticky; bottom: -32px; z-index: 1; margin: 12px 0 -32px; padding: 10px 0 16px; min-height: 5em;
   border-top: 1px solid var(--ui-edge); background: var(--ui-surface);
 }
+/* A finger shows no caption before it chooses a card. */
+@media (hover: none) { .hint { display: none } }
+/* On a phone, the drawer has the height of two cards. */
+@media (max-width: 37.49em) {
+  .gallery:not(.few) [role=toolbar] { grid-template-columns: 1fr 1fr }
+  .gallery:not(.few) button { flex-direction: row; text-align: left }
+  .gallery:not(.few) img { flex: none; width: 3rem }
+}
 """
 
 
