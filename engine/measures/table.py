@@ -163,7 +163,7 @@ _ENTRIES = (
         (
             Quantity(
                 "wada_distance", "pixels within which 99 % of the boundaries coincide", attrgetter("radius_99"),
-                label="99 % of the boundary",
+                label="pixels for 99 % of the boundary",
             ),
         ),
         curve=Curve("pixels", least_top=10.0),

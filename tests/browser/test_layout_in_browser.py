@@ -250,7 +250,12 @@ def test_a_picture_has_a_frame_of_focus_for_keys_only(wide: ExplorerPage) -> Non
 
 def test_a_tap_on_a_phone_shows_where_and_when_the_orbit_ends_and_its_path(phone: ExplorerPage) -> None:
     phone.page.touchscreen.tap(*phone.point("basins", 0.1, 0.05))
-    expect(phone.page.locator(".notice", has_text="Escapes through exit 1 at t").locator("polyline")).to_be_attached()
+    notice = phone.page.locator(".notice", has_text="Escapes through exit 1 at t")
+    # The limiting curve, then the path.
+    expect(notice.locator("polyline[stroke=currentColor]").first).to_be_attached()
+    expect(notice.locator("polyline").last).not_to_have_attribute("stroke", "currentColor")
+    notice.get_by_role("button", name="Close").click()
+    expect(notice).to_be_hidden()
     phone.return_home()
 
 

@@ -141,8 +141,10 @@ def _measure_section(measure: Measure[Any], result: Any, sentence: str) -> str:
     place = f", {measure.place}" if measure.place else ""
     description = "" if numbers else f"<br>{escape(sentence)}"
     head = f"<b>{measure.title}</b>{details if numbers else ''}<br>{measure.meaning}{place}{description}"
-    rows = "".join(f"<tr><td>{label}</td><td class='number'>{text}</td></tr>" for label, text in numbers.items())
-    return f"<tbody><tr><th colspan=2>{head}</th></tr>{rows}</tbody>"
+    # Each row divides its width by itself: a long number beside a short label, and a long label beside a short number.
+    pairs = (f"<div class='pair'><span>{label}</span> <span>{text}</span></div>" for label, text in numbers.items())
+    rows = "".join(f"<tr><td>{pair}</td></tr>" for pair in pairs)
+    return f"<tbody><tr><th>{head}</th></tr>{rows}</tbody>"
 
 
 def _format_quantity(quantity: Quantity[Any], result: Any) -> str:

@@ -46,7 +46,7 @@ def test_numbers_have_their_errors_and_sentences_open_on_demand(view: BasinMeasu
     entropy = compute_basin_entropy(compute_map(MapSpec(CASES["II"], "x_px", 0.25, (40, 40), t_max=100.0)))
     sentence = escape(entropy.describe())
     shown, in_all = (re.sub(r"<[^>]*>", "", text) for text in (view.text.object.partition("</table>")[0], view.text.object))
-    assert f"S_b{entropy.s_b:.2f} ± {entropy.s_b_error:.1g}" in shown
+    assert f"S_b {entropy.s_b:.2f} ± {entropy.s_b_error:.1g}" in shown
     assert sentence not in shown
     assert sentence in in_all
 
