@@ -98,7 +98,8 @@ def _header(number: int, orbit: Orbit, stride: int, verdict: OrbitVerdict) -> li
 
 def _origin(number: int, orbit: Orbit) -> list[str]:
     start = ", ".join(f"{name} = {float(getattr(orbit, name)[0])!r}" for name in ("x", "y", "px", "py"))
-    return [f"orbit {number}: start {start}", f"orbit {number}: energy {orbit.energy!r}"]
+    # The energy of a start differs from h by rounding.
+    return [f"orbit {number}: start {start}", f"orbit {number}: energy {orbit.energy:.15g}"]
 
 
 def python_lines(spec: MapSpec, system: System, starts: Sequence[Sequence[float]] = (), study: Job[Any] | None = None) -> str:

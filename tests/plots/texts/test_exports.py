@@ -27,6 +27,7 @@ from engine import (
     compute_sweep,
     integrate_orbit,
     judge_orbit,
+    start_states,
 )
 from engine.jobs.job import Job
 from engine.systems.system import TYPED
@@ -54,6 +55,13 @@ SPECS = {
 
 EPSILON = ParameterAxis("epsilon", 0.9, 1.1, System("II"))
 ALONG_EPSILON = CASES["II"], Plane.X_PX, (0.95, 1.05)
+
+
+def test_the_energy_of_an_orbit_has_no_rounding_error_of_its_start() -> None:
+    [start] = start_states(CASES["II"], Plane.X_PX, 0.12, np.array([0.1]), np.array([0.15]))
+    orbit = integrate_orbit(CASES["II"], start, t_max=10.0)
+    assert repr(orbit.energy) != "0.12"
+    assert "# orbit 1: energy 0.12\n" in section_csv([orbit])
 
 
 @pytest.fixture(scope="module")
@@ -95,7 +103,7 @@ def test_a_table_of_orbits_contains_them_bit_for_bit(orbit: Orbit) -> None:
         for column in ("t", "x", "y", "px", "py", "sali", "lyapunov_exponent", "r2"):
             np.testing.assert_array_equal([float(row[column]) for row in own], getattr(one, column))
         assert f"# orbit {number}: {judge_orbit(one).describe()}" in comments
-        assert f"# orbit {number}: energy {one.energy!r}" in comments
+        assert f"# orbit {number}: energy {one.energy:.15g}" in comments
     assert "# orbit 1: start x = 0.1, y = 0.0, px = 0.05, py = 0.6" in comments
 
 
@@ -103,7 +111,7 @@ def test_a_table_of_crossings_lists_them_with_their_times(orbit: Orbit) -> None:
     other = integrate_orbit(CASES["III"], (0.1, 0.0, 0.05, 0.9), 50.0, section="x = 0 both")
     comments, rows = table(section_csv([orbit, other]))
     assert [comments[k] for k in (3, 6)] == ["# orbit 1: upward crossings of y = 0", "# orbit 2: crossings of x = 0"]
-    assert comments[5] == f"# orbit 2: energy {other.energy!r}"
+    assert comments[5] == f"# orbit 2: energy {other.energy:.15g}"
     for number, one in enumerate((orbit, other), 1):
         own = [row for row in rows if row["orbit"] == str(number)]
         assert [int(row["crossing"]) for row in own] == list(range(1, one.crossings + 1))
