@@ -51,10 +51,11 @@ def sweep_charts(curves: Sweep, palette: Palette) -> list[Chart]:
 
 def _measure_chart(measure: Measure[Any], curves: Sweep) -> Chart:
     """Return the chart of the numbers of a measure with their error bars, against the energy or a parameter."""
-    series = [
-        Series(label, colour, curves.values, curves[name], Shape.JOINED_POINTS, curves.interval(name))
-        for (name, label), colour in zip(measure.labels.items(), _NUMBER_COLOURS, strict=False)
-    ]
+    gaps, series = _find_gaps(curves), []
+    for (name, label), colour in zip(measure.labels.items(), _NUMBER_COLOURS, strict=False):
+        columns = curves.values, curves[name], *curves.interval(name)
+        x, y, low, high = (np.insert(column, gaps, np.nan) for column in columns)
+        series.append(Series(label, colour, x, y, Shape.JOINED_POINTS, (low, high)))
     numbers = np.concatenate([values for one in series for values in (one.y, *(one.bars or ()))])
     numbers = numbers[np.isfinite(numbers)]
     limits: Limits | None = None
@@ -69,11 +70,31 @@ def _shares_chart(curves: Sweep, palette: Palette) -> Chart:
     """Return the chart of the percentages of bounded starts and of each outcome."""
     entries = [Entry("bounded", palette.bounded), *palette.end_entries(curves.outcomes)]
     # Symmetric exits have equal shares: dashed curves leave the solid curves below visible.
+    gaps = _find_gaps(curves)
+    x, shares = np.insert(curves.values, gaps, np.nan), np.insert(100.0 * curves["share"], gaps, np.nan, axis=0).T
     series = [
-        Series(entry.label, entry.colour, curves.values, 100.0 * share, Shape.DASHED if _is_dashed(code) else Shape.LINE)
-        for code, (entry, share) in enumerate(zip(entries, curves["share"].T, strict=True))
+        Series(entry.label, entry.colour, x, share, Shape.DASHED if _is_dashed(code) else Shape.LINE)
+        for code, (entry, share) in enumerate(zip(entries, shares, strict=True))
     ]
-    return Chart(measure_frame(SHARES, curves.symbol), series, (_swept_limits(curves), (0.0, 100.0)))
+    alone = _without_neighbours(curves.values.size, gaps)
+    points = [
+        Series("", entry.colour, curves.values[alone], 100.0 * share[alone], Shape.POINTS)
+        for entry, share in zip(entries, curves["share"].T, strict=True)
+    ]
+    return Chart(measure_frame(SHARES, curves.symbol), series + points, (_swept_limits(curves), (0.0, 100.0)))
+
+
+def _find_gaps(curves: Sweep) -> np.ndarray:
+    """Return the indices of the values before which requested values are still missing, where no line is drawn."""
+    requested, values = np.array(curves.dataset.attrs["requested"]), curves.values
+    before, after = np.searchsorted(requested, values[:-1], "right"), np.searchsorted(requested, values[1:], "left")
+    return np.flatnonzero(after > before) + 1
+
+
+def _without_neighbours(count: int, gaps: np.ndarray) -> np.ndarray:
+    """Return the indices of those of `count` values that have no line to another value."""
+    edges = np.array([0, *gaps, count])
+    return edges[:-1][np.diff(edges) == 1]
 
 
 def _is_dashed(code: int) -> bool:
