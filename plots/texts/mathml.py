@@ -40,7 +40,8 @@ def potential_formula(potential: Potential) -> str:
     first, *others = _signed_terms(potential.form)
     # By default, a sign at the start of an element has the space of a unary sign.
     terms = [first, *(term.replace("<mo>", "<mo form='infix'>", 1) for term in others)]
-    elements = " ".join(f"<math aria-hidden='true'>{part}</math>" for part in (_at_point(potential) + op("="), *terms))
+    # The signs have space of their own.
+    elements = "<wbr>".join(f"<math aria-hidden='true'>{part}</math>" for part in (_at_point(potential) + op("="), *terms))
     return f"<span role='math' aria-label='{_spoken(_potential(potential))}'>{elements}</span>"
 
 

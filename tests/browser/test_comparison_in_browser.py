@@ -40,6 +40,13 @@ def test_another_energy_is_compared_with_the_view_that_was_kept(explorer: Explor
     # The sentence appears when both maps are complete.
     expect(explorer.text("starts have different outcomes")).to_be_visible()
     np.testing.assert_array_equal(explorer.column("difference"), expected)
+    # The subscript of px in the legend is below the letter.
+    legend = explorer.page.locator(".foot.legend span", has_text="h = 0.19")
+    middles = [
+        part.evaluate("part => { const {top, bottom} = part.getBoundingClientRect(); return top + bottom }")
+        for part in (legend, legend.locator("sub"))
+    ]
+    assert middles[1] > middles[0] + 4.0
     explorer.press("Swap the views")
     explorer.page.wait_for_url("**with_h=0.3**")
     explorer.wait_for_data("maps", "data.complete[0] && data.energy[0] == 0.19 && data.difference[0].length > 1")

@@ -94,6 +94,13 @@ def test_widgets_have_accessible_names(explorer: ExplorerPage) -> None:
     explorer.press("Close")
 
 
+def test_a_picture_in_focus_has_its_name_and_leaves_the_arrows_to_the_page(explorer: ExplorerPage) -> None:
+    explorer.page.get_by_role("group", name="Basins of escape", exact=True).locator(".bk-events").focus()
+    expect(explorer.page.get_by_role("img", name="Basins of escape", exact=True)).to_be_focused()
+    explorer.page.keyboard.press("ArrowRight")
+    explorer.wait_for_view("window=")
+
+
 def test_arrows_move_the_window(explorer: ExplorerPage) -> None:
     before = explorer.ranges("basins")
     explorer.page.keyboard.press("ArrowLeft")

@@ -6,9 +6,9 @@ const TEXT_TARGETS = `textarea, select, [contenteditable]:not([contenteditable=f
   [role=combobox], [role=listbox], [role=menu], [role=menubar], [role=spinbutton], [role=grid], [role=tree],
   [role=alertdialog], [role=dialog]:not([aria-modal=false]),
   input:not([type=range], [type=checkbox], [type=radio], [type=button])`
-/** Elements that use arrow keys. */
+/** Elements that use arrow keys. Pictures are groups that leave them to the page. */
 const ARROW_TARGETS = `[type=range], [type=radio], [role=slider], [role=radio], [role=radiogroup], [role=tab], [role=tablist],
-  [role=toolbar], [role=group]`
+  [role=toolbar], [role=group]:not(.bk-Figure)`
 /** Elements that the Enter key presses. */
 const ENTER_TARGETS = "button, a[href], summary, input, [role=button]"
 /** Smallest time between two messages of a key that is held down, in ms. */
@@ -84,12 +84,19 @@ function focusedElement() {
   return focused instanceof HTMLElement ? focused : null
 }
 
-/** Remove the frame that Bokeh draws around a picture in focus, unless the keyboard moved the focus. @param {Event} event */
-function updateFocusFrame(event) {
-  const [focused] = event.composedPath()
-  if (focused instanceof HTMLElement && focused.matches(".bk-events")) {
-    focused.style.outlineWidth = focused.matches(":focus-visible") ? "" : "0"
-  }
+/**
+ * Give a picture in focus a role and the name of its group, because Bokeh gives none. Remove the frame that Bokeh draws around it,
+ * unless the keyboard moved the focus.
+ *
+ * @param {Event} event
+ */
+function updateFocusedPicture(event) {
+  const [focused, ...around] = event.composedPath()
+  if (!(focused instanceof HTMLElement && focused.matches(".bk-events"))) return
+  const group = around.find(node => node instanceof Element && node.matches("[role=group]"))
+  focused.setAttribute("role", "img")
+  if (group instanceof Element) focused.setAttribute("aria-label", group.getAttribute("aria-label") ?? "")
+  focused.style.outlineWidth = focused.matches(":focus-visible") ? "" : "0"
 }
 
 /** Focus the first control of the drawer, once the drawer is on the page. @param {number} tries */
@@ -127,7 +134,7 @@ export function render({model, el}) {
   }
   el.setAttribute("aria-hidden", "true")
   document.addEventListener("keydown", sendKey)
-  for (const name of ["focusin", "keydown"]) document.addEventListener(name, updateFocusFrame)
+  for (const name of ["focusin", "keydown"]) document.addEventListener(name, updateFocusedPicture)
   // Entries of the history are numbered. An address with a higher number makes a new entry; others replace the present address.
   const page = crypto.getRandomValues(new Uint32Array(1))[0]
   let entry = 0
@@ -171,7 +178,7 @@ export function render({model, el}) {
     window.removeEventListener("popstate", sendEntry)
     for (const react of [sendIfNarrow, layOutRootsWithoutBoxes]) window.removeEventListener("resize", react)
     document.removeEventListener("keydown", sendKey)
-    for (const name of ["focusin", "keydown"]) document.removeEventListener(name, updateFocusFrame)
+    for (const name of ["focusin", "keydown"]) document.removeEventListener(name, updateFocusedPicture)
   })
   model.on("command", async () => {
     const {name, text} = model.command

@@ -127,3 +127,10 @@ def test_functions_are_fractions_roots_and_powers() -> None:
 def test_large_and_small_numbers_are_decimals(coefficient: float, written: str) -> None:
     formula = potential_formula(Potential("large", ((2, 0, coefficient), (0, 2, 0.5))))
     assert f"<mn>{written}</mn><msup><mi>x</mi>" in formula
+
+
+def test_lines_break_between_terms_which_have_the_space_of_their_signs_only() -> None:
+    text = potential_formula(POTENTIALS["C5"])
+    parts = text[text.index("<math") : text.rindex("</math>")].split("</math>")
+    assert len(parts) == 1 + len(POTENTIALS["C5"].terms)
+    assert [part for part in parts[1:] if not part.startswith("<wbr><math ")] == []
