@@ -191,7 +191,7 @@ def test_the_parts_of_the_page_stay_in_their_places_while_it_opens(open_explorer
 
 def test_on_a_phone_the_rest_scrolls_over_the_map(phone: ExplorerPage) -> None:
     top = figures(phone)["basins"][1]
-    phone.page.evaluate("window.scrollTo(0, 200)")
+    phone.page.evaluate("window.scrollTo(0, 300)")
     assert figures(phone)["basins"][1] == top
     hint = phone.text("Click a map: the orbit").bounding_box()
     assert hint is not None

@@ -9,12 +9,14 @@ from typing import Any
 import param
 from panel.custom import JSComponent
 
+from plots.browser.javascript import component_code
+
 
 # In the browser, Bokeh does not register classes whose name starts with an underscore.
 class FileSaver(JSComponent):
     """Sends files to the browser, which saves them in its download folder. The component has no size, but must be on the page."""
 
-    _esm = Path(__file__).with_name("file_saver.js")
+    _esm = component_code(Path(__file__).with_name("file_saver.js"))
 
     def __init__(self) -> None:
         super().__init__(width=0, height=0, margin=0, styles={"position": "absolute"})

@@ -2,7 +2,9 @@
 /** Connects the component on the page (`app/views/panels/engine_component.py`) with the modules. */
 
 import {Card} from "./gestures/card.js"
+import {Film} from "./gestures/film.js"
 import {Frames} from "../../../plots/browser/modules/workers/frames.js"
+import {number} from "../../../plots/browser/modules/numbers.js"
 import {highlightPixels} from "./painting/legend.js"
 import {Overlay} from "./painting/overlay.js"
 import {Relief} from "./painting/relief.js"
@@ -16,6 +18,9 @@ import {keepSharp} from "./gestures/sharpness.js"
 import {ShareStrip} from "./gestures/share_strip.js"
 import {storeOf} from "./view_store.js"
 
+/** Names of the commands that start an animation of the energy. */
+const STARTS = ["play", "film"]
+
 /**
  * Start the previews, the card and the animation of the energy.
  *
@@ -27,7 +32,7 @@ export function start(model, el) {
   if (!hasVectors()) {
     // Without vector instructions, the last map stays until the next map arrives, and the energy cannot be played.
     const endAnimation = () => {
-      if (model.command.name === "play") model.send_msg({playing: false})
+      if (STARTS.includes(model.command.name)) model.send_msg({playing: false})
     }
     model.on("command", endAnimation)
     endAnimation()
@@ -50,9 +55,11 @@ export function start(model, el) {
   /** @type {Preview} */
   const preview = new Preview(find, findSource, frames, overlay, relief, store)
   const startLine = new StartLine(el, () => overlay.isShown)
+  const film = new Film(el, "escapes-energy", () => `h = ${number(store.energy.value, 6)}`)
   const player = new EnergyPlayer(
     energy => store.energy.hold(energy),
     energy => {
+      film.end()
       store.energy.hold(Number(energy.toFixed(Math.max(model.command.decimals, 0))))
       store.energy.finish()
       model.send_msg({playing: false})
@@ -98,8 +105,9 @@ export function start(model, el) {
   }
   const runCommand = () => {
     const {name, low, high} = model.command
-    if (name === "play") player.start(store.energy.value, low, high)
-    else player.stop()
+    if (name === "stop") return player.stop()
+    if (name === "film") film.start()
+    player.start(store.energy.value, low, high)
   }
   // An energy of the server may arrive after the view.
   store.energy.listen(() => store.energy.isNewer || updatePresent())
@@ -108,5 +116,5 @@ export function start(model, el) {
   model.on("command", runCommand)
   receiveView()
   void receiveSystem()
-  if (model.command.name === "play") runCommand()
+  if (STARTS.includes(model.command.name)) runCommand()
 }

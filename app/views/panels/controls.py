@@ -38,6 +38,9 @@ _ON_AXIS = {0: "Energy is the horizontal axis here", 1: "Energy is the vertical 
 PLAY = "▶ Play"
 """Label of the button that starts the animation."""
 
+FILM = "● Film"
+"""Label of the button that starts the animation and saves a film of it."""
+
 STOP = "■ Stop"
 """Label of the button that stops the animation."""
 
@@ -90,6 +93,7 @@ class Controls:
         )
         self.energy = EnergySlider(name="energy", sizing_mode="stretch_width", margin=(0, 10), css_classes=["energy"])
         self.play = button(PLAY, engine.play, min_width=84, css_classes=["half", "play-energy"], margin=(0, 10), align="end")
+        self.film = button(FILM, engine.film, css_classes=["half", "film-energy"], margin=(0, 10, 0, 0), align="end")
         self.exact_energy = EnergyBox(sizing_mode="stretch_width", css_classes=["half", "exact-energy"], margin=(0, 0, 0, 10))
         self.facts = TextPane(margin=(6, 10), sizing_mode="stretch_width", css_classes=["facts"])
         self.layers = LayerSwitches(state)
@@ -98,13 +102,14 @@ class Controls:
         state.param.watch(lambda *events: layer_fold.rebuild(), ["layers", "compared"])
         self._folds = [Fold("Quality and colours", self._build_quality), layer_fold]
         engine.param.watch(lambda event: self.play.param.update(label=STOP if event.new else PLAY), "playing")
+        engine.param.watch(lambda event: self.film.param.update(disabled=event.new), "playing")
         self._follow_system()
         self._connect()
 
     def layout(self) -> list[pn.viewable.Viewable]:
         """Return the parts of a column: system, plane, exact energy, quality and layers. The energy slider is elsewhere."""
         system = [self.case, self.other, self.facts, self.plane, self.axes]
-        energy = [self.exact_energy, self.play]
+        energy = [self.exact_energy, self.play, self.film]
         return [*system, *energy, *(part for fold in self._folds for part in fold.parts())]
 
     def _begin_touch(self) -> None:
@@ -200,7 +205,7 @@ class Controls:
             notes.append(f"C = {format_number(state.potential.jacobi_constant(state.energy), 9)}, the Jacobi constant")
         note = "; ".join(notes)
         self.energy.param.update(disabled=is_energy_axis, note=_ON_AXIS[state.plane.energy_axis] if is_energy_axis else note)
-        self.exact_energy.disabled = self.play.disabled = is_energy_axis
+        self.exact_energy.disabled = self.play.disabled = self.film.disabled = is_energy_axis
 
 
 def _openings_legend(openings: Sequence[float]) -> str:

@@ -57,7 +57,7 @@ class BrowserEngine(ViewStore):
     address = param.String(default=ADDRESS, doc="address of the first module")
     system = param.Dict(default={}, doc="see `BrowserSystem.to_dict`")
     view = param.Dict(default={}, doc="see `describe_view`")
-    command = param.Dict(default={}, doc="name: play or stop; low, high, decimals; number that makes repeats differ")
+    command = param.Dict(default={}, doc="name: play, film or stop; low, high, decimals; number that makes repeats differ")
     playing = param.Boolean(default=False, doc="whether an animation of the energy is running")
 
     _esm = component_code(Path(__file__).with_suffix(".js"))
@@ -89,11 +89,18 @@ class BrowserEngine(ViewStore):
 
     def play(self) -> None:
         """Animate the energy up to its highest value; from there, begin at the lowest. Stop a running animation."""
+        self._animate("play")
+
+    def film(self) -> None:
+        """Do the same as `play`, and let the browser save a film of it."""
+        self._animate("film")
+
+    def _animate(self, name: str) -> None:
         if self.playing:
             self.stop()
         elif self._state.plane.energy_axis is None:
             self.playing = True
-            self._send_command("play")
+            self._send_command(name)
 
     def stop(self) -> None:
         """Stop the animation at the current energy."""

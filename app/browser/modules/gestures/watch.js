@@ -9,6 +9,7 @@ import {count as whole, number, percentWithDecimal} from "../../../../plots/brow
 import {cover} from "../../../../plots/browser/modules/painting/canvas.js"
 import {mapPictures, onMoved, wellPicture} from "../painting/pictures.js"
 import {drawSurvival} from "../painting/survival_chart.js"
+import {Film} from "./film.js"
 import {onPresent, present} from "./present.js"
 
 /** Longest time of the player, in units of the well. */
@@ -92,7 +93,7 @@ class EnsemblePlayer {
     el.replaceChildren(
       makeElement("div", {className: "row"}, this.#where, this.#count, this.#otherStartsButton),
       makeElement("label", {className: "row radius"}, "Radius ", this.#radius, this.#radiusOutput),
-      makeElement("div", {className: "row"}, this.#playButton, this.#stepButton),
+      makeElement("div", {className: "row"}, this.#playButton, this.#stepButton, this.#filmButton),
       makeElement("div", {className: "row"}, this.#timeSlider, this.#timeOutput),
       makeElement(
         "div",
@@ -117,6 +118,7 @@ class EnsemblePlayer {
   #otherStartsButton = makeElement("button", {type: "button", className: "bk-btn"}, "Other starts")
   #playButton = makeElement("button", {type: "button", className: "bk-btn play"})
   #stepButton = makeElement("button", {type: "button", className: "bk-btn"}, "Step")
+  #filmButton = makeElement("button", {type: "button", className: "bk-btn"}, "● Film")
   #timeSlider = makeElement("input", {type: "range", min: 0, max: SLIDER_STEPS, step: 1, value: 0})
   #timeOutput = makeElement("output")
   #radius = makeElement("input", {type: "range", step: 0.5})
@@ -129,6 +131,8 @@ class EnsemblePlayer {
   #chart = makeElement("canvas", {className: "survival"})
   #wellCanvas = makeElement("canvas")
   #sectionCanvas = makeElement("canvas")
+  /** The film under way. @type {Film | null} */
+  #film = null
   /** @type {Integrator | null} */
   #integrator = null
   /** @type {Ensemble | null} */
@@ -151,6 +155,7 @@ class EnsemblePlayer {
     this.#radius.oninput = () => this.#choose({radius: Number(this.#radius.value)})
     this.#otherStartsButton.onclick = () => this.#choose({seed: model.seed + 1})
     this.#playButton.onclick = () => this.#setPlaying(this.#playFrame === 0)
+    this.#filmButton.onclick = () => this.#playFilm()
     this.#stepButton.onclick = () => this.#goTo(PACES[this.#pace.value](this.#time, STEP_SECONDS))
     this.#timeSlider.oninput = () => this.#goTo((this.#timeSlider.valueAsNumber / SLIDER_STEPS) * LONGEST_TIME)
     model.on("places", () => {
@@ -232,6 +237,7 @@ class EnsemblePlayer {
   #setPlaying(isPlaying) {
     cancelAnimationFrame(this.#playFrame)
     this.#playFrame = 0
+    if (!isPlaying) this.#endFilm()
     // While playing, most frames do not write the numbers, so write them at a pause.
     if (!isPlaying || !this.#ensemble) return this.#draw()
     if (this.#hasEnded) this.#goToBegin()
@@ -246,6 +252,23 @@ class EnsemblePlayer {
     }
     this.#playFrame = requestAnimationFrame(tick)
     this.#labelPlay()
+  }
+
+  /** Play from the beginning, and save a film that ends with the next pause. */
+  #playFilm() {
+    const host = present()?.host
+    if (!host) return
+    this.#setPlaying(false)
+    this.#goToBegin()
+    const energy = () => number(present()?.scene()?.energy ?? NaN, 6)
+    this.#film = new Film(host, "escapes-orbits", () => `h = ${energy()}, ${this.#timeOutput.textContent}`)
+    this.#film.start()
+    this.#setPlaying(true)
+  }
+
+  #endFilm() {
+    this.#film?.end()
+    this.#film = null
   }
 
   /** Whether the time has reached the end of the present pace. */
@@ -275,7 +298,8 @@ class EnsemblePlayer {
   #draw() {
     const [ensemble, shown] = [this.#ensemble, present()]
     this.#labelPlay()
-    for (const control of [this.#playButton, this.#stepButton, this.#timeSlider]) control.disabled = !ensemble?.count
+    for (const control of [this.#playButton, this.#stepButton, this.#filmButton, this.#timeSlider])
+      control.disabled = !ensemble?.count
     this.#note.textContent = this.#explain()
     if (!ensemble || !shown) {
       for (const canvas of [this.#wellCanvas, this.#sectionCanvas]) canvas.style.display = "none"
@@ -414,6 +438,7 @@ class EnsemblePlayer {
   }
 
   #end() {
+    this.#endFilm()
     cancelAnimationFrame(this.#playFrame)
     cancelAnimationFrame(this.#outcomesFrame)
     this.#ignorePage()
