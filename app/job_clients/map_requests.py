@@ -117,7 +117,7 @@ class MapRequests:
     def sharpen(self, pixels: int) -> None:
         """Request the complete map in view with more pixels, for a picture with this number of pixels along a side on the screen.
 
-        All other computations go first, and only the view changes: numbers and files are those of the map of the view state.
+        All other computations go first, and only pictures change: numbers and data are those of the map of the view state.
         With 0 pixels, or if the map has enough, a request under way is cancelled.
         """
         present = self._complete_map

@@ -158,12 +158,13 @@ class MapPresenter:
             self.view.show(frame, columns)
             self.view.grid.mark_stale(False)
             self.progress.show(frame)
-            self._results.frame = frame
+            self._results.param.update(frame=frame, sharper_map=None)
 
     def map_sharpened(self, sharper_map: EscapeMap, columns: dict[str, list[Any]]) -> None:
         """Paint the complete map with more pixels."""
         with pn.io.hold():
             self.view.sharpen(sharper_map, columns)
+            self._results.sharper_map = sharper_map
 
     def map_stopped(self) -> None:
         """Show that the map is cancelled."""

@@ -93,3 +93,6 @@ _LEAST_PANEL_WIDTH = 16.0
 
 SCREEN = FigureStyle(width=29.0, dpi=180.0, font_size=12.0)
 """Style of figures on a screen, such as those of the reproduction and of notebooks."""
+
+POSTER = FigureStyle(width=29.7, dpi=300.0, font_size=14.0)
+"""Style of a poster, as wide as a sheet of A3."""

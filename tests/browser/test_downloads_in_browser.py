@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from PIL import Image
 from playwright.sync_api import expect
 
 from engine import CASES, MapSpec, Plane, compute_map
@@ -52,6 +53,15 @@ def test_a_figure_can_be_downloaded_as_pdf_of_a_given_width(small: ExplorerPage)
     box = re.search(rb"/MediaBox \[ ?0 0 ([0-9.]+)", data)
     assert box is not None
     assert float(box[1]) == pytest.approx(8.5 / 2.54 * 72.0, abs=0.01)
+
+
+def test_a_poster_is_as_wide_as_a_sheet_at_300_pixels_per_inch(small: ExplorerPage) -> None:
+    small.page.get_by_label("What to draw").select_option("Basins of escape")
+    name, data = download_file(small, "Save poster")
+    assert re.fullmatch(r"poster-.*basins-of-escape\.png", name)
+    with Image.open(io.BytesIO(data)) as poster:
+        assert poster.width == pytest.approx(29.7 / 2.54 * 300.0, abs=1.0)
+        assert poster.info["dpi"] == pytest.approx((300.0, 300.0), abs=0.1)
 
 
 def test_the_maps_can_be_downloaded_as_netcdf(small: ExplorerPage) -> None:

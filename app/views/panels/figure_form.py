@@ -15,7 +15,7 @@ from app.browser.inputs.counted_inputs import NumberBox
 from app.job_clients.shown_results import ShownResults
 from app.state.view_state import ViewState
 from app.views.components.texts import StatusPane
-from app.views.components.widgets import SegmentedControl, Switches, button
+from app.views.components.widgets import SegmentedControl, Switches, button, flex_row
 from engine import EscapeMap
 from engine.slices.axes import highest_energy
 from plots.layers.table import LAYERS_BY_PICTURE, TITLES
@@ -26,7 +26,7 @@ from plots.printed.figure_files import (
     study_figure_bytes,
     well_figure_bytes,
 )
-from plots.printed.figure_style import FigureFormat, FigureStyle
+from plots.printed.figure_style import POSTER, FigureFormat, FigureStyle
 from plots.studies.table import STUDIES
 
 Make = Callable[[FigureFormat, FigureStyle], bytes]
@@ -83,6 +83,7 @@ class FigureForm:
         self.format = SegmentedControl(label="Format", options=formats, value=FigureFormat.PNG, margin=(6, 10))
         self.titles = Switches(label="Titles and provenance", options=[_TITLES], value=[_TITLES], margin=(6, 10))
         self.save = button("Save figure", self._on_save, kind="primary", margin=(5, 10, 5, 0))
+        self.poster = button("Save poster", self._on_poster, margin=(5, 10, 5, 0))
         self.copy = ImageCopier(self._on_copy, on_copied, margin=(5, 0))
         self.text = StatusPane("", margin=(0, 10), css_classes=["quiet"])
         results.param.watch(lambda *events: self._offer(), ["frame", "analyses", "orbits", "studies"])
@@ -99,7 +100,7 @@ class FigureForm:
             for name, (label, step) in _NUMBERS.items()
         ]  # fmt: skip
         numbers = pn.Row(*boxes, margin=0, sizing_mode="stretch_width")
-        return [self.what, self.format, numbers, self.titles, pn.Row(self.save, self.copy, margin=0), self.text]
+        return [self.what, self.format, numbers, self.titles, flex_row(self.save, self.poster, self.copy), self.text]
 
     def _offer(self) -> None:
         """Offer the figures that the results allow. Keep the chosen figure, because the next map may allow it again."""
@@ -113,7 +114,7 @@ class FigureForm:
         disabled = title not in figure_choices(self._results, self._state)
         if disabled or self.save.disabled:
             self._show_text(f"{title}: this is not computed yet." if disabled else "")
-        self.save.disabled = self.copy.disabled = disabled
+        self.save.disabled = self.poster.disabled = self.copy.disabled = disabled
 
     def style(self) -> FigureStyle | None:
         """Return the style. If a number is not in its range, show the error and return None."""
@@ -137,15 +138,21 @@ class FigureForm:
         self._style[name] = number
 
     def _on_save(self) -> None:
-        save = self._saver.save
-        self._begin(self.format.value, lambda name, content: None if content is None else save(name, content))
+        self._begin(self.format.value, self.style(), self._send_file)
+
+    def _on_poster(self) -> None:
+        self._begin(FigureFormat.PNG, POSTER, lambda name, content: self._send_file(f"poster-{name}", content))
 
     def _on_copy(self) -> None:
-        self._begin(FigureFormat.PNG, lambda name, content: self.copy.send(content))
+        self._begin(FigureFormat.PNG, self.style(), lambda name, content: self.copy.send(content))
 
-    def _begin(self, format: FigureFormat, send: Send) -> None:
-        """Make the figure from the present results, and send it, or show an error."""
-        figure, style = self.figure(), self.style()
+    def _send_file(self, name: str, content: bytes | None) -> None:
+        if content is not None:
+            self._saver.save(name, content)
+
+    def _begin(self, format: FigureFormat, style: FigureStyle | None, send: Send) -> None:
+        """Make the figure from the present results, and send it, or show an error. That of a missing style is shown already."""
+        figure = self.figure()
         if figure is None or style is None:
             send("", None)
             return
@@ -173,8 +180,9 @@ def figure_choices(shown: ShownResults, state: ViewState) -> dict[str, Make]:
     choices: dict[str, Make] = {}
     curves = [one.curves for one in shown.orbits if one.curves is not None]
     frame = shown.whole_map
-    if frame is not None:
-        choices |= _map_choices(frame, shown, state)
+    drawn_map = shown.drawn_map
+    if frame is not None and drawn_map is not None:
+        choices |= _map_choices(drawn_map, shown, state)
         spec = frame.spec
         energy = highest_energy(spec.energy)
         choices[WELL] = partial(well_figure_bytes, spec.potential, energy, curves, state.colours)

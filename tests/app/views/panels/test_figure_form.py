@@ -152,3 +152,13 @@ def test_too_many_pixels_are_named(form: FigureForm, shown: ShownResults) -> Non
     run_on_new_loop(lambda: form.make(draw, sent.append))
     assert form.text.object.startswith("dpi=1200: must be at most ")
     assert sent == [None]
+
+
+def test_figures_have_the_most_pixels_of_the_map_unless_layers_have_fewer(results: ShownResults) -> None:
+    sharper = compute_map(replace(results.frame.spec, resolution=(30, 30)))
+    results.param.update(analyses={}, sharper_map=sharper)
+    assert results.drawn_map is sharper
+    results.analyses = {"judge": compute_regularity(results.frame)}
+    assert results.drawn_map is results.frame
+    results.param.update(analyses={}, frame=replace(results.frame, complete=False), sharper_map=None)
+    assert results.drawn_map is None
