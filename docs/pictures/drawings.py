@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from docs.pictures.introduction import blob, energies, exits, maps, tubes, well
-from docs.pictures.panels import CASE, ENERGY, SIDE, STYLE, mark_section, new_panels
+from docs.pictures.panels import CASE, ENERGY, SIDE, STYLE, mark_section, new_panels, show
 from docs.pictures.rotating import copenhagen, earth_moon, four_hills, star_cluster
 from engine import (
     CASES,
@@ -85,7 +85,7 @@ def cases() -> Figure:
     """Draw the wells of the three cases."""
     figure, panels = new_panels(3, 8.5)
     for axes, case in zip(panels, CASES.values(), strict=True):
-        case.plot(axes)
+        show(axes, case, f"{case.name}: escape energy {case.escape_energy:.6g}")
     return figure
 
 
@@ -93,7 +93,7 @@ def potentials() -> Figure:
     """Draw some wells of the catalogue."""
     figure, panels = new_panels(3, 8.5)
     for axes, name in zip(panels, ("C5", "C8", "One exit"), strict=True):
-        POTENTIALS[name].plot(axes)
+        show(axes, POTENTIALS[name], f"{name}: escape energy {POTENTIALS[name].escape_energy:.6g}")
     return figure
 
 
@@ -105,7 +105,7 @@ def sali() -> Figure:
     starts = start_states(case, SECTION, energy, np.array([0.4, 0.58]), np.array([0.2, 0.0]))
     orbits = [integrate_orbit(case, start, 2e4) for start in starts]
     for orbit, colour in zip(orbits, DEFAULT_COLOURS.orbits, strict=False):
-        mark_section(left, orbit, window, colour)
+        mark_section(left, orbit, colour)
     (quantity,) = (one for one in ORBIT_QUANTITIES if one.name == "sali")
     draw_quantity(right, quantity, [compute_orbit_curves(case, orbit) for orbit in orbits], DEFAULT_COLOURS)
     draw_limits(left, case, SECTION, energy, window)
@@ -119,10 +119,9 @@ def trust() -> Figure:
     figure, (growth, basins, pixels) = new_panels(3, 9.0)
     frame = compute_map(MapSpec(CASE, Plane.X_PX, ENERGY, (200, 200), t_max=1e4))
     first, second = start_states(CASE, Plane.X_PX, ENERGY, np.array([-0.3, -0.3 + 1e-11]), np.zeros(2))
-    compute_separation(CASE, first, second, 200.0).plot(growth)
-    set_title(growth, "Distance of two orbits")
+    show(growth, compute_separation(CASE, first, second, 200.0), "Distance of two orbits")
     draw_picture(basins, frame, "basins", DEFAULT_COLOURS)
-    compute_trust(frame).plot(pixels)
+    show(pixels, compute_trust(frame), "Pixels to trust")
     return figure
 
 
@@ -133,12 +132,13 @@ def basin_entropy() -> Figure:
     draw_picture(left, frame, "basins", DEFAULT_COLOURS)
     boxes = frame.fate.reshape(12, 5, 12, 5).swapaxes(1, 2)
     entropies = [[compute_basin_entropy(box).s_b for box in row] for row in boxes]
-    image = right.imshow(entropies, origin="lower", extent=(0.0, 1.0, 0.0, 1.0), cmap="cividis")
+    window = frame.spec.find_window()
+    image = right.imshow(entropies, origin="lower", extent=window.edges, cmap="cividis")
     figure.colorbar(image, ax=right, label="entropy of the box")
     for axes in (left, right):
-        axes.hlines(np.arange(13) / 12.0, 0.0, 1.0, color=LIGHT.halo, linewidth=0.4)
-        axes.vlines(np.arange(13) / 12.0, 0.0, 1.0, color=LIGHT.halo, linewidth=0.4)
-    show_window(right, frame.spec.find_window(), "x", "px")
+        axes.hlines(np.linspace(*window.ranges[1], 13), *window.ranges[0], color=LIGHT.halo, linewidth=0.4)
+        axes.vlines(np.linspace(*window.ranges[0], 13), *window.ranges[1], color=LIGHT.halo, linewidth=0.4)
+    show_window(right, window, "x", "px")
     set_title(right, "Entropies of the boxes")
     return figure
 
@@ -148,8 +148,7 @@ def wada() -> Figure:
     figure, (left, right) = new_panels(2, 11.0)
     frame = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.25, (SIDE, SIDE), t_max=1e4))
     draw_picture(left, frame, "basins", DEFAULT_COLOURS)
-    compute_wada_test(frame).plot(right)
-    set_title(right, "Share of the boundary that is close to all basins")
+    show(right, compute_wada_test(frame), "Share of the boundary that is close to all basins")
     return figure
 
 
@@ -158,15 +157,14 @@ def uncertainty_exponent() -> Figure:
     figure, panels = new_panels(2, 10.0, sharey=True)
     for axes, energy in zip(panels, (0.2, 0.3), strict=True):
         found = compute_uncertainty_exponent(MapSpec(CASES["II"], Plane.X_PX, energy), work=3e7)
-        found.plot(axes)
-        set_title(axes, f"h = {energy}: α = {found.exponent:.2f}")
+        show(axes, found, f"h = {energy}: α = {found.exponent:.2f}")
     return figure
 
 
 def escape_laws() -> Figure:
     """Draw the share of starts inside against time, with the exponential law and the power law."""
     figure, (axes,) = new_panels(1, 10.0, width=18.0)
-    fit_decay_laws(compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.2, (224, 224), t_max=1e4))).plot(axes)
+    show(axes, fit_decay_laws(compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.2, (224, 224), t_max=1e4))))
     return figure
 
 
@@ -221,7 +219,7 @@ def curves() -> Figure:
     """Draw shares of the outcomes against energy."""
     figure, (axes,) = new_panels(1, 9.5, width=18.0)
     values = tuple(float(h) for h in np.linspace(0.25, 0.45, 41))
-    compute_sweep(SweepSpec(CASES["III"], Plane.X_PX, values, (80, 80), t_max=1e4, measures="shares")).plot(axes)
+    show(axes, compute_sweep(SweepSpec(CASES["III"], Plane.X_PX, values, (80, 80), t_max=1e4, measures="shares")))
     return figure
 
 
@@ -246,12 +244,12 @@ def evidence() -> Figure:
     case, energy = CASES["III"], 0.30
     frame = compute_map(MapSpec(case, Plane.X_PX, energy, (SIDE, SIDE), t_max=1e4))
     window = frame.spec.find_window()
-    draw_pixels(left, rgba(list(_EVIDENCE_COLOURS.values()))[frame.evidence][::-1], window, window)
+    draw_pixels(left, rgba(list(_EVIDENCE_COLOURS.values()))[frame.evidence][::-1], window)
     set_title(left, "Why an orbit is called bounded")
     starts = start_states(case, SECTION, energy, np.array([0.3, 0.6]), np.zeros(2))
     for start, colour in zip(starts, DEFAULT_COLOURS.orbits, strict=False):
         orbit = integrate_orbit(case, start, 1e4)
-        mark_section(right, orbit, window, colour)
+        mark_section(right, orbit, colour)
     set_title(right, "Two orbits on the section y = 0")
     for axes in (left, right):
         draw_limits(axes, case, SECTION, energy, window)
@@ -270,7 +268,7 @@ def origins() -> Figure:
     figure, panels = new_panels(2, 11.0)
     spec = MapSpec(CASE, Plane.X_PX, 0.3, (SIDE, SIDE), t_max=1e3)
     draw_picture(panels[0], compute_map(spec), "basins", DEFAULT_COLOURS)
-    compute_origin_fates(spec).plot(panels[1])
+    show(panels[1], compute_origin_fates(spec), "Origin and exit")
     return figure
 
 

@@ -64,12 +64,13 @@ def _draw_thumbnail(preset: Preset) -> Image.Image:
     figure = Figure(figsize=(SIDE / _DPI, SIDE / _DPI), dpi=_DPI, facecolor="none")
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set_axis_off()
-    draw_pixels(axes, pixels, frame.spec.find_window(), frame.spec.find_window())
+    draw_pixels(axes, pixels, frame.spec.find_window())
     if strokes:
         draw_strokes(axes, strokes, frame.spec.find_window(), DEFAULT_COLOURS)
     else:
         _draw_curves(axes, frame, view)
-    axes.set(xlim=(0.0, 1.0), ylim=(0.0, 1.0))
+    x_range, y_range = frame.spec.find_window().ranges
+    axes.set(xlim=x_range, ylim=y_range)
     file = BytesIO()
     figure.savefig(file, format="png")
     return Image.open(file).convert("RGBA")

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from matplotlib.figure import Figure
 
-from docs.pictures.panels import CASE, ENERGY, SIDE, STYLE, new_panels, window_shares
+from docs.pictures.panels import CASE, ENERGY, SIDE, STYLE, new_panels, show
 from engine import (
     CASES,
     Fate,
@@ -39,7 +39,7 @@ from plots.printed.window_axes import draw_curve, draw_limits, draw_strokes, sho
 def well() -> Figure:
     """Draw case I with its saddles, and two orbits above the escape energy."""
     figure, (left, right) = new_panels(2, 11.5)
-    CASE.plot(left)
+    show(left, CASE, f"{CASE.name}: escape energy {CASE.escape_energy:.6g}")
     starts = start_states(CASE, Plane.X_Y, ENERGY, np.array([-0.2, -0.1]), np.array([-0.2, -0.1]))
     draw_path(right, CASE, [compute_orbit_curves(CASE, integrate_orbit(CASE, start, 300.0)) for start in starts], DEFAULT_COLOURS)
     set_title(right, f"Two orbits at h = {ENERGY}")
@@ -65,7 +65,7 @@ def blob() -> Figure:
         inside = [orbit for orbit in orbits if orbit.t[-1] >= t]
         places = np.array([[np.interp(t, orbit.t, orbit.x), np.interp(t, orbit.t, orbit.y)] for orbit in inside])
         colours = [DEFAULT_COLOURS.channels[orbit.fate - 1] if orbit.fate > 0 else DEFAULT_COLOURS.bounded for orbit in inside]
-        axes.scatter(*window_shares(places, window), s=1.5, c=colours, zorder=3, linewidths=0.0)
+        axes.scatter(*places.T, s=1.5, c=colours, zorder=3, linewidths=0.0)
         show_window(axes, window, "x", "y", equal=True)
         set_title(axes, f"t = {t:g}")
     return figure

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
+from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from engine import CASES, Orbit, Window
-from plots.printed.figure_axes import new_figure
+from engine import CASES, Orbit, Result
+from plots.printed.figure_axes import new_figure, style_axes
 from plots.printed.figure_style import FigureStyle
 
 STYLE = FigureStyle(width=24.0, dpi=100.0, font_size=12.0, titles=False)
@@ -28,13 +28,13 @@ def new_panels(count: int, height: float, *, width: float = STYLE.width, sharey:
     return figure, list(figure.subplots(1, count, squeeze=False, sharey=sharey)[0])
 
 
-def mark_section(axes: Axes, orbit: Orbit, window: Window, colour: str) -> None:
-    """Mark the upward crossings of y = 0 of an orbit, in axes that show a window of (x, px)."""
-    axes.scatter(*window_shares(orbit.find_section_crossings(), window), s=2.0, color=colour, linewidths=0.0)
+def show(axes: Axes, result: Result, title: str = "") -> None:
+    """Draw a result with its legend in the style of the drawings."""
+    with rc_context({"font.size": STYLE.font_size}):
+        result.plot(axes, legend=True)
+    style_axes(axes, labels=(axes.get_xlabel(), axes.get_ylabel()), title=title)
 
 
-def window_shares(points: np.ndarray, window: Window) -> np.ndarray:
-    """Convert points of shape (n, 2) to shares of a window, of shape (2, n)."""
-    low = [window.x_low, window.ordinate_low]
-    shares: np.ndarray = (points - low) / ([window.x_high - window.x_low, window.ordinate_high - window.ordinate_low])
-    return shares.T
+def mark_section(axes: Axes, orbit: Orbit, colour: str) -> None:
+    """Mark the upward crossings of y = 0 of an orbit, in axes of (x, px)."""
+    axes.scatter(*orbit.find_section_crossings().T, s=2.0, color=colour, linewidths=0.0)

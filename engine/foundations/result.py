@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
 
+    from engine.foundations.drawing import Drawing
+
 
 class _NamesForUsers(type):
     """Metaclass that hides the `inner_names` of results from `dir` of a class, and thus from completion."""
@@ -89,28 +91,35 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
         """Labels of fates 1, 2 and so on, which explain `codes`; empty if unknown."""
         return ()
 
-    def plot(self, ax: Axes | None = None, **options: Any) -> Axes:
-        """Draw the result.
+    def plot(self, ax: Axes | None = None, **options: Any) -> Drawing:
+        """Draw the result in Matplotlib axes.
+
+        Several results can be drawn in the same axes. The first one labels the axes and sets limits and aspect, if these are not
+        set yet; what is set before or afterwards stays.
 
         Parameters
         ----------
         ax
-            Matplotlib axes; None for new ones of `matplotlib.pyplot`.
+            The axes; None for new ones of `matplotlib.pyplot`, with a title, a legend and a colour bar.
         options
-            ``palette``: ``"safe"`` or ``"paper"`` for all results; ``picture`` of a map: ``"basins"``, ``"times"``,
-            ``"crossings"``, ``"characters"`` or ``"curves"``; ``show`` of an orbit: ``"path"``, ``"sali"``,
-            ``"exponent"`` or ``"r2"``; ``measure`` of a sweep: a name of `MEASURES`, by default the first measure with a picture.
+            For all results: ``palette``, ``"safe"``, ``"paper"`` or a mapping from fates to colours of Matplotlib, such as
+            ``{1: "tab:red", Fate.BOUNDED: "0.8"}``; ``legend`` and ``colorbar``, whether they are drawn. ``cmap`` and ``norm`` of
+            pictures with a colour scale, as for `matplotlib.axes.Axes.imshow`. ``picture`` of a map: ``"basins"``, ``"times"``,
+            ``"crossings"``, ``"characters"`` or ``"curves"``. ``show`` of an orbit: ``"path"``, ``"crossings"`` of its section,
+            ``"sali"``, ``"exponent"`` or ``"r2"``. ``measure`` of a sweep: a name of `MEASURES`, by default the first one with a
+            picture.
 
         Returns
         -------
-        The axes, in the coordinates of the result, so that more can be drawn on top.
+        Drawing
+            The axes and all artists.
 
         Raises
         ------
         TypeError
             If the result has no picture, or an option does not apply to it.
         ValueError
-            If the value of an option is not legal.
+            If the value of an option is not legal, or the axes show other coordinates than those of the result.
         """
         return load_pictures().plot_result(self, ax, **options)
 

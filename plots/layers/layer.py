@@ -51,7 +51,7 @@ class Code:
     def entry(self, palette: Palette) -> Entry:
         """Return the entry of a legend."""
         # The remainder is 0 for a code with one colour, which all palettes share.
-        index = list(PALETTES.values()).index(palette)
+        index = [each.name for each in PALETTES.values()].index(palette.name)
         return Entry(self.label, self.colours[index % len(self.colours)])
 
 

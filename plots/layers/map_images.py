@@ -9,7 +9,7 @@ import numpy as np
 
 from engine import EscapeMap
 from plots.layers.layer import NO_ANALYSES, Analyses
-from plots.layers.table import LAYERS, PICTURES, TITLES
+from plots.layers.table import LAYERS, LAYERS_BY_PICTURE, PICTURES, TITLES
 from plots.pictures.image_columns import NO_LAYER, map_columns
 from plots.pictures.palette import Palette, rgba
 from plots.pictures.time_scale import TimeScale, fitted_scale
@@ -65,17 +65,47 @@ def picture_pixels(
     ValueError
         If `picture` is not one of `TITLES`.
     """
-    if picture not in TITLES:
-        raise ValueError(f"picture={picture!r}: must be one of {', '.join(TITLES)}")
-    shown_picture = PICTURES[picture]
-    columns = map_columns(frame) | layer_columns(frame, LAYERS)
-    for name, result in analyses.items():
-        columns |= result_columns(name, frame, result)
-    pixels = rgba(shown_picture.colours(palette))[columns[shown_picture.column][0]]
-    if shown_picture.has_times:
+    columns = _columns(frame, picture, analyses)
+    pixels = rgba(PICTURES[picture].colours(palette))[columns[PICTURES[picture].column][0]]
+    if PICTURES[picture].has_times:
         _paint_times(pixels, columns["escape_time"][0], palette, times or fitted_scale(frame))
     for name in analyses:
         _paint_over(pixels, name, picture, columns)
+    return _enlarge(pixels, frame)
+
+
+def picture_values(frame: EscapeMap, picture: str, analyses: Analyses = NO_ANALYSES) -> np.ndarray:
+    """Return the numbers of a picture whose legend has a scale.
+
+    Parameters
+    ----------
+    frame, picture, analyses
+        As in `picture_pixels`.
+
+    Returns
+    -------
+    numpy.ndarray
+        float32 of shape (rows, columns), row 0 on top; NaN where `picture_pixels` shows no number.
+    """
+    columns = _columns(frame, picture, analyses)
+    layer_pixels = LAYERS_BY_PICTURE[picture].pixels if picture in LAYERS_BY_PICTURE else None
+    values: np.ndarray = columns["escape_time" if layer_pixels is None else layer_pixels.value_column][0].copy()
+    for name in analyses:
+        values[_marks(name, picture, columns)[..., 3] > 0] = np.nan
+    return _enlarge(values, frame)
+
+
+def _columns(frame: EscapeMap, picture: str, analyses: Analyses) -> dict[str, list[Any]]:
+    if picture not in TITLES:
+        raise ValueError(f"picture={picture!r}: must be one of {', '.join(TITLES)}")
+    columns = map_columns(frame) | layer_columns(frame, LAYERS)
+    for name, result in analyses.items():
+        columns |= result_columns(name, frame, result)
+    return columns
+
+
+def _enlarge(pixels: np.ndarray, frame: EscapeMap) -> np.ndarray:
+    """Return one pixel per start, row 0 on top, for the pixels of a frame, row 0 lowest."""
     row_count, column_count = frame.fate.shape
     enlarged: np.ndarray = pixels.repeat(frame.stride, axis=0).repeat(frame.stride, axis=1)[:row_count, :column_count]
     return np.ascontiguousarray(enlarged[::-1])
@@ -89,10 +119,15 @@ def _paint_times(pixels: np.ndarray, escape_time: np.ndarray, palette: Palette, 
 
 def _paint_over(pixels: np.ndarray, name: str, picture: str, columns: dict[str, list[Any]]) -> None:
     """Paint the marks of a layer in place."""
+    marks = _marks(name, picture, columns)
+    pixels[marks[..., 3] > 0] = marks[marks[..., 3] > 0]
+
+
+def _marks(name: str, picture: str, columns: dict[str, list[Any]]) -> np.ndarray:
+    """Return the colours, of shape (rows, columns, 4), that a layer gives to the pixels of a picture; clear where it has none."""
     layer_pixels = LAYERS[name].pixels
     over = LAYERS[name].over_picture(picture)
     if layer_pixels is None or over is None or over.pixel_colours is None:
-        return
-    marks = rgba(over.pixel_colours)[columns[layer_pixels.column][0]]
-    is_marked = marks[..., 3] > 0
-    pixels[is_marked] = marks[is_marked]
+        return np.zeros((*columns["fate"][0].shape, 4), np.uint8)
+    marks: np.ndarray = rgba(over.pixel_colours)[columns[layer_pixels.column][0]]
+    return marks

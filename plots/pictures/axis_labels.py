@@ -15,7 +15,7 @@ FINEST_PLAIN_STEP = -4
 
 
 class Axis(NamedTuple):
-    """Name of an axis, and position (0 to 1 along the axis) and label of each tick."""
+    """Name of an axis, and position and label of each tick."""
 
     name: str
     ticks: list[tuple[float, str]]
@@ -60,8 +60,7 @@ def label_axis(name: str, low: float, high: float) -> Axis:
     else:
         labels = [f"{(value - offset.base).scaleb(-offset.exponent):f}" for value in values]
         name = offset.describe(name)
-    positions = [float(value - Decimal(low)) / (high - low) for value in values]
-    return Axis(name, [(position, label.replace("-", "−")) for position, label in zip(positions, labels, strict=True)])
+    return Axis(name, [(float(value), label.replace("-", "−")) for value, label in zip(values, labels, strict=True)])
 
 
 def _step(low: float, high: float) -> Decimal:

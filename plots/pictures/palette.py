@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cache, cached_property
 from itertools import accumulate
+from typing import Any
 
 import numpy as np
 
@@ -91,11 +92,13 @@ _OMITTED = re.compile(r"^exit |^bounded(?: and|,) | pixels$|(?::| \().*$")
 CLEAR = "#00000000"
 """Transparent."""
 
-# Colours of fates, translucent for light and dark pages.
-_FORBIDDEN = "#ffffff00"
-_OUTSIDE = "#b0904a48"
-_NOT_COMPUTED = "#7f9cc855"
-_FAILED = "#000000"
+# Colours of fates without an end, in all palettes, translucent for light and dark pages.
+_WITHOUT_END = {
+    Fate.NOT_COMPUTED: "#7f9cc855",
+    Fate.FAILED: "#000000",
+    Fate.OUTSIDE: "#b0904a48",
+    Fate.FORBIDDEN: "#ffffff00",
+}
 
 
 @dataclass(frozen=True)
@@ -108,8 +111,8 @@ class Palette:
         Displayed name.
     of_kinds
         Colours of the outcomes of each of `engine.systems.outcomes.KINDS`, such as exit channels 1 to 8.
-    bounded
-        Colour of bounded orbits.
+    of_fates
+        Colours of the fates that are not ends; forbidden starts are clear on light and dark pages.
     classes
         Colours of `CROSSING_CLASSES`, from light to dark.
     times
@@ -120,7 +123,7 @@ class Palette:
 
     name: str
     of_kinds: Mapping[str, tuple[str, ...]] = field(hash=False)
-    bounded: str
+    of_fates: Mapping[Fate, str] = field(hash=False)
     classes: tuple[str, ...]
     times: tuple[str, ...]
     orbits: tuple[str, ...]
@@ -136,6 +139,11 @@ class Palette:
         return tuple(to_hex(scale(place)) for place in range(256))
 
     @property
+    def bounded(self) -> str:
+        """Colour of bounded orbits."""
+        return self.of_fates[Fate.BOUNDED]
+
+    @property
     def channels(self) -> tuple[str, ...]:
         """Colours of the exit channels."""
         return self.of_kinds[Exit.key]
@@ -148,8 +156,7 @@ class Palette:
     @cached_property
     def outcomes(self) -> dict[Fate, Entry]:
         """Legend of fates that are not ends, in the order of the pixel codes."""
-        colours = (_NOT_COMPUTED, _FAILED, _OUTSIDE, _FORBIDDEN, self.bounded)
-        return {fate: Entry(label, colour) for (fate, label), colour in zip(OUTCOMES.items(), colours, strict=True)}
+        return {fate: Entry(label, self.of_fates[fate]) for fate, label in OUTCOMES.items()}
 
     @cached_property
     def crossing_entries(self) -> list[Entry]:
@@ -216,7 +223,7 @@ PAPER = Palette(
         "collision": ("#783060", "#a8a878", "#780000", "#483030"),
         "escape": ("#d8c0c0",),
     },
-    bounded="#8f8f8f",
+    of_fates={**_WITHOUT_END, Fate.BOUNDED: "#8f8f8f"},
     classes=("#e2e3fe", "#7db3f4", "#0787b6", "#005769", "#002a2d"),
     times=("#ffe0d6", "#fb9a80", "#dd4a6a", "#8b2b8c", "#3d1f7a", "#150a3c"),
     orbits=("#c30066", "#6987e7", "#43bea5", "#fa8f63", "#4b6d00"),
@@ -230,7 +237,7 @@ COLOUR_BLIND_SAFE = Palette(
         "collision": ("#3000d8", "#a83000", "#607878", "#606048"),
         "escape": ("#90d8a8",),
     },
-    bounded="#a6a6a6",
+    of_fates={**_WITHOUT_END, Fate.BOUNDED: "#a6a6a6"},
     classes=("#f8e1ff", "#dc9af4", "#93759c", "#703783", "#381543"),
     times=(),
     orbits=("#af2593", "#00c700", "#8e5700", "#99a7f0", "#2b6e60"),
@@ -247,11 +254,51 @@ DEFAULT_COLOURS = PALETTES[DEFAULT_PALETTE]
 """The palette of this name."""
 
 
-def find_palette(name: str) -> Palette:
-    """Return the palette with a name; ValueError for an unknown name."""
-    if name not in PALETTES:
-        raise ValueError(f"palette={name!r}: must be one of {', '.join(PALETTES)}")
-    return PALETTES[name]
+def find_palette(palette: str | Mapping[int, Any], outcomes: Sequence[Outcome] = ()) -> Palette:
+    """Return the palette with a name, or the default palette with other colours.
+
+    Parameters
+    ----------
+    palette
+        One of `PALETTES`, or colours of Matplotlib by fate.
+    outcomes
+        The outcomes with fates 1, 2 and so on; without them, all are exits.
+
+    Raises
+    ------
+    ValueError
+        If there is no such palette, fate or colour.
+    """
+    if isinstance(palette, Mapping):
+        return _recolour(DEFAULT_COLOURS, palette, outcomes)
+    if palette not in PALETTES:
+        raise ValueError(f"palette={palette!r}: must be one of {', '.join(PALETTES)}, or a mapping from fates to colours")
+    return PALETTES[palette]
+
+
+def _recolour(palette: Palette, colours: Mapping[int, Any], outcomes: Sequence[Outcome]) -> Palette:
+    of_kinds = {key: list(of_kind) for key, of_kind in palette.of_kinds.items()}
+    of_fates, count = dict(palette.of_fates), len(outcomes) or MOST_CHANNELS
+    for fate, colour in colours.items():
+        code = _hex_code(fate, colour)
+        if fate in range(1, count + 1):
+            outcome = outcome_of(fate, outcomes)
+            of_kind = of_kinds[outcome.kind.key]
+            of_kind[min(outcome.number, len(of_kind)) - 1] = code
+        elif fate in of_fates:
+            of_fates[Fate(fate)] = code
+        else:
+            raise ValueError(f"palette: fate={fate!r}: must be a Fate, or the number of an outcome, 1 to {count}")
+    return replace(palette, of_kinds={key: tuple(of_kind) for key, of_kind in of_kinds.items()}, of_fates=of_fates)
+
+
+def _hex_code(fate: int, colour: Any) -> str:
+    # Matplotlib is slow to import, and only pictures need it.
+    from matplotlib.colors import is_color_like, to_hex
+
+    if not is_color_like(colour):
+        raise ValueError(f"palette: colour of fate {fate}={colour!r}: must be a colour of Matplotlib")
+    return to_hex(colour, keep_alpha=True)
 
 
 MOST_CHANNELS = len(PAPER.channels)

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -73,10 +74,7 @@ def _draw_figure(charts: Sequence[Chart], figure: Figure, style: FigureStyle, co
 def draw_chart(axes: Axes, chart: Chart, style: FigureStyle = SCREEN, corner: Corner | None = "best") -> None:
     """Draw a chart with its axes. A legend with more than one entry is drawn in a corner; `corner` None omits the legend."""
     frame = chart.frame
-    for series in chart.series:
-        _draw_series(axes, series)
-    if frame.level is not None:
-        axes.axhline(frame.level[0], color=THRESHOLD, linestyle="--", linewidth=1.2, label=frame.level[1])
+    draw_series(axes, chart)
     for axis in frame.logarithmic:
         axes.set(**{f"{axis}scale": "log"})
     for axis, limits in zip("xy", chart.axis_limits, strict=True):
@@ -86,18 +84,27 @@ def draw_chart(axes: Axes, chart: Chart, style: FigureStyle = SCREEN, corner: Co
         add_panel_legend(axes, corner, style)
 
 
-def _draw_series(axes: Axes, series: Series) -> None:
+def draw_series(axes: Axes, chart: Chart) -> list[Artist]:
+    """Draw the series and the level of a chart, and return them."""
+    artists = [artist for series in chart.series for artist in _draw_one(axes, series)]
+    if chart.frame.level is not None:
+        value, label = chart.frame.level
+        artists.append(axes.axhline(value, color=THRESHOLD, linestyle="--", linewidth=1.2, label=label))
+    return artists
+
+
+def _draw_one(axes: Axes, series: Series) -> list[Artist]:
     if series.shape is Shape.BARS:
         left, right = series.bars or (series.x, series.x)
-        axes.bar(left, series.y, right - left, align="edge", color=series.colour)
-        return
+        return [*axes.bar(left, series.y, right - left, align="edge", color=series.colour)]
     # Matplotlib typesets a subscript such as S_b between dollar signs.
     label = re.sub(r"_(\w+)", r"$_{\1}$", series.label)
     shape = series.shape
-    axes.plot(
+    artists: list[Artist] = [*axes.plot(
         *series.curve, color=series.colour, linewidth=_WIDTHS.get(shape, _WIDTH), linestyle=_LINES.get(shape, "-"),
         marker=_MARKERS.get(shape, ""), markersize=_SIZES.get(shape, _SIZE), label=label,
         markerfacecolor="none" if shape is Shape.RINGS else series.colour, zorder=3 if shape is Shape.DASHED else 2,
-    )  # fmt: skip
+    )]  # fmt: skip
     if series.bars is not None:
-        axes.vlines(series.x, *series.bars, color=series.colour, alpha=0.6, linewidth=1.0)
+        artists.append(axes.vlines(series.x, *series.bars, color=series.colour, alpha=0.6, linewidth=1.0))
+    return artists

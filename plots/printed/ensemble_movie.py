@@ -18,7 +18,7 @@ from matplotlib.lines import Line2D
 from matplotlib.text import Text
 from matplotlib.ticker import LogLocator
 
-from engine import Fate, Potential, Window, compute_flux
+from engine import Fate, Potential, compute_flux
 from engine.foundations.extras import require_package
 from engine.results import SampledOrbits
 from plots.pictures.orbit_curves import find_well_window
@@ -54,7 +54,6 @@ class _Stage:
     """The figure, and the artists that change from frame to frame."""
 
     figure: Figure
-    window: Window
     particles: PathCollection
     survival_line: Line2D
     count_title: Text
@@ -126,7 +125,7 @@ def _draw_stage(potential: Potential, orbits: SampledOrbits, palette: Palette, s
     # One layout is enough, because the axes do not move between frames.
     figure.draw_without_rendering()
     figure.set_layout_engine("none")
-    return _Stage(figure, window, particles, survival_line, count_title)
+    return _Stage(figure, particles, survival_line, count_title)
 
 
 def _draw_chart(axes: Axes, potential: Potential, orbits: SampledOrbits, style: FigureStyle) -> Line2D:
@@ -152,11 +151,8 @@ def _draw_chart(axes: Axes, potential: Potential, orbits: SampledOrbits, style: 
 
 def _show_frame(stage: _Stage, orbits: SampledOrbits, index: int) -> None:
     """Show the orbits at the time with this index."""
-    window = stage.window
     t = float(orbits.t[0, index])
-    x_shares = (orbits.x[:, index] - window.x_low) / window.width
-    y_shares = (orbits.y[:, index] - window.ordinate_low) / window.height
-    stage.particles.set_offsets(np.column_stack([x_shares, y_shares]))
+    stage.particles.set_offsets(np.column_stack([orbits.x[:, index], orbits.y[:, index]]))
     escape_times = np.sort(orbits.escape_time[orbits.fate > Fate.BOUNDED])
     past_times = escape_times[escape_times <= t]
     count = len(orbits.fate)

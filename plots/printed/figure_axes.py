@@ -168,7 +168,7 @@ _HANDLES = {Mark.PATCH: _patch_handle, Mark.LINE: _line_handle, Mark.CHESSBOARD:
 def add_figure_legend(figure: Figure, handles: Sequence[Artist], style: FigureStyle = SCREEN, columns: int | None = None) -> None:
     """Add a legend for the whole figure below all panels, by default in one row."""
     column_count = len(handles) if columns is None else columns
-    _colour_text(figure.legend(handles=list(handles), loc="outside lower center", ncols=column_count, **_legend_style(style)))
+    _colour_text(figure.legend(handles=list(handles), loc="outside lower center", ncols=column_count, **legend_style(style)))
 
 
 def transform_below(axes: Axes, depth: float, left: float = 0.0) -> Transform:
@@ -177,38 +177,41 @@ def transform_below(axes: Axes, depth: float, left: float = 0.0) -> Transform:
     return axes.transAxes + offset
 
 
-def add_legend_below(axes: Axes, handles: Sequence[Artist], place: tuple[float, float], width: float, style: FigureStyle) -> None:
+def add_legend_below(
+    axes: Axes, entries: Mapping[str, Artist], place: tuple[float, float], width: float, style: Mapping[str, Any]
+) -> Legend:
     """Add a legend below a panel, in as many columns as fit.
 
     Parameters
     ----------
     axes
         The panel.
-    handles
-        Handles of the legend entries.
+    entries
+        Handles of the legend entries, by label.
     place
         Upper left corner of the legend: distances to the left of, and below, the lower left corner of the panel, in points.
     width
         Available width in points. Longer entries are wrapped.
     style
-        Style of the figure.
+        Options of `matplotlib.axes.Axes.legend`, such as `legend_style`.
     """
     left, depth = place
     options = {
         "loc": "upper left", "bbox_to_anchor": (0.0, 0.0), "bbox_transform": transform_below(axes, depth, left),
-        "borderaxespad": 0.0, "borderpad": 0.0, **_legend_style(style),
+        "borderaxespad": 0.0, "borderpad": 0.0, **style,
     }  # fmt: skip
-    labels = [str(handle.get_label()) for handle in handles]
+    labels, handles = [*entries], [*entries.values()]
     for columns in range(min(len(labels), _MOST_COLUMNS), 0, -1):
-        legend = axes.legend(list(handles), labels, ncols=columns, **options)
+        legend = axes.legend(handles, labels, ncols=columns, **options)
         width_ratio = width * figure_of(axes).dpi / POINTS_PER_INCH / legend.get_window_extent().width
         if width_ratio >= 1.0:
             break
     else:
         # A single column is too wide: wrap its labels.
         labels = [fill(label, max(1, int(width_ratio * max(map(len, labels))))) for label in labels]
-        legend = axes.legend(list(handles), labels, **options)
+        legend = axes.legend(handles, labels, **options)
     _colour_text(legend)
+    return legend
 
 
 def size_in_points(axes: Axes) -> tuple[float, float]:
@@ -224,7 +227,8 @@ def figure_of(artist: Artist) -> Figure:
     return figure
 
 
-def _legend_style(style: FigureStyle) -> dict[str, Any]:
+def legend_style(style: FigureStyle) -> dict[str, Any]:
+    """Return the options of the legends of a figure."""
     font = {"family": _FONT_FAMILIES, "size": style.font_size * 11.0 / 12.0}
     return {"frameon": False, "prop": font, "handlelength": 1.4, "handleheight": 0.9, "columnspacing": 1.3}
 

@@ -10,14 +10,12 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colorbar import Colorbar
-from matplotlib.colors import ListedColormap, LogNorm, Normalize
 from matplotlib.figure import Figure
 
 from engine import EscapeMap
 from plots.layers.layer import NO_ANALYSES, Analyses
-from plots.layers.map_images import picture_pixels
-from plots.layers.picture import ColourScale, Legend, ShownMap
-from plots.layers.table import LAYERS, PICTURES, TITLES, map_legend
+from plots.layers.picture import ColourScale, Legend
+from plots.layers.table import TITLES
 from plots.pictures.palette import Palette
 from plots.pictures.provenance import provenance_line
 from plots.pictures.time_scale import TimeScale, fitted_scale
@@ -27,6 +25,7 @@ from plots.printed.figure_axes import (
     fit_height,
     label_width,
     legend_handles,
+    legend_style,
     new_figure,
     set_font,
     set_title,
@@ -35,7 +34,8 @@ from plots.printed.figure_axes import (
     write_below,
 )
 from plots.printed.figure_style import POINTS_PER_INCH, SCREEN, FigureStyle
-from plots.printed.window_axes import draw_limits, draw_pixels, draw_strokes, labelled_curves, mark_starts, show_window
+from plots.printed.plane_picture import map_picture, scale_colours
+from plots.printed.window_axes import labelled, mark_starts, show_window
 
 # Distance from a map to the next element below the axis label, in units of the font size.
 _BELOW_AXIS = 3.7
@@ -109,9 +109,8 @@ def draw_map_figure(
     for axes, picture in zip(panels, pictures, strict=False):
         axes.set_label(picture)
         axes.set_box_aspect(1.0)
-        draw_picture(axes, frame, picture, palette, analyses, time_scale, style)
+        legend = draw_picture(axes, frame, picture, palette, analyses, time_scale, style)
         mark_starts(axes, starts, palette, frame.spec.find_window(), style)
-        legend = map_legend(picture, ShownMap.of(frame, palette, analyses, time_scale))
         _explain_picture(axes, legend, explained, style.inches / columns, style)
     if style.titles:
         write_below(figure, [provenance_line(frame)], style, style.smallest_size)
@@ -129,19 +128,18 @@ def draw_picture(
     analyses: Analyses = NO_ANALYSES,
     times: TimeScale | None = None,
     style: FigureStyle = SCREEN,
-) -> None:
-    """Draw a picture, one of `TITLES`: its pixels, curves, axes and title. `times` is the scale of the escape times."""
+) -> Legend:
+    """Draw a picture, one of `TITLES`: its pixels, curves, axes and title. `times` is the scale of the escape times.
+
+    Returns the legend of the picture.
+    """
     spec = frame.spec
-    window = spec.find_window()
-    draw_pixels(axes, picture_pixels(frame, picture, palette, analyses, times), window, window)
-    draw_limits(axes, spec.potential, spec.plane, spec.energy, window, palette.channels)
-    for name, result in analyses.items():
-        overlay = LAYERS[name].over_picture(picture)
-        if overlay is not None and overlay.strokes is not None:
-            draw_strokes(axes, overlay.strokes(result), window, palette)
-    show_window(axes, window, *spec.plane.axis_symbols, style)
+    shown = map_picture(frame, picture, palette, analyses, times)
+    shown.draw(axes)
+    show_window(axes, spec.find_window(), *spec.plane.axis_symbols, style)
     letters = int(_LETTERS_PER_EM * size_in_points(axes)[0] / style.font_size)
-    set_title(axes, textwrap.fill(PICTURES[picture].title_for(spec), max(1, letters)), style)
+    set_title(axes, textwrap.fill(shown.title, max(1, letters)), style)
+    return shown.legend
 
 
 def _explain_picture(axes: Axes, legend: Legend, explained: set[str], width: float, style: FigureStyle) -> None:
@@ -160,13 +158,13 @@ def _explain_picture(axes: Axes, legend: Legend, explained: set[str], width: flo
         bar_axes.get_xticklabels()[-1].set_horizontalalignment("right")
         depth += _BELOW_BAR * style.font_size
     handles = legend_handles([*legend.entries, *legend.others])
-    handles += labelled_curves(axes)
+    handles += labelled(axes.collections)
     handles += legend_handles(legend.over)
-    handles = [handle for handle in handles if handle.get_label() not in explained]
-    explained.update(str(handle.get_label()) for handle in handles)
-    if handles:
+    entries = {label: handle for handle in handles if (label := str(handle.get_label())) not in explained}
+    explained.update(entries)
+    if entries:
         place = _LEFT_OF_AXIS * style.font_size, depth
-        add_legend_below(axes, handles, place, _LEGEND_WIDTH * width * POINTS_PER_INCH, style)
+        add_legend_below(axes, entries, place, _LEGEND_WIDTH * width * POINTS_PER_INCH, legend_style(style))
 
 
 def add_colour_bar(
@@ -183,8 +181,8 @@ def add_colour_bar(
     **place
         Options of `matplotlib.figure.Figure.colorbar`.
     """
-    norm = LogNorm(scale.low, scale.high) if scale.is_logarithmic else Normalize(scale.low, scale.high)
-    bar = figure.colorbar(ScalarMappable(norm, ListedColormap(list(scale.colours))), **place)
+    cmap, norm = scale_colours(scale)
+    bar = figure.colorbar(ScalarMappable(norm, cmap), **place)
     ticks = [scale.low, *_inner_ticks(scale, between_ticks), scale.high]
     bar.set_ticks(ticks, labels=_tick_labels(scale, ticks))
     bar.ax.minorticks_off()

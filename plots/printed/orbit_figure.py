@@ -7,19 +7,21 @@ from itertools import count, cycle
 from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from engine import Potential, Window
 from engine.slices.planes import SPACE
+from plots.pictures.charts import Limits
 from plots.pictures.histories import ENVELOPE_ALPHA, History, has_log_time
 from plots.pictures.orbit_curves import OrbitCurves, find_well_window
 from plots.pictures.orbit_quantities import ORBIT_QUANTITIES, OrbitQuantity
-from plots.pictures.palette import MARK_EDGE, THRESHOLD, Palette
+from plots.pictures.palette import THRESHOLD, Palette
 from plots.printed.figure_axes import add_figure_legend, add_panel_legend, new_figure, set_title, style_axes, write_below
 from plots.printed.figure_style import SCREEN, FigureStyle
 from plots.printed.potential_figure import draw_well
-from plots.printed.window_axes import draw_curve, draw_limits, draw_pixels, labelled_curves, show_window
+from plots.printed.window_axes import draw_curve, draw_limits, draw_pixels, labelled, show_window
 
 # Height of the figure with two columns, in units of the width.
 _HEIGHT = 0.58
@@ -67,14 +69,14 @@ def draw_orbits_figure(
 def draw_well_figure(
     potential: Potential, energy: float, orbits: Sequence[OrbitCurves], palette: Palette, style: FigureStyle
 ) -> Figure:
-    """Draw the well at an energy with equipotentials, exits, and the paths of orbits."""
+    """Draw the well at an energy with equipotentials, exits, and the paths of orbits in the colours of their exits."""
     window = find_well_window(potential, energy)
     figure = new_figure(style, style.width, f"The well at h = {energy:.6g}")
     axes = figure.subplots()
     draw_well(axes, potential, energy, window, palette)
-    _draw_paths(axes, orbits, window, palette)
+    _draw_paths(axes, orbits, window, [palette.path_colour(one.orbit.fate, one.orbit.outcomes, k) for k, one in enumerate(orbits)])
     show_window(axes, window, "x", "y", style, equal=True)
-    add_figure_legend(figure, labelled_curves(axes), style, columns=2)
+    add_figure_legend(figure, labelled(axes.collections), style, columns=2)
     return figure
 
 
@@ -85,50 +87,68 @@ def _list_energies(orbits: Sequence[OrbitCurves]) -> list[str]:
 def draw_path(
     axes: Axes, potential: Potential, orbits: Sequence[OrbitCurves], palette: Palette, style: FigureStyle = SCREEN
 ) -> None:
-    """Draw paths as lines, long paths as density images, and the exits at the highest energy of the orbits."""
-    highest_curves = max(orbits, key=lambda curves: curves.orbit.energy)
-    window = highest_curves.window
-    _draw_paths(axes, orbits, window, palette)
-    draw_limits(axes, potential, SPACE, highest_curves.orbit.energy, window, palette.channels)
-    show_window(axes, window, "x", "y", style, equal=True)
+    """Draw paths and exits, see `draw_paths_and_exits`, with axes and title."""
+    draw_paths_and_exits(axes, potential, orbits, palette)
+    show_window(axes, _highest(orbits).window, "x", "y", style, equal=True)
     set_title(axes, "Path", style)
 
 
-def _draw_paths(axes: Axes, orbits: Sequence[OrbitCurves], window: Window, palette: Palette) -> None:
-    for slot, curves in enumerate(orbits):
-        colour = palette.path_colour(curves.orbit.fate, curves.orbit.outcomes, slot)
-        number_colour = palette.orbits[slot % len(palette.orbits)]
-        axes.scatter(curves.orbit.x[:1], curves.orbit.y[:1], 24, number_colour, edgecolors=MARK_EDGE, linewidths=0.8, zorder=3)
+def draw_paths_and_exits(axes: Axes, potential: Potential, orbits: Sequence[OrbitCurves], palette: Palette) -> list[Artist]:
+    """Draw paths as lines, long paths as density images, and the exits at the highest energy of the orbits. Return all."""
+    highest = _highest(orbits)
+    paths = _draw_paths(axes, orbits, highest.window, palette.orbits)
+    return paths + draw_limits(axes, potential, SPACE, highest.orbit.energy, highest.window, palette.channels)
+
+
+def _highest(orbits: Sequence[OrbitCurves]) -> OrbitCurves:
+    return max(orbits, key=lambda curves: curves.orbit.energy)
+
+
+def _draw_paths(axes: Axes, orbits: Sequence[OrbitCurves], window: Window, colours: Sequence[str]) -> list[Artist]:
+    artists: list[Artist] = []
+    for curves, colour in zip(orbits, cycle(colours), strict=False):
         if curves.visits is None:
-            draw_curve(axes, [np.column_stack(curves.path)], window, colors=colour, linewidths=1.0)
+            artists += draw_curve(axes, [np.column_stack(curves.path)], window, colors=colour, linewidths=1.0)
         else:
             # `draw_pixels` takes row 0 on top.
             pixels = curves.shaded(colour)[::-1]
-            draw_pixels(axes, pixels.view(np.uint8).reshape(*pixels.shape, 4), curves.window, window)
+            artists.append(draw_pixels(axes, pixels.view(np.uint8).reshape(*pixels.shape, 4), curves.window))
+    return artists
 
 
 def draw_quantity(
     axes: Axes, quantity: OrbitQuantity, orbits: Sequence[OrbitCurves], palette: Palette, style: FigureStyle = SCREEN
 ) -> None:
-    """Draw a quantity of orbits against time. `has_log_time` decides whether the axis of time is logarithmic."""
-    histories = [curves.histories[quantity.name] for curves in orbits]
-    for history, colour, number in zip(histories, cycle(palette.orbits), count(1), strict=False):
-        _draw_history(axes, history, colour, f"orbit {number}")
-    end = max(10.0 * _EARLIEST_TIME, *(float(curves.orbit.t[-1]) for curves in orbits))
-    axes.set_xscale("log" if has_log_time(end, logarithmic=quantity.logarithmic) else "linear")
-    axes.set_xlim(_EARLIEST_TIME, end)
-    if quantity.logarithmic:
-        axes.set_yscale("log")
-    histories_with_samples = [history for history in histories if history.line[0].size]
-    if histories_with_samples:
-        axes.set_ylim(*quantity.limits(histories_with_samples))
-    if quantity.threshold is not None:
-        axes.axhline(quantity.threshold, color=THRESHOLD, linestyle="--", linewidth=1.0)
+    """Draw a quantity of orbits against time, see `quantity_axes`."""
+    logarithmic, limits = quantity_axes(quantity, orbits)
+    for axis, axis_limits in zip("xy", limits, strict=True):
+        axes.set(**{f"{axis}scale": "log" if axis in logarithmic else "linear", f"{axis}lim": axis_limits})
+    draw_histories(axes, quantity, orbits, palette)
     style_axes(axes, style, labels=("t", quantity.label), title=quantity.title)
 
 
-def _draw_history(axes: Axes, history: History, colour: str, label: str) -> None:
+def quantity_axes(quantity: OrbitQuantity, orbits: Sequence[OrbitCurves]) -> tuple[str, tuple[Limits, Limits]]:
+    """Return the letters of the logarithmic axes, and the limits of both. `has_log_time` decides about the axis of time."""
+    end = max(10.0 * _EARLIEST_TIME, *(float(curves.orbit.t[-1]) for curves in orbits))
+    letters = "x" if has_log_time(end, logarithmic=quantity.logarithmic) else ""
+    histories = [curves.histories[quantity.name] for curves in orbits]
+    with_samples = [history for history in histories if history.line[0].size]
+    limits = quantity.limits(with_samples) if with_samples else (_EARLIEST_TIME, 1.0)
+    return letters + ("y" if quantity.logarithmic else ""), ((_EARLIEST_TIME, end), limits)
+
+
+def draw_histories(axes: Axes, quantity: OrbitQuantity, orbits: Sequence[OrbitCurves], palette: Palette) -> list[Artist]:
+    """Draw a quantity of orbits against time and its threshold, and return the curves."""
+    artists: list[Artist] = []
+    for curves, colour, number in zip(orbits, cycle(palette.orbits), count(1), strict=False):
+        artists += _draw_history(axes, curves.histories[quantity.name], colour, f"orbit {number}")
+    if quantity.threshold is not None:
+        artists.append(axes.axhline(quantity.threshold, color=THRESHOLD, linestyle="--", linewidth=1.0))
+    return artists
+
+
+def _draw_history(axes: Axes, history: History, colour: str, label: str) -> list[Artist]:
     """Draw a history, with its envelope where the curve is a mean."""
     t, low, high = history.band
-    axes.fill_between(t, low, high, color=colour, alpha=ENVELOPE_ALPHA, linewidth=0.0)
-    axes.plot(*history.line, color=colour, linewidth=1.0, label=label)
+    envelope = axes.fill_between(t, low, high, color=colour, alpha=ENVELOPE_ALPHA, linewidth=0.0)
+    return [envelope, *axes.plot(*history.line, color=colour, linewidth=1.0, label=label)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 
 from engine import Potential, Window
@@ -21,25 +22,24 @@ _INNER_LEVELS = (0.1, 0.3, 0.5, 0.7, 0.9)
 _ENLARGEMENT = 1.35
 
 
-def draw_equipotentials(axes: Axes, potential: Potential, window: Window) -> None:
-    """Draw equipotentials of a potential with exits in axes with equal scales."""
-    for pieces in trace_equipotentials(potential, SPACE, depth_levels(potential, _LEVELS), window):
-        draw_pieces(axes, pieces, LIGHT.quiet, 0.6)
-    for pieces in trace_equipotentials(potential, SPACE, critical_energies(potential), window):
-        draw_pieces(axes, pieces, LIGHT.critical_equipotential, 1.6)
+def draw_equipotentials(axes: Axes, potential: Potential, window: Window) -> list[Artist]:
+    """Draw equipotentials of a potential with exits in axes with equal scales, and return the curves."""
+    levels = trace_equipotentials(potential, SPACE, depth_levels(potential, _LEVELS), window)
+    critical = trace_equipotentials(potential, SPACE, critical_energies(potential), window)
+    curves = [line for pieces in levels for line in draw_pieces(axes, pieces, LIGHT.quiet, 0.6)]
+    return curves + [line for pieces in critical for line in draw_pieces(axes, pieces, LIGHT.critical_equipotential, 1.6)]
 
 
 def draw_well(axes: Axes, potential: Potential, energy: float, window: Window, palette: Palette) -> None:
-    """Draw equipotentials, and the zero-velocity curve and Lyapunov orbits of an energy, in shares of a window."""
+    """Draw equipotentials, and the zero-velocity curve and Lyapunov orbits of an energy."""
     for pieces in trace_equipotentials(potential, SPACE, depth_levels(potential, _INNER_LEVELS), window):
         draw_curve(axes, pieces, window, colors=LIGHT.equipotential, linewidths=0.6)
     draw_limits(axes, potential, SPACE, energy, window, palette.channels)
 
 
-def draw_pieces(axes: Axes, pieces: list[np.ndarray], colour: str, width: float) -> None:
-    """Draw a curve that consists of pieces, each of shape (n, 2)."""
-    for piece in pieces:
-        axes.plot(*piece.T, color=colour, linewidth=width)
+def draw_pieces(axes: Axes, pieces: list[np.ndarray], colour: str, width: float) -> list[Artist]:
+    """Draw a curve that consists of pieces, each of shape (n, 2), and return the lines."""
+    return [line for piece in pieces for line in axes.plot(*piece.T, color=colour, linewidth=width)]
 
 
 def enlarge(window: Window) -> Window:

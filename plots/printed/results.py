@@ -5,87 +5,136 @@ from __future__ import annotations
 import base64
 import html
 import inspect
-from collections.abc import Iterable
-from functools import singledispatch
+from collections.abc import Mapping
 from io import BytesIO
 from typing import Any
+from weakref import WeakKeyDictionary
 
-import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.image import AxesImage
+from matplotlib.legend import Legend
 
-from engine import EscapeMap, LyapunovOrbit, Orbit, OrbitFamily, PeriodicOrbit, Potential, Result, Window
+from engine import EscapeMap, Result
 from engine.foundations.extras import require_package
 from engine.maps.pixels import PixelAnalysis
-from engine.results import (
-    DecayLaws,
-    EscapeStatistics,
-    OrbitReturns,
-    PeriodicOrbits,
-    PotentialReview,
-    Returns,
-    SampledOrbits,
-    Sweep,
-    UncertaintyExponent,
-)
-from engine.slices.default_window import default_window
-from engine.slices.planes import SPACE
-from plots.layers.layer import Layer
-from plots.layers.picture import ShownMap
-from plots.layers.table import LAYERS, map_legend
-from plots.pictures.charts import Chart, Frame, Series, Shape
-from plots.pictures.orbit_curves import compute_orbit_curves, well_energy
-from plots.pictures.orbit_quantities import ORBIT_QUANTITIES
-from plots.pictures.palette import DEFAULT_COLOURS, DEFAULT_PALETTE, LIGHT, MEASURED, Entry, Palette, find_palette, rgba
-from plots.pictures.periodic_marks import STABILITY_COLOURS
-from plots.printed.curve_figures import draw_chart
-from plots.printed.figure_axes import RENDER_LOCK, legend_handles, set_font, set_title, style_axes
-from plots.printed.map_figure import draw_picture
-from plots.printed.orbit_figure import draw_path, draw_quantity
-from plots.printed.potential_figure import draw_equipotentials, enlarge
-from plots.printed.window_axes import draw_limits, draw_pixels, draw_strokes, show_window
-from plots.studies.escape_charts import probabilities_chart, times_chart
-from plots.studies.family import family_charts
-from plots.studies.measure_charts import pairs_chart, survival_chart
-from plots.studies.periodic import periodic_charts
-from plots.studies.section import section_charts
-from plots.studies.sweep_charts import sweep_charts
+from engine.results import Drawing
+from plots.pictures.charts import Limits
+from plots.pictures.palette import DEFAULT_COLOURS, DEFAULT_PALETTE, find_palette
+from plots.printed.figure_axes import RENDER_LOCK, add_legend_below, figure_of, legend_handles, set_font, size_in_points
+from plots.printed.result_views import NoPictureError, View, charts_of, view_of
+from plots.printed.window_axes import labelled
 
 # Width and height of a picture, in inches.
 _FIGURE_SIZE = (4.6, 4.0)
 # Pixels per inch of a picture in a notebook.
 _NOTEBOOK_DPI = 72.0
-# Position of the legend of a map in shares of the axes: the middle, below the label of the horizontal axis.
-_BELOW_AXES = (0.5, -0.13)
+# Distance of a legend below the axes, in units of the font size of the axis label.
+_BELOW_AXES = 3.6
 # CSS that puts the picture and the table of a result side by side.
 _SIDE_BY_SIDE = "display:flex;gap:1em;flex-wrap:wrap;align-items:flex-start"
-# Lowest position on a logarithmic axis, which cannot show 0. Smaller values are drawn at this position.
-_LOG_FLOOR = 1e-16
-# Largest number of points of a line with markers.
-_MOST_MARKERS = 60
-# Number of parameters of each `_draw…` function before its options: the result, the axes and the palette.
-_FIXED_PARAMETERS = 3
+# Options of pictures of all results, for error messages.
+_COMMON_OPTIONS = ("palette", "legend", "colorbar")
+# Number of parameters of each function of `view_of` before its options: the result and the palette.
+_FIXED_PARAMETERS = 2
+# Labels of the axes in which each artist was drawn.
+_LABELS: WeakKeyDictionary[Artist, tuple[str, str]] = WeakKeyDictionary()
 
 
-class NoPictureError(TypeError):
-    """The result has no picture."""
-
-
-def plot_result(result: Result, ax: Axes | None = None, *, palette: str = DEFAULT_PALETTE, **options: Any) -> Axes:
+def plot_result(
+    result: Result,
+    ax: Axes | None = None,
+    *,
+    palette: str | Mapping[int, Any] = DEFAULT_PALETTE,
+    legend: bool | None = None,
+    colorbar: bool | None = None,
+    **options: Any,
+) -> Drawing:
     """Draw a result, as described in `engine.foundations.result.Result.plot`."""
-    colours = find_palette(palette)
-    legal_options = list(inspect.signature(_draw.dispatch(type(result))).parameters)[_FIXED_PARAMETERS:]
+    legal_options = list(inspect.signature(view_of.dispatch(type(result))).parameters)[_FIXED_PARAMETERS:]
     if unknown := [name for name in options if name not in legal_options]:
-        options_text = f"the picture of {type(result).__name__} has {', '.join(['palette', *legal_options])}"
+        options_text = f"the picture of {type(result).__name__} has {', '.join([*_COMMON_OPTIONS, *legal_options])}"
         raise TypeError(f"{unknown[0]}: no such option; {options_text}")
-    if ax is None:
-        from matplotlib import pyplot
-
-        _, ax = pyplot.subplots(figsize=_FIGURE_SIZE, layout="constrained")
-    if not isinstance(ax, Axes):
+    if not isinstance(ax, Axes | None):
         raise TypeError(f"ax={ax!r}: must be Matplotlib axes or None")
-    _draw(result, ax, colours, **options)
-    return ax
+    view = view_of(result, find_palette(palette, _outcomes_of(result)), **options)
+    if colorbar and not view.has_scale:
+        raise TypeError("colorbar=True: must be False or None for a picture without a colour scale")
+    if ax is not None:
+        return _draw(view, ax, legend=bool(legend), colorbar=bool(colorbar))
+    from matplotlib import pyplot
+
+    _, axes = pyplot.subplots(figsize=_FIGURE_SIZE, layout="constrained")
+    return _draw_alone(view, axes, legend=legend is not False, colorbar=colorbar is not False)
+
+
+def _outcomes_of(result: Result) -> Any:
+    """Return the outcomes to whose numbers the fates of a result refer; empty if they are exits only."""
+    request = getattr(result, "spec", result)
+    return getattr(getattr(request, "potential", request), "outcomes", ())
+
+
+def _draw_alone(view: View, axes: Axes, *, legend: bool = True, colorbar: bool = True) -> Drawing:
+    """Draw a view with its title in axes of its own."""
+    axes.set_title(view.title, loc="left")
+    return _draw(view, axes, legend=legend, colorbar=colorbar and view.has_scale)
+
+
+def _draw(view: View, axes: Axes, *, legend: bool, colorbar: bool) -> Drawing:
+    """Draw a view in axes that may already show other results, and that keep the labels, limits and aspect that they have."""
+    earlier = [labels for artist in axes.get_children() if (labels := _LABELS.get(artist)) is not None]
+    if earlier and earlier[0] != view.labels:
+        (x, y), (own_x, own_y) = earlier[0], view.labels
+        raise ValueError(f"ax: shows {y} against {x}; must be other axes for {own_y} against {own_x}")
+    _prepare(view, axes, is_first=not earlier)
+    limits = _free_limits(view, axes, is_first=not earlier)
+    artists = view.draw(axes)
+    # Matplotlib fits free limits to each artist, so they are set last. Those of a plane stay.
+    for axis, axis_limits in limits.items():
+        getattr(axes, f"set_{axis}lim")(axis_limits, auto=not view.is_plane)
+    _LABELS.update(dict.fromkeys(artists, view.labels))
+    images = [artist for artist in artists if isinstance(artist, AxesImage)]
+    image = images[-1] if images else None
+    bar = None
+    if colorbar and image is not None:
+        bar = figure_of(axes).colorbar(image, ax=axes, label=view.title, extend="both")
+    return Drawing(axes, tuple(artists), image, _add_legend(view, axes, artists) if legend else None, bar)
+
+
+def _prepare(view: View, axes: Axes, *, is_first: bool) -> None:
+    """Set labels, scales and aspect where nobody has set them."""
+    axes.set(xlabel=axes.get_xlabel() or view.labels[0], ylabel=axes.get_ylabel() or view.labels[1])
+    if is_first:
+        axes.set(**{f"{axis}scale": "log" for axis in view.logarithmic})
+    if is_first and view.is_equal and axes.get_aspect() == "auto" and axes.get_box_aspect() is None:
+        axes.set_aspect("equal", adjustable="box" if view.limits else "datalim")
+
+
+def _free_limits(view: View, axes: Axes, *, is_first: bool) -> dict[str, Limits]:
+    """Return the limits of the axes that nobody has set. Those of a chart contain those of earlier charts."""
+    free = {
+        axis: limits for axis, limits in zip("xy", view.limits or (), strict=False) if getattr(axes, f"get_autoscale{axis}_on")()
+    }
+    if is_first or view.is_plane:
+        return free
+    earlier = {axis: getattr(axes, f"get_{axis}lim")() for axis in free}
+    return {axis: (min(low, earlier[axis][0]), max(high, earlier[axis][1])) for axis, (low, high) in free.items()}
+
+
+def _add_legend(view: View, axes: Axes, artists: list[Artist]) -> Legend | None:
+    """Add a legend with the entries of the results that the axes show; None without entries."""
+    earlier = axes.get_legend()
+    handles = [*(earlier.legend_handles if earlier is not None else ()), *legend_handles(view.entries), *labelled(artists)]
+    # A remark after a colon, as in "outside: starts beyond an exit", would make a narrow legend long.
+    entries = {str(handle.get_label()).partition(":")[0]: handle for handle in handles if handle is not None}
+    if not entries:
+        return None
+    style: dict[str, Any] = {"frameon": False, "fontsize": "small", "handlelength": 1.4, "columnspacing": 1.3}
+    if not view.is_plane:
+        return axes.legend([*entries.values()], [*entries], **style)
+    depth = _BELOW_AXES * float(axes.xaxis.label.get_fontsize())
+    return add_legend_below(axes, entries, (0.0, depth), size_in_points(axes)[0], style)
 
 
 def to_html(result: Result) -> str:
@@ -109,7 +158,7 @@ def to_holoviews(result: Result) -> Any:
 
     if isinstance(result, EscapeMap | PixelAnalysis):
         return hv.Dataset(result.to_xarray()).to(hv.Image, list(result.spec.plane.axis_names))
-    if charts := _find_charts(result, DEFAULT_COLOURS):
+    if charts := charts_of(result, DEFAULT_COLOURS):
         overlays = [hv.Overlay(chart_elements(chart)) for chart in charts]
         # Options need an extension of HoloViews, which notebooks load.
         if hv.Store.loaded_backends():
@@ -124,32 +173,12 @@ def to_holoviews(result: Result) -> Any:
     return hv.Overlay([hv.Curve(table, index, name, label=name) for name in value_names if table[name].dtype.kind in "if"])
 
 
-def _find_charts(result: Result, palette: Palette) -> list[Chart]:
-    """Return the charts of a result; empty if it has other pictures."""
-    match result:
-        case Sweep():
-            return sweep_charts(result, palette)
-        case DecayLaws():
-            return [survival_chart(result)]
-        case EscapeStatistics():
-            return [times_chart(result), probabilities_chart(result)]
-        case UncertaintyExponent():
-            return [pairs_chart(result)]
-        case Returns() | OrbitReturns():
-            return section_charts(result, palette)
-        case PeriodicOrbits():
-            return periodic_charts(result, palette)
-        case OrbitFamily():
-            return family_charts(result, palette)
-    return []
-
-
 def _picture_html(result: Result) -> str:
     file = BytesIO()
     figure = Figure(figsize=_FIGURE_SIZE, dpi=_NOTEBOOK_DPI, layout="constrained")
     with RENDER_LOCK:
         try:
-            _draw(result, figure.subplots(), DEFAULT_COLOURS)
+            _draw_alone(view_of(result, DEFAULT_COLOURS), figure.subplots())
         except NoPictureError:
             return ""
         except ModuleNotFoundError as error:
@@ -157,162 +186,3 @@ def _picture_html(result: Result) -> str:
         set_font(figure)
         figure.savefig(file, format="png")
     return f"<img alt='{type(result).__name__}' src='data:image/png;base64,{base64.b64encode(file.getvalue()).decode()}'>"
-
-
-@singledispatch
-def _draw(result: Result, axes: Axes, palette: Palette) -> None:
-    """Draw the result of a layer, or a result that has charts or columns. Functions for other results are registered below."""
-    for layer in LAYERS.values():
-        if isinstance(result, layer.result):
-            _draw_layer(layer, result, axes, palette)
-            return
-    if charts := _find_charts(result, palette):
-        draw_chart(axes, charts[0])
-        return
-    _draw_columns(result, axes, palette)
-
-
-def _draw_columns(result: Result, axes: Axes, palette: Palette) -> None:
-    """Draw the columns of a result that its `chart` names, as a line or as bars."""
-    chart = result.chart
-    if chart is None:
-        raise NoPictureError(f"{type(result).__name__} has no picture; its numbers are in to_pandas()")
-    columns = result.columns()
-    x = columns[chart.x]
-    y = columns[chart.y]
-    if chart.by_channel:
-        axes.bar(list(map(str, x)), y, color=[palette.channels[channel - 1] for channel in x])
-        style_axes(axes, labels=(chart.x_label, chart.y_label))
-    else:
-        drawn_y = np.maximum(y, _LOG_FLOOR) if "y" in chart.logarithmic else y
-        shape = Shape.JOINED_POINTS if x.size <= _MOST_MARKERS else Shape.LINE
-        frame = Frame("", "", (chart.x_label, chart.y_label), help="", logarithmic=chart.logarithmic)
-        draw_chart(axes, Chart(frame, [Series("", MEASURED, x, drawn_y, shape)]))
-    if chart.title:
-        set_title(axes, chart.title.format(**result.numbers()))
-
-
-def _draw_layer(layer: Layer[Any], result: Result, axes: Axes, palette: Palette) -> None:
-    """Draw the result of a layer without the map."""
-    spec = layer.spec_of(result)
-    window = spec.find_window()
-    panel = _add_panel(axes, window)
-    if layer.pixels is not None:
-        codes = layer.pixels.codes(result, None)
-        pixels = rgba([*layer.pixels.colours(palette)])[codes]
-        # `draw_pixels` takes row 0 on top.
-        draw_pixels(panel, pixels[::-1], window, shown_window=window)
-        if entries := layer.pixels.entries(result, palette):
-            _add_legend_below(panel, entries)
-    draw_limits(panel, spec.potential, spec.plane, spec.energy, window, palette.channels)
-    if layer.over is not None and layer.over.strokes is not None:
-        draw_strokes(panel, layer.over.strokes(result), window, palette)
-    show_window(panel, window, *spec.plane.axis_symbols)
-    set_title(panel, layer.title)
-
-
-def _add_panel(axes: Axes, window: Window) -> Axes:
-    """Give `axes` the coordinates of a window, and return new axes behind them, for drawings in shares of the window."""
-    panel = axes.inset_axes((0.0, 0.0, 1.0, 1.0), zorder=-1.0)
-    axes.set_xlim(window.x_low, window.x_high)
-    axes.set_ylim(window.ordinate_low, window.ordinate_high)
-    axes.patch.set_visible(False)
-    axes.tick_params(bottom=False, left=False, labelbottom=False, labelleft=False)
-    return panel
-
-
-@_draw.register
-def _draw_map(result: EscapeMap, axes: Axes, palette: Palette, *, picture: str = "basins") -> None:
-    panel = _add_panel(axes, result.spec.find_window())
-    draw_picture(panel, result, picture, palette)
-    legend = map_legend(picture, ShownMap.of(result, palette, {}))
-    if entries := [*legend.entries, *legend.others]:
-        _add_legend_below(panel, entries)
-
-
-def _add_legend_below(axes: Axes, entries: Iterable[Entry]) -> None:
-    axes.legend(
-        handles=legend_handles(entries), loc="upper center", bbox_to_anchor=_BELOW_AXES, ncols=3, fontsize="small", frameon=False
-    )
-
-
-@_draw.register
-def _draw_orbit(result: Orbit, axes: Axes, palette: Palette, *, show: str = "path") -> None:
-    if result.potential is None:
-        raise NoPictureError("this orbit has no potential, so its exits are unknown")
-    curves = compute_orbit_curves(result.potential, result, with_visits=show == "path")
-    if show == "path":
-        # The axes are square until `draw_path` has given the panel the aspect of the window.
-        axes.set_box_aspect(1.0)
-        panel = _add_panel(axes, curves.window)
-        draw_path(panel, result.potential, [curves], palette)
-        axes.set_box_aspect(panel.get_box_aspect())
-        return
-    quantity = next((each for each in ORBIT_QUANTITIES if each.name == show), None)
-    if quantity is None:
-        raise ValueError(f"show={show!r}: must be one of path, {', '.join(each.name for each in ORBIT_QUANTITIES)}")
-    draw_quantity(axes, quantity, [curves], palette)
-
-
-@_draw.register
-def _draw_sampled_orbits(result: SampledOrbits, axes: Axes, palette: Palette) -> None:
-    entries = []
-    for fate in np.unique(result.fate).tolist():
-        entries.append(palette.entry(fate, result.outcomes))
-        # A NaN after each path separates the paths.
-        has_fate = result.fate == fate
-        x, y = (np.pad(paths[has_fate], ((0, 0), (0, 1)), constant_values=np.nan) for paths in (result.x, result.y))
-        axes.plot(x.ravel(), y.ravel(), color=entries[-1].colour, linewidth=0.8)
-    axes.set_aspect("equal")
-    style_axes(axes, labels=("x", "y"), title="Paths")
-    _add_legend_below(axes, entries)
-
-
-@_draw.register
-def _draw_periodic_orbit(result: PeriodicOrbit, axes: Axes, palette: Palette) -> None:
-    axes.plot(*result.find_path()[1:3], color=STABILITY_COLOURS[result.stability], linewidth=1.6)
-    axes.set_aspect("equal", adjustable="datalim")
-    style_axes(axes, labels=("x", "y"), title=f"{result.stability.value.capitalize()}, T = {result.period:.6g}")
-
-
-@_draw.register
-def _draw_lyapunov(result: LyapunovOrbit, axes: Axes, palette: Palette) -> None:
-    axes.plot(*result.half_path.T, color=palette.channels[result.channel - 1], linewidth=2.2)
-    axes.set_aspect("equal", adjustable="datalim")
-    style_axes(axes, labels=("x", "y"), title=f"Lyapunov orbit {result.channel} at h = {result.energy:.6g}")
-
-
-@_draw.register
-def _draw_potential(result: Potential, axes: Axes, palette: Palette) -> None:
-    if not result.escapes_over_saddles:
-        raise NoPictureError(f"the potential {result.name} has an escape radius and therefore no well to draw")
-    window = enlarge(default_window(result, SPACE, well_energy(result)))
-    draw_equipotentials(axes, result, window)
-    for channel, (x, y) in enumerate(result.saddles.tolist(), 1):
-        axes.plot(x, y, "o", color=palette.channels[channel - 1], markeredgecolor=LIGHT.halo, zorder=3)
-    axes.set_xlim(window.x_low, window.x_high)
-    axes.set_ylim(window.ordinate_low, window.ordinate_high)
-    axes.set_aspect("equal")
-    style_axes(axes, labels=("x", "y"), title=f"{result.name}: {_escape_text(result)}")
-
-
-def _escape_text(potential: Potential) -> str:
-    return f"escape energy {potential.escape_energy:.6g}" if potential.channels else "no exits"
-
-
-@_draw.register
-def _draw_review(result: PotentialReview, axes: Axes, palette: Palette) -> None:
-    if result.refusal is not None:
-        raise NoPictureError("a potential that cannot be used has no picture")
-    _draw_potential(result.potential, axes, palette)
-
-
-@_draw.register
-def _draw_sweep(result: Sweep, axes: Axes, palette: Palette, *, measure: str | None = None) -> None:
-    charts = {chart.frame.name: chart for chart in sweep_charts(result, palette)}
-    if not charts:
-        raise NoPictureError("a sweep without numbers against the energy or a parameter has no picture")
-    if measure is not None and measure not in charts:
-        raise ValueError(f"measure={measure!r}: must be one of {', '.join(charts)}")
-    # By default, the first measure.
-    draw_chart(axes, charts[measure or next(iter(charts))])

@@ -1,8 +1,4 @@
-"""Draw pixels, curves, exits, and marks of starts in axes that show a window of a plane.
-
-The coordinates of a drawing are shares of the window, from 0 to 1. In a deep zoom, the transform of coordinates of the plane to
-pixels would lose all digits.
-"""
+"""Draw pixels, curves, exits, and marks of starts in the coordinates of a plane."""
 
 from __future__ import annotations
 
@@ -15,6 +11,8 @@ import shapely
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
+from matplotlib.colors import Colormap, Normalize
+from matplotlib.image import AxesImage
 from matplotlib.patheffects import withStroke
 
 from engine import Potential, Slice, Window
@@ -39,10 +37,13 @@ _CLIP_MARGIN = 0.02
 _LABEL_MARGIN = 0.06
 
 
-def draw_pixels(axes: Axes, pixels: np.ndarray, window: Window, shown_window: Window) -> None:
-    """Draw the pixels of a window, row 0 on top, in axes that show `shown_window`."""
-    (left, low), (right, high) = _to_shares(shown_window, _corners(window))
-    axes.imshow(pixels, extent=(left, right, low, high), origin="upper", interpolation="none", aspect="auto", zorder=1)
+def draw_pixels(
+    axes: Axes, pixels: np.ndarray, window: Window, cmap: Colormap | None = None, norm: Normalize | None = None
+) -> AxesImage:
+    """Draw the pixels of a window, row 0 on top: RGBA colours, or numbers in the colours of `cmap`. Limits that are set stay."""
+    return axes.imshow(
+        pixels, cmap, norm, aspect=axes.get_aspect(), extent=window.edges, origin="upper", interpolation="none", zorder=1
+    )
 
 
 def draw_limits(
@@ -52,50 +53,53 @@ def draw_limits(
     energy: float | tuple[float, float],
     shown_window: Window,
     channel_colours: Sequence[str] | None = None,
-) -> None:
-    """Draw the limiting curve of a slice and, on (x, y), the known Lyapunov orbits.
+) -> list[Artist]:
+    """Draw the limiting curve of a slice and, on (x, y), the known Lyapunov orbits. Return the drawn curves.
 
     `energy` is h, or the range (low, high) of an axis h. Without `channel_colours`, the orbits are black and dashed.
     """
     limit_style: dict[str, Any] = {"colors": LIGHT.limiting_curve, "linewidths": 1.0}
-    draw_curve(
-        axes, trace_zero_velocity_curve(potential, plane, energy, shown_window), shown_window, "limiting curve", **limit_style
-    )
+    limiting_curve = trace_zero_velocity_curve(potential, plane, energy, shown_window)
+    curves = draw_curve(axes, limiting_curve, shown_window, "limiting curve", **limit_style)
     h = common_energy(energy)
     orbits = find_known_exits(potential, h) if plane.shows_positions and h is not None else ()
     if channel_colours is None:
         paths = [orbit.half_path for orbit in orbits]
-        draw_curve(axes, paths, shown_window, "Lyapunov orbits", linestyles=[_EXIT_DASHES], **limit_style)
-        return
+        return curves + draw_curve(axes, paths, shown_window, "Lyapunov orbits", linestyles=[_EXIT_DASHES], **limit_style)
     for orbit in orbits:
         style: dict[str, Any] = {"colors": channel_colours[orbit.channel - 1], "linewidths": 2.2}
-        draw_curve(axes, [orbit.half_path], shown_window, f"Lyapunov orbit {orbit.name}", halo=True, **style)
+        curves += draw_curve(axes, [orbit.half_path], shown_window, f"Lyapunov orbit {orbit.name}", halo=True, **style)
+    return curves
 
 
-def draw_strokes(axes: Axes, strokes: Sequence[Stroke], shown_window: Window, palette: Palette) -> None:
-    """Draw curves of a layer, from back to front, in their colours."""
+def draw_strokes(axes: Axes, strokes: Sequence[Stroke], shown_window: Window, palette: Palette) -> list[Artist]:
+    """Draw curves of a layer, from back to front, in their colours. Return the drawn curves."""
+    curves = []
     for stroke in strokes:
         if stroke.halo_width:
             halo: dict[str, Any] = {"colors": LIGHT.halo, "linewidths": _LINE_SCALE * stroke.halo_width}
-            draw_curve(axes, stroke.lines, shown_window, zorder=_HALO_ORDER, **halo)
+            curves += draw_curve(axes, stroke.lines, shown_window, zorder=_HALO_ORDER, **halo)
     for stroke in strokes:
         line: dict[str, Any] = {"colors": stroke.colour(palette), "linewidths": _LINE_SCALE * stroke.width}
-        draw_curve(axes, stroke.lines, shown_window, alpha=stroke.alpha, **line)
+        curves += draw_curve(axes, stroke.lines, shown_window, alpha=stroke.alpha, **line)
+    return curves
 
 
 def draw_curve(
     axes: Axes, pieces: Iterable[np.ndarray], shown_window: Window, label: str = "", *, halo: bool = False, **style: Any
-) -> None:
+) -> list[Artist]:
     """Draw the part of a curve that is inside the window. The curve consists of pieces.
+
+    Nothing is drawn, and the returned list is empty, if no part is inside.
 
     Parameters
     ----------
     axes
-        Axes that show `shown_window`.
+        Axes in the coordinates of the plane.
     pieces
         Points of each piece in the plane, of shape (n, 2). Pieces of a single point are skipped.
     shown_window
-        Window of the axes.
+        The window.
     label
         Label in the legend.
     halo
@@ -103,24 +107,22 @@ def draw_curve(
     style
         Properties of `matplotlib.collections.LineCollection`.
     """
-    # Matplotlib clips lines after the transform to pixels. Far outside a deep zoom, this transform has too few digits.
+    # In shares of the window, clipping has all digits in a deep zoom.
     lines = [shapely.LineString(_to_shares(shown_window, piece)) for piece in pieces if len(piece) > 1]
     visible_parts = shapely.get_parts(
         shapely.clip_by_rect(lines, -_CLIP_MARGIN, -_CLIP_MARGIN, 1.0 + _CLIP_MARGIN, 1.0 + _CLIP_MARGIN)
     )
     if not len(visible_parts):
-        return
+        return []
     if halo:
         style["path_effects"] = [withStroke(linewidth=1.8 * style["linewidths"], foreground=LIGHT.halo)]
-    axes.add_collection(
-        LineCollection([shapely.get_coordinates(part) for part in visible_parts], label=label, **({"zorder": 2} | style)),
-        autolim=False,
-    )
+    points = [_from_shares(shown_window, shapely.get_coordinates(part)) for part in visible_parts]
+    return [axes.add_collection(LineCollection(points, label=label, **({"zorder": 2} | style)), autolim=False)]
 
 
-def labelled_curves(axes: Axes) -> list[Artist]:
-    """Return the curves in a panel that have a label. Matplotlib gives curves without a label names such as "_child0"."""
-    return [curve for curve in axes.collections if not str(curve.get_label()).startswith("_")]
+def labelled(artists: Iterable[Artist]) -> list[Artist]:
+    """Return the artists that have a label. Matplotlib gives artists without a label names such as "_child0"."""
+    return [artist for artist in artists if str(artist.get_label() or "_")[0] != "_"]
 
 
 def mark_starts(
@@ -129,17 +131,17 @@ def mark_starts(
     """Mark starts (x, ordinate) with numbered crosses in the colours of their orbits. Starts outside the window are skipped."""
     scale = style.font_size / SCREEN.font_size
     for number, start in enumerate(starts, 1):
-        x, y = _to_shares(shown_window, np.array(start))
-        if not (0.0 <= x <= 1.0 and 0.0 <= y <= 1.0):
+        x_share, y_share = _to_shares(shown_window, np.array(start))
+        if not (0.0 <= x_share <= 1.0 and 0.0 <= y_share <= 1.0):
             continue
         # From back to front: a light line for dark pictures, a dark one for light pictures, and the colour of the orbit.
         for colour, width in ((LIGHT.halo, 7.0), (MARK_EDGE, 4.8), (palette.orbits[(number - 1) % len(palette.orbits)], 2.4)):
             size: dict[str, Any] = {"markersize": scale * (9.6 + width), "markeredgewidth": scale * width}
-            axes.plot(x, y, "+", color=colour, zorder=3, **size)
-        is_right, is_high = x > 1.0 - _LABEL_MARGIN, y > 1.0 - _LABEL_MARGIN
+            axes.plot(*start, "+", color=colour, zorder=3, **size)
+        is_right, is_high = x_share > 1.0 - _LABEL_MARGIN, y_share > 1.0 - _LABEL_MARGIN
         offset = (-6.0 * scale if is_right else 6.0 * scale, -3.6 * scale if is_high else 3.6 * scale)
         axes.annotate(
-            str(number), (x, y), offset, textcoords="offset points",
+            str(number), start, offset, textcoords="offset points",
             ha="right" if is_right else "left", va="top" if is_high else "bottom",
             fontsize=style.font_size, color=LIGHT.text, zorder=4,
             path_effects=[withStroke(linewidth=4.0, foreground=LIGHT.halo)],
@@ -153,10 +155,11 @@ def show_window(
     style_axes(axes, style)
     x_axis = label_axis(x_name, shown_window.x_low, shown_window.x_high)
     y_axis = label_axis(y_name, shown_window.ordinate_low, shown_window.ordinate_high)
-    axes.set_xticks(*zip(*_thin_out(x_axis.ticks, size_in_points(axes)[0] / style.small_size), strict=True))
+    x_ticks = _thin_out(x_axis.ticks, size_in_points(axes)[0] / style.small_size)
+    axes.set_xticks(*zip(*x_ticks, strict=True))
     axes.set_yticks(*zip(*y_axis.ticks, strict=True))
-    axes.set_xlim(0.0, 1.0)
-    axes.set_ylim(0.0, 1.0)
+    axes.set_xlim(shown_window.ranges[0])
+    axes.set_ylim(shown_window.ranges[1])
     if equal:
         axes.set_box_aspect(shown_window.height / shown_window.width)
     label_axes(axes, x_axis.name, y_axis.name, style)
@@ -173,6 +176,12 @@ def _to_shares(shown_window: Window, points: np.ndarray) -> np.ndarray:
     low, high = _corners(shown_window)
     shares: np.ndarray = (points - low) / (high - low)
     return shares
+
+
+def _from_shares(shown_window: Window, shares: np.ndarray) -> np.ndarray:
+    low, high = _corners(shown_window)
+    points: np.ndarray = low + shares * (high - low)
+    return points
 
 
 def _corners(window: Window) -> np.ndarray:

@@ -110,7 +110,7 @@ def draw_map_panel(
         is_white |= frame.fate > Fate.BOUNDED
     # Row 0 of the pixels is on top, and row 0 of the map is lowest. Transparent pixels look white.
     pixels[::-1][is_white] = 0
-    draw_pixels(axes, pixels, spec.find_window(), shown)
+    draw_pixels(axes, pixels, spec.find_window())
     draw_limits(axes, spec.potential, spec.plane, spec.energy, shown)
     x_name, y_name = map(axis_label, spec.plane.axis_names)
     show_window(axes, shown, x_name, y_name, equal=equal)

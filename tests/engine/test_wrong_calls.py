@@ -239,7 +239,7 @@ WRONG_CALLS = (
     ("Execution(executor=4)", "executor=4: must be a concurrent.futures.Executor or None"),
     ("Execution(cancel=3)", "cancel=3: must be a threading.Event or None"),
     ("Execution(on_progress=3)", "on_progress=3: must be a function of the share done, or None"),
-    ('m.plot(axes, color="red")', "color: no such option; the picture of EscapeMap has palette, picture"),
+    ('m.plot(axes, color="red")', "color: no such option; the picture of EscapeMap has palette, legend, colorbar, picture"),
     ('m.plot(axes, picture="nice")', "picture='nice': must be one of curves, basins, times, crossings, characters, origins"),
     ("m.plot(ax=3)", "ax=3: must be Matplotlib axes or None"),
     ('III.in_rotating_frame(float("nan"))', "rotation=nan: must be a finite number, at most 1e+09 in magnitude"),

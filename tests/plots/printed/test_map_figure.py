@@ -187,9 +187,7 @@ def test_a_start_is_marked_in_the_colour_of_its_orbit(escape_map: EscapeMap) -> 
 def test_ticks_are_at_round_numbers(low: float, high: float, labels: list[str]) -> None:
     name, ticks = label_axis("x", low, high)
     assert (name, [label for _, label in ticks]) == ("x", labels)
-    np.testing.assert_allclose(
-        [low + place * (high - low) for place, _ in ticks], [number(label) for label in labels], atol=1e-12
-    )
+    assert [place for place, _ in ticks] == [number(label) for label in labels]
 
 
 @pytest.mark.parametrize("centre", [-0.3541234567, 0.0])
@@ -204,7 +202,7 @@ def test_ticks_of_a_deep_zoom_are_distinct(centre: float, width: float) -> None:
     middle = -number(offset.removeprefix("x").removesuffix(")").replace(" ", "") or "0")
     power = 10.0 ** int(unit.removeprefix("10").translate(str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")))
     values = [middle + number(label) * power for label in labels]
-    np.testing.assert_allclose(values, [low + place * (high - low) for place, _ in ticks], rtol=0, atol=1e-3 * width + 1e-16)
+    np.testing.assert_allclose(values, [place for place, _ in ticks], rtol=0, atol=1e-3 * width + 1e-16)
 
 
 def test_the_fonts_have_every_character_of_the_texts(escape_map: EscapeMap) -> None:
@@ -265,9 +263,12 @@ def test_manifolds_are_not_drawn_over_escape_times() -> None:
 
 def test_locked_limits_are_used_for_the_pixels_and_the_colour_bar(escape_map: EscapeMap) -> None:
     figure = draw_map_figure(escape_map, ["times"], PAPER, FigureStyle(12.0), times=TimeScale(2.5, 5000.0))
-    np.testing.assert_array_equal(
-        figure.axes[0].images[0].get_array(), picture_pixels(escape_map, "times", PAPER, times=TimeScale(2.5, 5000.0))
-    )
+    _, times = figure.axes[0].images
+    expected = picture_pixels(escape_map, "times", PAPER, times=TimeScale(2.5, 5000.0))
+    shown = times.to_rgba(times.get_array(), bytes=True)
+    has_escaped = (escape_map.fate > Fate.BOUNDED)[::-1]
+    assert has_escaped.any()
+    np.testing.assert_array_equal(shown[has_escaped], expected[has_escaped])
     bar = figure.axes[0].child_axes[0]
     labels = [tick.get_text() for tick in bar.get_xticklabels()]
     assert labels == ["≤ 2.5", "10", "100", "1000", "≥ 5000"]

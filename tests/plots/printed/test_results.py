@@ -58,7 +58,7 @@ def test_result_without_a_picture_shows_its_sentence_and_its_numbers(name: str) 
 
 
 def test_plot_returns_axes_in_the_coordinates_of_the_map() -> None:
-    axes = result_of("map").plot(Figure().subplots(), picture="times", palette="safe")
+    axes = result_of("map").plot(Figure().subplots(), picture="times", palette="safe").ax
     assert axes.get_xlim() == (SPEC.find_window().x_low, SPEC.find_window().x_high)
     assert axes.get_ylim() == (SPEC.find_window().ordinate_low, SPEC.find_window().ordinate_high)
 
@@ -66,7 +66,7 @@ def test_plot_returns_axes_in_the_coordinates_of_the_map() -> None:
 def test_paths_have_the_colours_of_their_exits() -> None:
     orbits = result_of("orbits")
     assert isinstance(orbits, SampledOrbits)
-    axes = orbits.plot(Figure().subplots(), palette="safe")
+    axes = orbits.plot(Figure().subplots(), palette="safe", legend=True).ax
     drawn = {str(line.get_color()): np.asarray(line.get_xydata()) for line in axes.lines}
     colours = {0: PALETTES["safe"].bounded} | dict(enumerate(PALETTES["safe"].channels, 1))
     assert set(drawn) == {colours[fate] for fate in orbits.fate.tolist()}
@@ -88,14 +88,14 @@ def test_paths_have_the_colours_of_their_exits() -> None:
     [("statistics", ("log", "linear")), ("decay laws", ("log", "log")), ("separation", ("linear", "log"))],
 )
 def test_axes_are_logarithmic_where_values_differ_by_factors(name: str, scales: tuple[str, str]) -> None:
-    axes = result_of(name).plot(Figure().subplots())
+    axes = result_of(name).plot(Figure().subplots()).ax
     assert (axes.get_xscale(), axes.get_yscale()) == scales
 
 
 def test_the_survival_is_drawn_until_the_last_escape() -> None:
     laws = result_of("decay laws")
     assert isinstance(laws, DecayLaws)
-    axes = laws.plot(Figure().subplots())
+    axes = laws.plot(Figure().subplots()).ax
     assert np.asarray(axes.lines[0].get_xdata())[-1] == laws.times[-1]
 
 
@@ -112,7 +112,7 @@ def test_invalid_options_are_named() -> None:
 def test_a_sweep_draws_the_measure_that_is_asked_for_or_its_first_one() -> None:
     request = SweepSpec(CASES["I"], Plane.X_PX, (0.2, 0.25, 0.3), resolution=(20, 20), t_max=100.0, measures=("basin_entropy",))
     sweep = compute_sweep(request)
-    axes = sweep.plot(Figure().subplots())
+    axes = sweep.plot(Figure().subplots()).ax
     np.testing.assert_array_equal(axes.lines[0].get_ydata(), sweep["s_b"])
     assert axes.get_xlabel() == "h"
     assert axes.lines[0].get_label() == "S$_{b}$"
