@@ -96,7 +96,7 @@ def bounded_starts(potential: Potential, energy: float) -> np.ndarray:
     kept_apart, t_max = potential.with_outcomes(wide, potential.escape_radius), DURATION * potential.well.exact_time_unit
     found = np.empty((0, 4))
     for seed in itertools.count():
-        starts = sample_starts(potential, energy, 20 * ORBITS, seed=seed)
+        starts = sample_starts(potential, energy, 20 * ORBITS, rng=seed)
         found = np.vstack([found, starts[classify_orbits(kept_apart, energy, starts, t_max).fate == 0]])
         if len(found) >= ORBITS:
             return np.ascontiguousarray(found[:ORBITS])

@@ -47,7 +47,7 @@ STARTS_PER_BOUNDED = 30
 
 
 def bounded_starts(potential: Potential, energy: float, count: int, seed: int) -> np.ndarray:
-    starts = sample_starts(potential, energy, STARTS_PER_BOUNDED * count, seed=seed)
+    starts = sample_starts(potential, energy, STARTS_PER_BOUNDED * count, rng=seed)
     fates = classify_orbits(potential, energy, starts, t_max=TIMES[0]).fate
     return starts[fates == Fate.BOUNDED][:count]
 

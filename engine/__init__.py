@@ -5,11 +5,11 @@ These are the public names of the library. All results are displayed in notebook
 programs of this repository, and may change with any version.
 
 - systems: `Potential`, `System`, `Centre`, `Outcome`, `CASES`, `POTENTIALS`, `parse_formula`, `FormulaError`, `write_formula`,
-  `review_potential`
+  `review_potential`, `UnknownNameError`
 - starts: `Plane`, `Slice`, `Coordinate`, `Direction`, `ParameterAxis`, `Window`, `Section`, `read_section`, `start_states`,
   `sample_starts`, `sample_entrances`, `sample_entrances_by_exit`
-- orbits: `integrate_orbit`, `Orbit`, `sample_orbits`, `classify_orbits`, `find_returns`, `find_lyapunov_orbits`, `LyapunovOrbit`,
-  `judge_orbit`, `compute_separation`, `find_divergent_start`, `compute_flux`
+- orbits: `integrate_orbit`, `Orbit`, `sample_orbits`, `classify_orbits`, `find_returns`, `find_lyapunov_orbits`,
+  `LyapunovOrbit`, `UndefinedExitsError`, `judge_orbit`, `compute_separation`, `find_divergent_start`, `compute_flux`
 - maps of escapes: `MapSpec`, `compute_map`, `EscapeMap`, `Fate`, `Evidence`, `compute_returns`, `store_returns`,
   `compute_regularity`, `Regularity`, `compute_trust`, `Trust`, `compute_origin_fates`, `find_stable_manifolds`,
   `compute_lagrangian_descriptor`, `TimeDirection`
@@ -27,6 +27,7 @@ import typing
 
 from engine.exits.closed_orbit import Stability as Stability
 from engine.exits.lyapunov_orbit import LyapunovOrbit as LyapunovOrbit
+from engine.exits.lyapunov_orbits import UndefinedExitsError as UndefinedExitsError
 from engine.exits.lyapunov_orbits import find_lyapunov_orbits as find_lyapunov_orbits
 from engine.foundations.execution import Execution as Execution
 from engine.foundations.result import Result as Result
@@ -79,7 +80,7 @@ from engine.sweeps.plan import plan_sweep as plan_sweep
 from engine.sweeps.spec import SweepSpec as SweepSpec
 from engine.sweeps.stored_returns import store_returns as store_returns
 from engine.sweeps.sweep import compute_sweep as compute_sweep
-from engine.systems.formulas.formula_parser import parse_formula as parse_formula
+from engine.systems.catalogue.names import UnknownNameError as UnknownNameError
 from engine.systems.formulas.formula_tokens import FormulaError as FormulaError
 from engine.systems.formulas.formula_writer import write_formula as write_formula
 from engine.systems.known_potentials import CASES as CASES
@@ -89,6 +90,7 @@ from engine.systems.outcomes import Outcome as Outcome
 from engine.systems.potential import Potential as Potential
 from engine.systems.review.potential_review import review_potential as review_potential
 from engine.systems.system import System as System
+from engine.systems.system import parse_formula as parse_formula
 from engine.trajectories.classified_orbits import classify_orbits as classify_orbits
 from engine.trajectories.entrances import sample_entrances as sample_entrances
 from engine.trajectories.entrances import sample_entrances_by_exit as sample_entrances_by_exit

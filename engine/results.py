@@ -22,9 +22,11 @@ from engine.periodic.families.family import SpecialPoint as SpecialPoint
 from engine.periodic.periodic_orbits import PeriodicOrbits as PeriodicOrbits
 from engine.periodic.symmetric.symmetric_families import SymmetricFamilies as SymmetricFamilies
 from engine.propagation.classification import Outcomes as Outcomes
+from engine.sweeps.plan import SweepPlan as SweepPlan
 from engine.sweeps.sweep import Sweep as Sweep
 from engine.systems.review.potential_review import PotentialReview as PotentialReview
 from engine.trajectories.birkhoff_digits import BirkhoffDigits as BirkhoffDigits
+from engine.trajectories.chaos_indicators import Verdict as Verdict
 from engine.trajectories.nearest_divergent_start import DivergentStart as DivergentStart
 from engine.trajectories.orbit_returns import OrbitReturns as OrbitReturns
 from engine.trajectories.orbit_verdicts import OrbitVerdict as OrbitVerdict

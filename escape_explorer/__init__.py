@@ -9,7 +9,6 @@ version.
 from __future__ import annotations
 
 from importlib import import_module
-from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -30,8 +29,8 @@ def __getattr__(name: str) -> Any:
         return import_module("escape_explorer.results")
     engine = import_module("engine")
     if name == "__all__":
-        # With `import *` all of these are imported.
-        return [*engine.__all__, *(["Explorer"] if find_spec("panel") else [])]
+        # Without `Explorer`, because with `import *` all of these are imported, and the page takes seconds.
+        return engine.__all__
     if name not in engine.__all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(engine, name)

@@ -79,7 +79,9 @@ class MapCache:
         """Return the uncertainty exponent of the basins of a case."""
         spec = self._spec(case, plane, energy)
         work = self.quality.exponent_work
-        return self._once(("exponent", spec), lambda: compute_uncertainty_exponent(spec, work=work, execution=self.execution))
+        return self._once(
+            ("exponent", spec), lambda: compute_uncertainty_exponent(spec, work=work, execution=self.execution, rng=0)
+        )
 
     def _once[Value](self, key: Hashable, compute: Callable[[], Value]) -> Value:
         """Return the value stored under a key. The first call computes the value."""

@@ -61,7 +61,7 @@ def run(
     potential: Potential,
     energy: OneEnergy,
     count: Annotated[int, DocumentedBy(sample_starts)] = 3000,
-    seed: Annotated[int, DocumentedBy(sample_starts)],
+    seed: Annotated[int, typer.Option(min=0)] = 0,
     plane: Annotated[Slice | None, OptionChanges(defaults={"plane": None})],
     window: Annotated[GivenWindow | None, DocumentedBy(sample_starts)],
     entering: bool = False,
@@ -78,6 +78,8 @@ def run(
 
     Parameters
     ----------
+    seed
+        Seed of the random numbers; equal seeds give equal starts.
     entering
         Start on the exits and move inward, distributed as the flux; the escape times are then gap times.
     frames
@@ -122,10 +124,10 @@ def _draw_starts(
 ) -> tuple[np.ndarray | None, np.ndarray]:
     """Return the entrances (None unless orbits enter) and states of shape (count, 4); ValueError for contradictory options."""
     if not entering:
-        return None, sample_starts(potential, energy, count, plane=plane, window=window, seed=seed)
+        return None, sample_starts(potential, energy, count, plane=plane, window=window, rng=seed)
     if plane is not None or window is not None:
         raise ValueError("entering: orbits start on the exits; leave --plane and --window out")
-    return sample_entrances_by_exit(potential, energy, count, seed=seed)
+    return sample_entrances_by_exit(potential, energy, count, rng=seed)
 
 
 def _starts_csv(starts: np.ndarray, outcomes: Outcomes) -> str:

@@ -156,7 +156,7 @@ def uncertainty_exponent() -> Figure:
     """Draw the share of uncertain pairs against their separation at two energies."""
     figure, panels = new_panels(2, 10.0, sharey=True)
     for axes, energy in zip(panels, (0.2, 0.3), strict=True):
-        found = compute_uncertainty_exponent(MapSpec(CASES["II"], Plane.X_PX, energy), work=3e7)
+        found = compute_uncertainty_exponent(MapSpec(CASES["II"], Plane.X_PX, energy), work=3e7, rng=0)
         show(axes, found, f"h = {energy}: α = {found.exponent:.2f}")
     return figure
 
@@ -228,7 +228,7 @@ def flux() -> Figure:
     figure, (axes,) = new_panels(1, 9.5, width=18.0)
     case, energy, count = CASES["II"], 0.2, 20_000
     rate = compute_flux(case, energy).decay_rate
-    times = np.sort(classify_orbits(case, energy, sample_starts(case, energy, count), t_max=1e3).escape_time)
+    times = np.sort(classify_orbits(case, energy, sample_starts(case, energy, count, rng=0), t_max=1e3).escape_time)
     t = np.linspace(0.0, 100.0, 400)
     axes.semilogy(t, 1.0 - np.searchsorted(times, t) / count, color=MEASURED, label="random starts")
     axes.semilogy(t, np.exp(-rate * t), "--", color=LIGHT.text, label=f"exp(−{rate:.3g} t)")

@@ -225,6 +225,13 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
         }
         return arrays, attributes
 
+    def identical(self, other: Result) -> bool:
+        """Return whether another result has the same class, the same contents to the last bit, and the same provenance.
+
+        NaN equals NaN. A result that `open_result` reads is identical to the written one, which ``==`` says of few results.
+        """
+        return type(self) is type(other) and self.to_xarray().identical(other.to_xarray())
+
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the result as a NetCDF file, which `open_result` reads; for a table use ``to_pandas().to_csv(path)``.
 

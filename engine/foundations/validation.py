@@ -26,6 +26,13 @@ LARGEST_COEFFICIENT = 1e90
 LONGEST_TIME = 1e8
 """Largest t_max, in the time unit of the well if this unit exceeds 1. The rounding error of t is then up to 1e-8."""
 
+type RandomNumbers = int | np.random.Generator | None
+"""Where random numbers come from, as functions accept it (SPEC 7): a seed, a generator, or None for new numbers at each call."""
+
+# Kinds of NumPy types that are not real numbers, but that NumPy converts to them: complex numbers and texts.
+_NOT_REAL = "cSU"
+# The largest legal seed and one more.
+_SEEDS = 2**63
 _LINE_BREAK = re.compile(r"\s*\n\s*")
 # Descriptions of types in messages, by the name of the type.
 _TYPE_NAMES = {
@@ -130,13 +137,30 @@ def checked_count(name: str, value: Any, least: int, most: int) -> int:
     return count
 
 
+def checked_generator(rng: RandomNumbers) -> np.random.Generator:
+    """Return the generator of a parameter `rng`; ValueError unless it is as in `RandomNumbers`."""
+    return np.random.default_rng(rng if rng is None or isinstance(rng, np.random.Generator) else checked_seed(rng))
+
+
+def checked_seed(rng: RandomNumbers) -> int:
+    """Return the seed of a parameter `rng`, for several generators that depend on it: an integer itself, or a random one."""
+    if rng is None or isinstance(rng, np.random.Generator):
+        return int(np.random.default_rng(rng).integers(_SEEDS))
+    try:
+        return checked_count("rng", rng, 0, _SEEDS - 1)
+    except ValueError as error:
+        raise ValueError(f"{error}, a numpy.random.Generator or None") from None
+
+
 def checked_array(name: str, value: Any, *, keep_type: bool = False) -> np.ndarray:
     """Return an array of floats or, with `keep_type`, of the type of the value; shape and range are not checked."""
     try:
-        array: np.ndarray = np.asarray(value, dtype=None if keep_type else float)
+        array: np.ndarray = np.asarray(value)
+        if array.dtype.kind in _NOT_REAL:
+            raise TypeError
+        return array if keep_type else array.astype(float, copy=False)
     except (TypeError, ValueError, OverflowError):
-        raise ValueError(f"{name}={short_repr(value)}: must be an array of numbers with rows of equal length") from None
-    return array
+        raise ValueError(f"{name}={short_repr(value)}: must be an array of real numbers with rows of equal length") from None
 
 
 def checked_finite(name: str, value: Any) -> Any:
@@ -173,12 +197,18 @@ def checked_t_max(
     return float(t_max)
 
 
-def checked_states(name: str, states: Any) -> np.ndarray:
-    """Return an array (n, 4) of x, y, px and py, each at most `LARGEST_NUMBER` in magnitude."""
+def checked_states(name: str, states: Any, *, allow_forbidden: bool = False) -> np.ndarray:
+    """Return an array (n, 4) of x, y, px and py, each at most `LARGEST_NUMBER` in magnitude.
+
+    With `allow_forbidden`, momenta may be NaN: there is no such orbit.
+    """
     array: np.ndarray = np.ascontiguousarray(checked_array(name, states))
     if array.ndim != 2 or array.shape[1] != 4:
         raise ValueError(f"{name} of shape {array.shape}: must be (n, 4) with columns x, y, px, py")
-    is_legal = (np.abs(array) <= LARGEST_NUMBER).all(axis=1)
+    is_legal_number = np.abs(array) <= LARGEST_NUMBER
+    if allow_forbidden:
+        is_legal_number[:, 2:] |= np.isnan(array[:, 2:])
+    is_legal = is_legal_number.all(axis=1)
     if not is_legal.all():
         row = int(np.argmin(is_legal))
         raise ValueError(f"{name}: row {row} has a number that is not finite or larger than {LARGEST_NUMBER:g} in magnitude")

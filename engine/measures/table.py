@@ -75,7 +75,7 @@ def _find_exponent(measured: MeasuredMap) -> UncertaintyExponent | None:
     spec = measured.spec
     if not spec.potential.well.open_channels(highest_energy(spec.energy)):
         return None
-    return compute_uncertainty_exponent(spec, work=measured.effort * WORK, execution=measured.execution)
+    return compute_uncertainty_exponent(spec, work=measured.effort * WORK, rng=0, execution=measured.execution)
 
 
 def _find_chaotic_share(measured: MeasuredMap) -> ChaoticShare | None:

@@ -9,7 +9,7 @@ import numpy as np
 
 from engine.exits.exit_rows import exit_curves_at
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
-from engine.foundations.validation import checked_count, checks_types, short_repr
+from engine.foundations.validation import RandomNumbers, checked_count, checked_seed, checks_types, short_repr
 from engine.maps.spec import MapSpec
 from engine.measures.basins.power_law_fit import MIN_EXPECTED_PAIRS, UncertaintyExponent, fit_uncertainty, predict_shares
 from engine.propagation.batch import OrbitBatch, propagate_batch
@@ -59,7 +59,7 @@ def compute_uncertainty_exponent(
     pairs: int = 200,
     separations: int = 17,
     work: float = WORK,
-    seed: int = 0,
+    rng: RandomNumbers = None,
     execution: Execution = DEFAULT_EXECUTION,
 ) -> UncertaintyExponent:
     """Measure how fast the share of uncertain starts falls with the error ε of a start, and thereby the boundary dimension.
@@ -91,8 +91,8 @@ def compute_uncertainty_exponent(
     work
         Limit of the total integration time of all orbits, above 0, in time units of the well. The initial pairs are always
         integrated.
-    seed
-        Seed of the random numbers, 0 or more. The same seed gives a bit-identical result.
+    rng
+        Random numbers: a seed, 0 to 2⁶³ − 1, of which equal ones give equal results, or a NumPy generator; None for new numbers.
     execution
         How the computation runs.
 
@@ -110,14 +110,14 @@ def compute_uncertainty_exponent(
     Examples
     --------
     >>> from escape_explorer import CASES, MapSpec, Plane, compute_uncertainty_exponent
-    >>> result = compute_uncertainty_exponent(MapSpec(CASES["II"], Plane.X_PX, 0.25), work=1e6)
+    >>> result = compute_uncertainty_exponent(MapSpec(CASES["II"], Plane.X_PX, 0.25), work=1e6, rng=0)
     >>> round(result.low, 2), round(result.exponent, 2), round(result.high, 2)
     (0.21, 0.23, 0.25)
     """
     spec.plane.check_one_potential("spec")
     pairs = checked_count("pairs", pairs, 10, _MAX_PAIRS)
     separations = checked_count("separations", separations, 5, _MAX_SEPARATIONS)
-    seed = checked_count("seed", seed, 0, 2**63 - 1)
+    seed = checked_seed(rng)
     # With the declared type of `work`, type checkers would report that this check cannot fail; an `object` prevents this.
     given_work: object = work
     if not isinstance(given_work, numbers.Real) or not work > 0.0:

@@ -1,4 +1,4 @@
-"""Outcomes of orbits: of many orbits of one energy, and of one orbit with its steps."""
+"""Outcomes of orbits: of many orbits, and of one orbit with its steps."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from engine.exits.exit_rows import exit_curves
+from engine.exits.exit_rows import exit_curves_at
 from engine.exits.exit_shapes import exit_gates
 from engine.foundations.execution import Execution
 from engine.integrator.kernels.dense_output import trace_orbit
@@ -68,22 +68,22 @@ def collect_outcomes(potential: Potential, energy: np.ndarray, batch: OrbitBatch
 
 def classify_in_well_units(
     potential: Potential,
-    energy: float,
+    energies: np.ndarray,
     states: np.ndarray,
     t_max: float,
     execution: Execution,
     section: SectionNumbers = UPWARD,
 ) -> Outcomes:
-    """Return the outcomes of orbits of one energy, without `t_max` and `outcomes`; all quantities are in units of the well.
+    """Return the outcomes of orbits, without `t_max` and `outcomes`; all quantities are in units of the well.
 
     Parameters
     ----------
     potential
         The potential in units of its well, `Potential.in_well_units`.
-    energy
-        The energy of all orbits.
+    energies
+        (n,) the energy of each orbit; NaN for forbidden starts. The exits are found at each different energy.
     states
-        (n, 4) x, y, px, py of the starts, with this energy.
+        (n, 4) x, y, px, py of the starts, with these energies; NaN in forbidden starts.
     t_max
         Largest integration time, above 0, dimensionless.
     execution
@@ -91,15 +91,20 @@ def classify_in_well_units(
     section
         The surface of section at which crossings are counted, see `Section.numbers`.
     """
-    curves = exit_curves(potential, energy)[None]
-    batch = OrbitBatch.from_starts(states, np.zeros(len(states), np.int64))
-    all_indices = np.arange(len(states))
-    batch.mark_outside(potential, all_indices, curves, execution=execution)
-    propagate_batch(
-        potential, curves, batch, all_indices, t_max, final=True, execution=execution,
-        on_tiles=lambda: execution.report(partial(_share_done, batch, t_max)), section=section,
-    )  # fmt: skip
-    return collect_outcomes(potential, np.full(len(states), energy), batch)
+    is_orbit = np.isfinite(energies)
+    values, row = np.unique(energies[is_orbit], return_inverse=True)
+    curve_row = np.zeros(len(states), np.int64)
+    curve_row[is_orbit] = row
+    batch = OrbitBatch.from_starts(states, curve_row)
+    orbits = np.flatnonzero(batch.fate == Fate.NOT_COMPUTED)
+    if orbits.size:
+        curves = exit_curves_at(potential, values, execution)
+        batch.mark_outside(potential, orbits, curves, execution=execution)
+        propagate_batch(
+            potential, curves, batch, orbits, t_max, final=True, execution=execution,
+            on_tiles=lambda: execution.report(partial(_share_done, batch, t_max)), section=section,
+        )  # fmt: skip
+    return collect_outcomes(potential, energies, batch)
 
 
 def _share_done(batch: OrbitBatch, t_max: float) -> float:

@@ -6,7 +6,7 @@ from collections.abc import Mapping, MutableMapping
 from dataclasses import dataclass
 from enum import Enum
 from types import MappingProxyType
-from typing import TYPE_CHECKING, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from engine.systems.well_units import WellUnits, nearest_power_of_two
 
 
 class Coordinate(Enum):
-    """A coordinate of a start. The value of each member is its name.
+    """A coordinate of a start. The value of each member is its name, such as "px", which functions accept in its place.
 
     `THETA` is the angle of the velocity from the +x axis, px = v cos θ, py = v sin θ. `BETA` is the angle of the velocity from
     the outward radial direction, or at the origin from the +y axis: 0 is radially outward, π/2 tangential, counterclockwise.
@@ -33,6 +33,11 @@ class Coordinate(Enum):
     BETA = "beta"
     SPEED = "v"
     H = "h"
+
+    @classmethod
+    def _missing_(cls, value: object) -> Coordinate | None:
+        """Return the coordinate with a symbol, for ``Coordinate("θ")``."""
+        return next((coordinate for coordinate in cls if coordinate.symbol == value), None)
 
     @property
     def key(self) -> str:
@@ -270,6 +275,19 @@ def _system_of(potential: Potential) -> System:
 
 Axis = Coordinate | Direction | ParameterAxis | HeldParameter
 """An axis of a slice."""
+
+type CoordinateName = Coordinate | str
+"""A coordinate as functions accept it: a `Coordinate`, or its name or symbol."""
+
+
+def checked_coordinate(name: str, value: Any, other_values: str = "") -> Coordinate:
+    """Return a `CoordinateName` as a coordinate; ValueError for anything else, with `other_values` that are legal."""
+    try:
+        return Coordinate(value)
+    except ValueError:
+        legal = ", ".join(coordinate.key for coordinate in Coordinate)
+        raise ValueError(f"{name}={short_repr(value)}: must be one of {legal}{other_values}") from None
+
 
 Energy = float | tuple[float, float]
 """The energy of a map: h, or its range (low, high) on a slice with an axis h."""

@@ -43,13 +43,17 @@ SECTION = Plane.X_PX
 
 
 def checked_slice(value: Any) -> Slice:
-    """Return a slice, given as a `Slice` or as the title or the key of a named slice: "(x, px)" or "x_px"."""
+    """Return a slice, given as a `Slice`, as the title or key of a named slice, "(x, px)" or "x_px", or by two names, "x,py"."""
     if isinstance(value, Slice):
         return next((plane for plane in Plane if _fields(plane) == _fields(value)), value)
     planes_by_name = {name: plane for plane in Plane for name in (plane.title, plane.key)}
     if isinstance(value, str) and value in planes_by_name:
         return planes_by_name[value]
-    raise ValueError(f"plane={short_repr(value)}: must be a Slice or one of {', '.join(plane.key for plane in Plane)}")
+    if isinstance(value, str) and value.count(",") == 1:
+        abscissa, ordinate = (name.strip() for name in value.split(","))
+        return checked_slice(Slice(abscissa, ordinate))
+    legal = ", ".join(plane.key for plane in Plane)
+    raise ValueError(f"plane={short_repr(value)}: must be a Slice, one of {legal}, or two coordinates such as 'x,py'")
 
 
 def _fields(plane: Slice) -> tuple[Any, ...]:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from engine.exits.interior import find_outside_channels
-from engine.foundations.validation import checked_count, checked_number, checks_types
+from engine.foundations.validation import RandomNumbers, checked_count, checked_generator, checked_number, checks_types
 from engine.slices.default_window import default_window
 from engine.slices.planes import ENERGY_SURFACE, SPACE, checked_slice
 from engine.slices.slice import Slice
@@ -33,7 +33,7 @@ def sample_starts(
     *,
     plane: Slice | str | None = None,
     window: GivenWindow | None = None,
-    seed: int = 0,
+    rng: RandomNumbers = None,
 ) -> np.ndarray:
     """Draw random starts inside all exits.
 
@@ -52,8 +52,8 @@ def sample_starts(
         The slice, such as a `Plane`, of one energy and one potential; None for the energy surface.
     window
         Part of the slice, or of (x, y) on the energy surface, given as in `MapSpec`; None for the whole interior.
-    seed
-        0 to 2⁶³ − 1; equal seeds give equal starts.
+    rng
+        Random numbers: a seed, 0 to 2⁶³ − 1, of which equal ones give equal starts, or a NumPy generator; None for new numbers.
 
     Returns
     -------
@@ -67,14 +67,14 @@ def sample_starts(
     Examples
     --------
     >>> from escape_explorer import CASES, classify_orbits, sample_starts
-    >>> starts = sample_starts(CASES["III"], 0.45, 1000, seed=1)
+    >>> starts = sample_starts(CASES["III"], 0.45, 1000, rng=1)
     >>> outcomes = classify_orbits(CASES["III"], 0.45, starts, t_max=100.0)
     >>> [round(float((outcomes.fate == channel).mean()), 2) for channel in (1, 2, 3, 4)]
     [0.24, 0.22, 0.22, 0.23]
     """
     h = checked_number("energy", energy)
     count = checked_count("count", count, 1, LARGEST_SAMPLE)
-    generator = np.random.default_rng(checked_count("seed", seed, 0, 2**63 - 1))
+    generator = checked_generator(rng)
     window_plane = SPACE if plane is None else checked_slice(plane)
     window_plane.check_one_potential("plane")
     if window_plane.energy_axis is not None:

@@ -13,10 +13,22 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from engine.foundations.validation import LARGEST_NUMBER, check_type, checked_array, checked_number, short_repr
+from engine.foundations.validation import LARGEST_NUMBER, checked_array, checked_number, short_repr
 from engine.foundations.wording import format_number
 from engine.integrator.kernels import slice_starts
-from engine.slices.axes import ANGLES, MOMENTA, POSITIONS, STATE, Axis, Coordinate, Direction, Energy, ParameterAxis
+from engine.slices.axes import (
+    ANGLES,
+    MOMENTA,
+    POSITIONS,
+    STATE,
+    Axis,
+    Coordinate,
+    CoordinateName,
+    Direction,
+    Energy,
+    ParameterAxis,
+    checked_coordinate,
+)
 from engine.slices.slice_starts import check_coordinates, compute_required_energy, compute_states, default_solved
 from engine.systems.potential import Potential
 from engine.systems.system import System
@@ -30,15 +42,16 @@ class Slice:
     Parameters
     ----------
     abscissa, ordinate
-        The two axes, which must differ: coordinates, `Direction`s, and at most one `ParameterAxis`.
+        The two axes, which must differ: coordinates such as ``Coordinate.X`` or "x", `Direction`s, and at most one
+        `ParameterAxis`.
     solved
         The coordinate that the energy determines: a momentum, or the speed if an angle is used. None stands for the speed if an
         angle is used, px if py is used, and otherwise py.
     sign
         Sign of the determined momentum, 1 or −1; 1 for the speed.
     fixed
-        ((coordinate, value), …): values of the other coordinates of the state, dimensionless; 0 for coordinates that are not
-        given.
+        Values of the other coordinates of the state, dimensionless, as a mapping such as ``{"y": 0.1}`` or as pairs; 0 for
+        coordinates that are not given.
 
     Raises
     ------
@@ -58,11 +71,11 @@ class Slice:
 
         def __init__(
             self,
-            abscissa: Axis,
-            ordinate: Axis,
-            solved: Coordinate | None = None,
+            abscissa: Axis | str,
+            ordinate: Axis | str,
+            solved: CoordinateName | None = None,
             sign: int = 1,
-            fixed: Iterable[tuple[Coordinate, float]] = (),
+            fixed: Mapping[str, float] | Mapping[Coordinate, float] | Iterable[tuple[CoordinateName, float]] = (),
         ) -> None: ...
 
     def __post_init__(self) -> None:
@@ -82,17 +95,19 @@ class Slice:
         object.__setattr__(self, "fixed", tuple(pairs))
 
     def _check_types(self) -> None:
-        """Raise ValueError for a field of a wrong type. `fixed` becomes a tuple of pairs."""
-        for name, axis in zip(("abscissa", "ordinate"), self.axes, strict=True):
+        """Raise ValueError for a field of a wrong type. Names become coordinates, and `fixed` a tuple of pairs."""
+        # Type checkers would report that the conversions of the declared types cannot happen.
+        given: Any = self
+        for name, axis in (("abscissa", given.abscissa), ("ordinate", given.ordinate)):
             if not isinstance(axis, Axis):
-                raise ValueError(f"{name}={short_repr(axis)}: must be a Coordinate, a Direction or a ParameterAxis")
-        check_type("solved", self.solved, (Coordinate, type(None)))
+                object.__setattr__(self, name, checked_coordinate(name, axis, ", a Direction or a ParameterAxis"))
+        if self.solved is not None:
+            object.__setattr__(self, "solved", checked_coordinate("solved", self.solved))
         try:
-            object.__setattr__(self, "fixed", tuple((coordinate, value) for coordinate, value in self.fixed))
+            pairs = [(name, value) for name, value in (given.fixed.items() if isinstance(given.fixed, Mapping) else given.fixed)]
         except (TypeError, ValueError):
-            raise ValueError(f"fixed={short_repr(self.fixed)}: must be ((coordinate, value), …)") from None
-        for coordinate, _ in self.fixed:
-            check_type("fixed", coordinate, Coordinate)
+            raise ValueError(f"fixed={short_repr(self.fixed)}: must be a mapping such as {{'y': 0.1}}, or pairs") from None
+        object.__setattr__(self, "fixed", tuple((checked_coordinate("fixed", name), value) for name, value in pairs))
 
     def __repr__(self) -> str:
         fixed = "".join(f"({coordinate}, {value!r}), " for coordinate, value in self.fixed)

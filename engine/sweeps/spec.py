@@ -210,7 +210,8 @@ def _checked_values(values: Any) -> tuple[float, ...]:
     except (TypeError, ValueError, OverflowError):
         raise ValueError(f"values={short_repr(values)}: must be a sequence of finite numbers") from None
     if not 1 <= len(checked) <= MOST_VALUES or not np.all(np.abs(checked) <= LARGEST_NUMBER):
-        raise ValueError(f"values: {len(checked)} different ones; must be 1 to {MOST_VALUES} finite numbers")
+        legal = f"1 to {MOST_VALUES} different numbers, each finite and at most {LARGEST_NUMBER:g} in magnitude"
+        raise ValueError(f"values={short_repr(values)}: must be {legal}")
     return checked
 
 

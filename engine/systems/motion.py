@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from functools import cached_property
 from typing import Any, Self
 
@@ -46,8 +47,8 @@ class Motion(Result):
     rotation: float
     mass: float
 
-    def _copy_with(self, **values: Any) -> Self:
-        """Return a copy with other values of some attributes."""
+    def _copy_with(self, *, factors: Mapping[str, float] | None = None, **values: Any) -> Self:
+        """Return a copy with other values of some attributes, and those factors of the parameters of its system."""
         raise NotImplementedError
 
     @property
@@ -169,7 +170,8 @@ class Motion(Result):
         V = ½ (ω1² x² + ω2² y²) + ε V1 as in Zotos (2014), who uses ω1 = ω2 = ε = 1. V1 is V without the constant, linear and
         quadratic terms of its expansion about the origin: the terms of degree 3 and higher of a polynomial. The terms with x², y²
         and x y are multiplied by ω1², ω2² and ω1 ω2, even if the quadratic terms are not ½ (x² + y²). The default values give the
-        potential itself. Constant and linear terms are unchanged.
+        potential itself. Constant and linear terms are unchanged. The result can be the system of a `ParameterAxis` if this
+        potential can.
 
         Parameters
         ----------
@@ -192,7 +194,7 @@ class Motion(Result):
             raise ValueError(f"omega_1, omega_2, epsilon: V of {self.name} has no expansion about the origin; must be 1")
         changes = ", ".join(f"{symbol_of(name)}={value:g}" for name, value in parameters.items() if value != 1.0)
         form = self.form.with_parameters(omega_1, omega_2, epsilon)
-        return self._copy_with(name=f"{self.name} ({changes})", form=form)
+        return self._copy_with(name=f"{self.name} ({changes})", form=form, factors=parameters)
 
     def check_at_rest(self, what: str) -> None:
         """Raise ValueError if the frame rotates. `what` names, in the plural, computations that rely on time reversal."""

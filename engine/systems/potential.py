@@ -220,9 +220,19 @@ class Potential(Motion):
         make_well = partial(ContinuedWell, exit_saddles=saddles, maxima=maxima, saddle_indices=saddle_indices)
         return replace(self, lineage=Lineage(family, make_well))
 
-    def _copy_with(self, **values: Any) -> Potential:
-        """Return a copy with other values of some attributes. The exits of its well are searched again."""
-        return replace(self, lineage=SEARCHED, system=None, **values)
+    def _copy_with(self, *, factors: Mapping[str, float] | None = None, **values: Any) -> Potential:
+        """Return a copy with other values of some attributes. The exits of its well are searched again.
+
+        It keeps a system, whose parameters have these factors, only if it is the potential of this system.
+        """
+        copy = replace(self, lineage=SEARCHED, system=None, **values)
+        if self.system is None or factors is None:
+            return copy
+        system = self.system.with_factors(factors)
+        try:
+            return replace(copy, system=system) if system.potential == copy else copy
+        except ValueError:
+            return copy
 
     def at_minimum(self, x: float = 0.0, y: float = 0.0) -> Potential:
         """Return the potential with its axes moved to the minimum nearest to a place. Its exits are those of the well there.

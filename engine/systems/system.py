@@ -7,10 +7,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 
-from engine.foundations.validation import check_type
+from engine.foundations.validation import check_type, checks_types
 from engine.systems.catalogue.entry import CatalogueEntry
 from engine.systems.catalogue.table import CATALOGUE
-from engine.systems.formulas.formula_parser import LARGEST_VALUE, formula_letters, parse_formula
+from engine.systems.formulas.formula_parser import LARGEST_VALUE, formula_letters, make_potential
 from engine.systems.formulas.formula_writer import write_formula
 from engine.systems.parameters import ROTATION, WELL_PARAMETERS, symbol_of
 from engine.systems.potential import Potential
@@ -117,6 +117,10 @@ class System:
         """Return the system with another value of one parameter."""
         return replace(self, parameters={**self.parameters, name: value})
 
+    def with_factors(self, factors: Mapping[str, float]) -> System:
+        """Return the system with parameters multiplied by factors."""
+        return replace(self, parameters={**self.parameters, **{name: self.value_of(name) * factors[name] for name in factors}})
+
     @property
     def as_typed(self) -> System:
         """The same system given by a formula. For a well, ω1, ω2 and ε become numbers; other formulas keep their letters."""
@@ -166,5 +170,68 @@ def _make_potential(system: System) -> Potential:
     values = {**entry.parameters, **system.parameters}
     letters = {name: value for name, value in values.items() if name not in WELL_PARAMETERS}
     well_values = {name: value for name, value in values.items() if name in WELL_PARAMETERS and name != ROTATION}
-    potential = parse_formula(entry.formula, entry.name, letters).with_parameters(**well_values)
+    potential = make_potential(entry.formula, entry.name, letters).with_parameters(**well_values)
     return replace(potential.in_rotating_frame(system.value_of(ROTATION)), system=system)
+
+
+@checks_types(text=str, name=(str, type(None)), parameters=(Mapping, type(None)))
+def parse_formula(text: str, name: str | None = None, parameters: Mapping[str, float] | None = None) -> Potential:
+    """Return the potential given by a formula.
+
+    Parameters
+    ----------
+    text
+        A formula in x and y of at most 500 characters:
+
+        - numbers (2, 0.5, 1e-3, ½), x, y and r = √(x² + y²);
+        - + − * / ^ ** √ and round brackets, also "·" and "×". "2x²y" is a product, and "1/2 x" is half of x;
+        - exp(), log() or ln(), sin(), cos() and sqrt();
+        - exponents from −12 to 12;
+        - at most 8 letters for parameters, each with or without one digit: "a", "k1", "α". Greek letters and all Latin letters
+          except e, t, z, E and V are allowed. "px", "py", "vx" and "vy" are refused;
+        - "V =" in front, which is ignored.
+
+        Clauses can follow:
+
+        - "; centre the Moon (0, 0) 0.0045": a body with a name, its place and its radius of collision;
+        - "; escape 10": an escape radius;
+        - "; well (1, 0)": a place near a minimum, to which the axes are moved, see `Potential.at_minimum`;
+        - "; exits L2, L1": names of the exits in channel order;
+        - "; masses (8, 8)": the masses of px²/2m₁ + py²/2m₂, which must be equal. For two masses write V(x/√m₁, y/√m₂), whose
+          axes are √m₁ x and √m₂ y.
+    name
+        Name of the potential; by default the formula as written by `write_formula`.
+    parameters
+        Values of letters, at most 1e9 in magnitude; by default 1. A value is substituted as the decimal that Python prints.
+
+    Returns
+    -------
+    The potential, whose letters can be varied along a `ParameterAxis`. A polynomial is expanded exactly, with each coefficient
+    rounded once and the terms sorted by degree; a constant term is kept.
+
+    Raises
+    ------
+    ValueError
+        A `FormulaError` with the position and the problem:
+
+        - the text cannot be parsed, or has more than 500 characters, more than 50 nested brackets or roots, neither x nor y, or a
+          function of a number outside the domain of the function;
+        - a polynomial has a degree above 12, more than 60 terms, or a coefficient whose magnitude is not between 1e-9 and 1e9;
+        - another formula and its derivatives up to the second have more than 120 products and functions.
+
+        Any other ValueError: a parameter is not a letter of the formula, its value is not legal, or V has no minimum to which
+        the axes could be moved.
+
+    Examples
+    --------
+    >>> from escape_explorer import parse_formula
+    >>> potential = parse_formula("½(x² + y²) + x²y − y³/3")
+    >>> potential.channels, round(potential.escape_energy, 6)
+    (3, 0.166667)
+    >>> parse_formula("½(x² + y²) − a x y²", parameters={"a": 1.5}).name
+    'x²/2 + y²/2 − 3xy²/2'
+    >>> parse_formula("½r² − a x²y exp(−y²)", parameters={"a": 2}).channels
+    2
+    """
+    system = System(TYPED, text, parameters or {})
+    return replace(make_potential(text, name or "", system.letter_parameters), system=system)

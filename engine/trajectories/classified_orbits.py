@@ -1,4 +1,4 @@
-"""Outcomes of many orbits of one energy, given by their starts."""
+"""Outcomes of many orbits, given by their starts."""
 
 from __future__ import annotations
 
@@ -15,30 +15,32 @@ from engine.slices.sections.section_text import checked_section
 from engine.systems.potential import Potential
 
 ENERGY_TOLERANCE = 1e-9
-"""Largest difference between the energy of a start and the given energy, in units of the well."""
+"""Largest difference between energies that count as one, in units of the well."""
 
 
 @shows_progress("orbits")
 @checks_types(potential=Potential, execution=Execution)
 def classify_orbits(
     potential: Potential,
-    energy: float,
+    energy: float | None,
     states: Any,
     t_max: float | None = None,
     *,
     section: Section | str = Section.Y_UP,
     execution: Execution = DEFAULT_EXECUTION,
 ) -> Outcomes:
-    """Compute fate, escape time and number of crossings of orbits of one energy.
+    """Compute fate, escape time and number of crossings of orbits.
 
     Parameters
     ----------
     potential
         The potential.
     energy
-        h, finite, at most 1e9 in magnitude, dimensionless.
+        h of all orbits, finite, at most 1e9 in magnitude, dimensionless; None for the energy of each start. Energies count as one
+        if they are equal to within 1e-9 units of the well.
     states
-        (n, 4) x, y, px, py; finite, with this energy to within 1e-9 in units of the well.
+        (n, 4) x, y, px, py, with the energy h to within 1e-9 units of the well. Starts with a momentum that is NaN, as
+        `start_states` returns them, are forbidden.
     t_max
         Largest integration time, 0 < t_max ≤ 1e8, dimensionless; by default as in `MapSpec`.
     section
@@ -53,7 +55,7 @@ def classify_orbits(
     Raises
     ------
     ValueError
-        If a state is not finite or has another energy, a parameter is out of range, or `section` is not legal.
+        If a state is not finite and not forbidden, or has another energy, a parameter is out of range, or `section` is not legal.
 
     Examples
     --------
@@ -64,15 +66,32 @@ def classify_orbits(
     >>> outcomes.fate.tolist(), outcomes.escape_time.round(2).tolist()
     ([1, 1, 1], [45.7, 2.03, 1.82])
     """
-    states = checked_states_of_energy(potential, energy, states)
+    states = checked_states("states", states, allow_forbidden=True)
+    is_forbidden = np.isnan(states).any(axis=1)
+    if energy is not None:
+        checked_states_of_energy(potential, energy, states[~is_forbidden])
     t_max = potential.checked_t_max(t_max)
     units, section = potential.units, checked_section(section)
+    energies = np.full(len(states), np.nan) if energy is None else np.full(len(states), float(energy))
+    if energy is None:
+        energies[~is_forbidden] = _common_energies(potential, potential.energy(states[~is_forbidden]))
     outcomes = classify_in_well_units(
-        potential.in_well_units, energy / units.energy, states / units.state, t_max / units.time, execution,
+        potential.in_well_units, energies / units.energy, states / units.state, t_max / units.time, execution,
         section.in_well_units(units).numbers,
     )  # fmt: skip
-    made_by = potential.describe_run(energy=float(energy), t_max=t_max, section=section.text)
-    return replace(units.restore(outcomes), t_max=t_max, outcomes=potential.outcomes_at(energy), made_by=made_by)
+    known = energies[np.isfinite(energies)]
+    ends = (float(known.min()), float(known.max())) if known.size else (0.0, 0.0)
+    common = ends[0] if ends[0] == ends[1] else ends
+    made_by = potential.describe_run(energy=common, t_max=t_max, section=section.text)
+    return replace(units.restore(outcomes), t_max=t_max, outcomes=potential.outcomes_at(common), made_by=made_by)
+
+
+def _common_energies(potential: Potential, energies: np.ndarray) -> np.ndarray:
+    """Return the energies with one value for those that agree up to `ENERGY_TOLERANCE`: the lowest of them."""
+    values, position = np.unique(energies, return_inverse=True)
+    begins_group = np.diff(values, prepend=-np.inf) > ENERGY_TOLERANCE * potential.units.energy
+    lowest: np.ndarray = values[begins_group][np.cumsum(begins_group) - 1]
+    return lowest[position]
 
 
 def checked_states_of_energy(potential: Potential, energy: float, states: Any) -> np.ndarray:

@@ -9,7 +9,7 @@ import numpy as np
 from engine.exits.interior import find_outside_channels
 from engine.exits.lyapunov_orbit import LyapunovOrbit
 from engine.exits.lyapunov_orbits import find_lyapunov_orbits
-from engine.foundations.validation import checked_count, checked_number, checks_types
+from engine.foundations.validation import RandomNumbers, checked_count, checked_generator, checked_number, checks_types
 from engine.slices.sampling import LARGEST_SAMPLE
 from engine.systems.potential import Potential
 
@@ -20,7 +20,7 @@ _SHIFT = 1e-7
 
 
 @checks_types(potential=Potential)
-def sample_entrances(potential: Potential, energy: float, count: int, *, seed: int = 0) -> np.ndarray:
+def sample_entrances(potential: Potential, energy: float, count: int, *, rng: RandomNumbers = None) -> np.ndarray:
     """Draw random states of orbits that enter the well through its exits, with the distribution of the flux.
 
     Orbits enter through each exit in proportion to its flux. The times until they leave are the gap times (Ezra, Waalkens &
@@ -36,8 +36,8 @@ def sample_entrances(potential: Potential, energy: float, count: int, *, seed: i
         h, above the escape energy, dimensionless.
     count
         Number of states, 1 to 10 000 000.
-    seed
-        Seed of the random numbers, 0 to 2⁶³ − 1; equal seeds give equal states.
+    rng
+        Random numbers: a seed, 0 to 2⁶³ − 1, of which equal ones give equal states, or a NumPy generator; None for new numbers.
 
     Returns
     -------
@@ -52,23 +52,25 @@ def sample_entrances(potential: Potential, energy: float, count: int, *, seed: i
     --------
     >>> import numpy as np
     >>> from escape_explorer import CASES, classify_orbits, compute_flux, sample_entrances
-    >>> entrances = sample_entrances(CASES["III"], 0.6, 5000, seed=1)
+    >>> entrances = sample_entrances(CASES["III"], 0.6, 5000, rng=1)
     >>> outcomes = classify_orbits(CASES["III"], 0.6, entrances, t_max=1e4)
     >>> times = np.fmin(outcomes.escape_time, outcomes.t_max)  # t_max where an orbit stays
     >>> round(float(times.mean()), 1), round(compute_flux(CASES["III"], 0.6).mean_passage_time, 1)
     (4.0, 4.0)
     """
-    return sample_entrances_by_exit(potential, energy, count, seed=seed)[1]
+    return sample_entrances_by_exit(potential, energy, count, rng=rng)[1]
 
 
 @checks_types(potential=Potential)
-def sample_entrances_by_exit(potential: Potential, energy: float, count: int, *, seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
+def sample_entrances_by_exit(
+    potential: Potential, energy: float, count: int, *, rng: RandomNumbers = None
+) -> tuple[np.ndarray, np.ndarray]:
     """Draw random states like `sample_entrances`, and return the exit of each.
 
     Parameters
     ----------
-    potential, energy, count, seed
-        The potential, h, the number of states and the seed, see `sample_entrances`.
+    potential, energy, count, rng
+        The potential, h, the number of states and the random numbers, see `sample_entrances`.
 
     Returns
     -------
@@ -92,7 +94,7 @@ def sample_entrances_by_exit(potential: Potential, energy: float, count: int, *,
     potential.check_at_rest("random entrances")
     h = checked_number("energy", energy)
     count = checked_count("count", count, 1, LARGEST_SAMPLE)
-    random = np.random.default_rng(checked_count("seed", seed, 0, 2**63 - 1))
+    random = checked_generator(rng)
     orbits = find_lyapunov_orbits(potential, h)
     if not orbits:
         raise ValueError(f"energy={h}: all exits are closed; must be above the escape energy {potential.escape_energy:.6g}")

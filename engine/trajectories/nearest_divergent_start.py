@@ -221,12 +221,10 @@ class _Search:
         """Return fates and escape times, (…) each, of points (…, 2); points without a state are forbidden."""
         x, ordinate = points.reshape(-1, 2).T
         states = self.plane.states(self.potential, self.h, x, ordinate)
-        exists = np.isfinite(states).all(axis=1)
-        outcomes = classify_in_well_units(self.potential, self.h, states[exists], t_max, self.execution)
+        energies = np.where(np.isfinite(states).all(axis=1), self.h, np.nan)
+        outcomes = classify_in_well_units(self.potential, energies, states, t_max, self.execution)
         self.execution.raise_if_cancelled()
-        fate, escape_time = np.full(x.size, Fate.FORBIDDEN, np.int8), np.full(x.size, np.nan)
-        fate[exists], escape_time[exists] = outcomes.fate, outcomes.escape_time
-        return fate.reshape(points.shape[:-1]), escape_time.reshape(points.shape[:-1])
+        return outcomes.fate.reshape(points.shape[:-1]), outcomes.escape_time.reshape(points.shape[:-1])
 
 
 def _search_directions(plane: Slice) -> np.ndarray:

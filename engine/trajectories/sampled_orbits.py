@@ -121,7 +121,7 @@ def sample_orbits(
     --------
     >>> import numpy as np
     >>> from escape_explorer import CASES, sample_orbits, sample_starts
-    >>> starts = sample_starts(CASES["III"], 0.45, 100, seed=1)
+    >>> starts = sample_starts(CASES["III"], 0.45, 100, rng=1)
     >>> orbits = sample_orbits(CASES["III"], starts, np.linspace(0.0, 20.0, 5))
     >>> np.isfinite(orbits.x).sum(axis=0).tolist()
     [100, 41, 31, 28, 25]

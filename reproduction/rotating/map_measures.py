@@ -70,4 +70,4 @@ def share_next_to_islands(frame: EscapeMap, *, late: bool) -> float:
 
 def boundary_exponent(frame: EscapeMap) -> float:
     """Return the uncertainty exponent of the boundaries, 1 if they are smooth; NaN if too few starts are uncertain."""
-    return compute_uncertainty_exponent(frame.spec, work=_WORK).exponent
+    return compute_uncertainty_exponent(frame.spec, work=_WORK, rng=0).exponent

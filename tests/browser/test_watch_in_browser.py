@@ -60,7 +60,7 @@ def watched(open_for_all: OpenExplorer) -> ExplorerPage:
 def test_as_many_orbits_have_left_as_from_other_random_starts(watched: ExplorerPage) -> None:
     move_time_to(watched, 0.2)
     expect(watched.text("t = 20.0")).to_be_visible()
-    fate = classify_orbits(CASES["I"], 0.19, sample_starts(CASES["I"], 0.19, 20000, seed=5), t_max=20.0).fate
+    fate = classify_orbits(CASES["I"], 0.19, sample_starts(CASES["I"], 0.19, 20000, rng=5), t_max=20.0).fate
     expected = float((fate <= 0).mean())
     # Six standard errors of the difference of 5 000 and 20 000 orbits.
     error = (expected * (1.0 - expected) * (1 / 5000 + 1 / 20000)) ** 0.5

@@ -26,7 +26,7 @@ ENSEMBLE = ("ensemble", "III", "--energy", 0.45, "--count", 200, "--t-max", 20)
 
 def test_printed_shares_are_those_of_the_engine(run: Run) -> None:
     code, out, _ = run(*ENSEMBLE, "--seed", 3, "--json")
-    outcomes = classify_orbits(CASES["III"], 0.45, sample_starts(CASES["III"], 0.45, 200, seed=3), 20.0)
+    outcomes = classify_orbits(CASES["III"], 0.45, sample_starts(CASES["III"], 0.45, 200, rng=3), 20.0)
     answer = json.loads(out)
     shares = {row["outcome"]: row["share"] for row in answer["outcomes"]}
     assert code == 0
@@ -38,14 +38,14 @@ def test_printed_shares_are_those_of_the_engine(run: Run) -> None:
 def test_orbits_can_enter_through_the_exits(run: Run, tmp_path: Path) -> None:
     assert run(*ENSEMBLE, "--entering", "--output", tmp_path / "gaps.csv")[0] == 0
     table = np.genfromtxt(tmp_path / "gaps.csv", delimiter=",", names=True)
-    entrances = sample_entrances(CASES["III"], 0.45, 200)
+    entrances = sample_entrances(CASES["III"], 0.45, 200, rng=0)
     np.testing.assert_array_equal(np.column_stack([table[name] for name in ("x", "y", "px", "py")]), entrances)
     np.testing.assert_array_equal(table["escape_time"], classify_orbits(CASES["III"], 0.45, entrances, 20.0).escape_time)
 
 
 def test_entering_orbits_are_counted_by_entrance_and_exit(run: Run) -> None:
     _, out, _ = run(*ENSEMBLE, "--entering", "--json")
-    entrances, starts = sample_entrances_by_exit(CASES["III"], 0.45, 200)
+    entrances, starts = sample_entrances_by_exit(CASES["III"], 0.45, 200, rng=0)
     matching = compute_exit_matching(entrances, classify_orbits(CASES["III"], 0.45, starts, 20.0))
     found = json.loads(out)["matching"]
     assert [(row["entrance"], row["exit"], row["count"]) for row in found] == [

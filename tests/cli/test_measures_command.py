@@ -72,7 +72,7 @@ def test_measures_prints_the_descriptions_of_the_engine(run: Run) -> None:
         compute_wada_test(*exit_labels(frame.fate, bounded=False)).describe(),
         fit_decay_laws(compute_statistics(frame), 100.0).describe(),
         compute_flux(CASES["II"], 0.2).describe(),
-        compute_uncertainty_exponent(SPEC).describe(),
+        compute_uncertainty_exponent(SPEC, rng=0).describe(),
         compute_chaotic_share(compute_regularity(frame).character).describe(),
     ]
     assert [line for line in out.splitlines() if line in described] == described

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from engine import parse_formula
 from engine.systems.forms.polynomial_form import PolynomialForm
-from engine.systems.formulas.formula_parser import parse_formula
 from engine.systems.known_potentials import POTENTIALS
 
 # Compiling kernels takes long, so normal runs compile those of the cases of the paper, and exhaustive runs those of all.

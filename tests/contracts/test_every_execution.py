@@ -53,7 +53,7 @@ def frame() -> EscapeMap:
 
 
 def starts() -> np.ndarray:
-    return sample_starts(III, 0.3, 5000, seed=1)
+    return sample_starts(III, 0.3, 5000, rng=1)
 
 
 type Compute = Callable[[Execution], Any]

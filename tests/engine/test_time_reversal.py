@@ -46,7 +46,7 @@ def marked(name: str) -> Any:
 def test_orbits_backward_are_reflected_orbits_forward(name: str) -> None:
     potential, energy = System(name).potential, ENERGIES[name]
     t_max = DURATION * potential.well.exact_time_unit
-    starts = sample_starts(potential, energy, STARTS, seed=5)
+    starts = sample_starts(potential, energy, STARTS, rng=5)
     # Backward in time, an orbit is an orbit of the reversed system with the opposite velocity.
     backward = classify_orbits(potential.reversed_in_time, energy, starts * [1.0, 1.0, -1.0, -1.0], t_max)
     forward = classify_orbits(potential, energy, starts * REFLECTED, t_max)
@@ -60,7 +60,7 @@ def test_orbits_backward_are_reflected_orbits_forward(name: str) -> None:
 def test_orbits_turned_by_half_a_circle_are_orbits(name: str) -> None:
     potential, energy = System(name).potential, ENERGIES[name]
     t_max = DURATION * potential.well.exact_time_unit
-    starts = sample_starts(potential, energy, STARTS, seed=6)
+    starts = sample_starts(potential, energy, STARTS, rng=6)
     one, other = (classify_orbits(potential, energy, states, t_max) for states in (starts, starts * TURNED))
     np.testing.assert_array_equal(TURNED_FATES[one.fate], other.fate)
     np.testing.assert_allclose(one.escape_time, other.escape_time, rtol=1e-6, atol=1e-12)

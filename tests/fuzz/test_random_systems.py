@@ -132,7 +132,7 @@ def accepted_system(number: int) -> tuple[int, Potential, float, np.ndarray]:
     for seed in itertools.count(first):
         try:
             potential, energy = random_system(seed)
-            starts = sample_starts(potential, energy, STARTS, seed=seed)
+            starts = sample_starts(potential, energy, STARTS, rng=seed)
         except ValueError:
             continue
         if review_potential(potential).refusal is None and potential.channels:

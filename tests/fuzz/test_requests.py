@@ -201,8 +201,8 @@ def test_any_decay_laws_give_a_result_or_a_named_error(t_max: Any, window: Any) 
 def test_any_uncertainty_exponent_gives_a_result_or_a_named_error(pairs: Any, separations: Any, work: Any, seed: Any) -> None:
     if any(isinstance(value, int | float) and value > 100 for value in (pairs, separations, work)):
         return
-    names = ["pairs", "separations", "work", "seed"]
-    options = {"pairs": pairs, "separations": separations, "work": work, "seed": seed}
+    names = ["pairs", "separations", "work", "rng"]
+    options = {"pairs": pairs, "separations": separations, "work": work, "rng": seed}
     result_or_error(lambda: compute_uncertainty_exponent(small_map().spec, **options), names)
 
 

@@ -57,7 +57,7 @@ def measure(potential: Potential, energy: float) -> tuple[BasinEntropy, WadaTest
 
 def follow(potential: Potential, energy: float) -> Orbit:
     """Return the orbit of the first of ten random starts."""
-    starts = sample_starts(potential, energy, 10, plane=Plane.X_Y, window=EDGES, seed=1)
+    starts = sample_starts(potential, energy, 10, plane=Plane.X_Y, window=EDGES, rng=1)
     assert_type(classify_orbits(potential, energy, starts, t_max=1e3, execution=Execution()), Outcomes)
     orbit = integrate_orbit(potential, starts[0], t_max=1e3)
     print([finding.sentence for finding in judge_orbit(orbit, orbit.compute_birkhoff_digits()).findings])
@@ -73,7 +73,8 @@ print(SweepSpec(POTENTIALS["HH"], Plane.X_PX, np.linspace(0.2, 0.3, 2), window=E
 print([orbit.period for orbit in find_lyapunov_orbits(CASES["I"], 0.19)])
 print(len(find_stable_manifolds(CASES["I"], 0.19, images=1, window=EDGES).arcs))
 assert_type(MapSpec(CASES["I"], "x_px", 0.19, window=EDGES).trace_zero_velocity_curve(), list[np.ndarray])
-print(Slice(Coordinate.X, Coordinate.PX, fixed=[(Coordinate.Y, 0.1)]).title)
+print(Slice(Coordinate.X, Coordinate.PX, fixed=[(Coordinate.Y, 0.1)]) == Slice("x", "px", fixed={"y": 0.1}))
+print(Slice("x", "theta", fixed={Coordinate.Y: 0.1}).title, MapSpec(CASES["I"], "x,py", 0.19, window=EDGES).plane.title)
 system = System.from_formula("½(x² + y²) − b x²y", b=0.5)
 print(MapSpec(system.potential, Slice(Coordinate.X, ParameterAxis("b", 0.5, 2.0, system.potential)), 0.3).outcomes)
 assert_type(escape_explorer.__version__, str)

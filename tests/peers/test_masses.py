@@ -61,7 +61,7 @@ def path_of(potential: Potential, state: np.ndarray, times: np.ndarray, mass: fl
 @pytest.mark.parametrize("seed", SEEDS)
 def test_orbits_with_a_mass_obey_their_equations_of_motion(seed: int) -> None:
     (potential, energy), mass = heavy_system(seed), random_mass(seed)
-    starts = sample_starts(potential, energy, 5, seed=seed)
+    starts = sample_starts(potential, energy, 5, rng=seed)
     kinetic = (starts[:, 2:] ** 2).sum(axis=1) / (2.0 * mass)
     np.testing.assert_allclose(kinetic + potential.value(*starts[:, :2].T), energy, rtol=1e-12)
     times = np.linspace(0.0, 12.0 * potential.units.time, 60)
@@ -76,7 +76,7 @@ def test_orbits_with_a_mass_obey_their_equations_of_motion(seed: int) -> None:
 def test_escape_times_are_those_at_which_the_path_passes_the_exit() -> None:
     potential = parse_formula("½(x² + y²) + x²y − y³/3; masses (8, 8)")
     upper = find_lyapunov_orbits(potential, 0.2)[0]
-    starts = sample_starts(potential, 0.2, 40, seed=3)
+    starts = sample_starts(potential, 0.2, 40, rng=3)
     outcomes = classify_orbits(potential, 0.2, starts, t_max=300.0)
     left = np.flatnonzero((outcomes.fate == upper.channel) & (outcomes.escape_time > 1.0) & (outcomes.escape_time < 60.0))[:4]
     assert left.size
@@ -103,7 +103,7 @@ def test_descriptors_are_integrals_of_the_velocity() -> None:
 
 def test_entering_orbits_fill_the_volume_inside_at_the_rate_of_the_flux() -> None:
     potential = parse_formula("½(x² + y²) + x²y − y³/3; masses (8, 8)")
-    states = sample_entrances(potential, 0.3, 4000, seed=2)
+    states = sample_entrances(potential, 0.3, 4000, rng=2)
     np.testing.assert_allclose(potential.energy(states), 0.3, atol=1e-12)
     passage = classify_orbits(potential, 0.3, states, t_max=1e4).escape_time
     assert float(passage.mean()) == pytest.approx(compute_flux(potential, 0.3).mean_passage_time, rel=0.06)

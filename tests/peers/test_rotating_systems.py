@@ -41,7 +41,7 @@ def energies_of(name: str) -> list[float]:
 def test_outcomes_agree_with_heyoka(name: str) -> None:
     potential = System(name).potential
     for energy in energies_of(name):
-        starts = sample_starts(potential, energy, STARTS, seed=1)
+        starts = sample_starts(potential, energy, STARTS, rng=1)
         comparison = compare(potential, energy, starts, DURATION * potential.well.exact_time_unit)
         assert comparison.robust > 0.9 * STARTS
         assert comparison.wrong == 0

@@ -84,7 +84,7 @@ def test_returns_are_the_events_of_another_integrator(name: str, kind: int) -> N
     potential, energy = POTENTIALS[name], review_system(System(name)).energies.first
     units = potential.units
     section = random_section(random, kind, units.length)
-    states = sample_starts(potential, energy, ORBITS, seed=kind)
+    states = sample_starts(potential, energy, ORBITS, rng=kind)
     t_max = T_MAX * units.time
     found = find_returns(potential, energy, states, 1000, t_max, section=section.text)
     escape_times = classify_orbits(potential, energy, states, t_max).escape_time

@@ -107,7 +107,7 @@ def compute_exit_matching(entrances: Any, outcomes: Measurable | Starts) -> Exit
     Examples
     --------
     >>> from escape_explorer import CASES, classify_orbits, compute_exit_matching, sample_entrances_by_exit
-    >>> entrances, starts = sample_entrances_by_exit(CASES["III"], 0.6, 3000, seed=1)
+    >>> entrances, starts = sample_entrances_by_exit(CASES["III"], 0.6, 3000, rng=1)
     >>> matching = compute_exit_matching(entrances, classify_orbits(CASES["III"], 0.6, starts, t_max=1e3))
     >>> matching.shares[0].round(1).tolist()  # that stay, and leave through exits 1 to 4: most through the opposite one
     [0.0, 0.0, 0.1, 0.9, 0.0]

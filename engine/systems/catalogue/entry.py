@@ -46,7 +46,7 @@ class CatalogueEntry:
     title
         Display name.
     formula
-        V as text, in the notation of `engine.systems.formulas.formula_parser.parse_formula`, without the centrifugal term.
+        V as text, in the notation of `engine.systems.system.parse_formula`, without the centrifugal term.
     description
         One sentence on the physics and the exits.
     reference

@@ -210,7 +210,7 @@ def checked_form(terms: Any) -> PolynomialForm:
     try:
         checked_terms = tuple(_checked_term(*term) for term in terms)
     except TypeError:
-        raise ValueError(f"terms={short_repr(terms)}: must be ((i, j, c), …)") from None
+        raise ValueError(f"terms={short_repr(terms)}: must be ((i, j, c), …); parse_formula takes V as text") from None
     if len({term[:2] for term in checked_terms}) != len(checked_terms):
         raise ValueError(f"terms={short_repr(checked_terms)}: each pair of exponents must occur only once")
     return PolynomialForm(checked_terms)

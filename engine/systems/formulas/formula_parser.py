@@ -13,13 +13,14 @@ from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
 from functools import lru_cache, partial
+from types import MappingProxyType
 from typing import Any
 
 from engine.expressions.exact_polynomials import exact_terms
 from engine.expressions.nodes import Expression
 from engine.expressions.polynomials import Powers
 from engine.expressions.text import monomial
-from engine.foundations.validation import checked_between, checks_types
+from engine.foundations.validation import checked_between
 from engine.systems.escape_arcs import end_kinds
 from engine.systems.forms.expression_form import Form, as_form
 from engine.systems.forms.polynomial_form import COEFFICIENT_RANGE, MOST_TERMS
@@ -43,69 +44,12 @@ MOST_LETTERS = 8
 _TERM = re.compile(r"(\S+) x\^(\d+) y\^(\d+)")
 
 
-@checks_types(text=str, name=(str, type(None)), parameters=(Mapping, type(None)))
-def parse_formula(text: str, name: str | None = None, parameters: Mapping[str, float] | None = None) -> Potential:
-    """Return the potential given by a formula.
-
-    Parameters
-    ----------
-    text
-        A formula in x and y of at most 500 characters:
-
-        - numbers (2, 0.5, 1e-3, ½), x, y and r = √(x² + y²);
-        - + − * / ^ ** √ and round brackets, also "·" and "×". "2x²y" is a product, and "1/2 x" is half of x;
-        - exp(), log() or ln(), sin(), cos() and sqrt();
-        - exponents from −12 to 12;
-        - at most 8 letters for parameters, each with or without one digit: "a", "k1", "α". Greek letters and all Latin letters
-          except e, t, z, E and V are allowed. "px", "py", "vx" and "vy" are refused;
-        - "V =" in front, which is ignored.
-
-        Clauses can follow:
-
-        - "; centre the Moon (0, 0) 0.0045": a body with a name, its place and its radius of collision;
-        - "; escape 10": an escape radius;
-        - "; well (1, 0)": a place near a minimum, to which the axes are moved, see `Potential.at_minimum`;
-        - "; exits L2, L1": names of the exits in channel order;
-        - "; masses (8, 8)": the masses of px²/2m₁ + py²/2m₂, which must be equal. For two masses write V(x/√m₁, y/√m₂), whose
-          axes are √m₁ x and √m₂ y.
-    name
-        Name of the potential; by default the formula as written by `write_formula`.
-    parameters
-        Values of letters, at most 1e9 in magnitude; by default 1. A value is substituted as the decimal that Python prints.
-
-    Returns
-    -------
-    The potential. A polynomial is expanded exactly, with each coefficient rounded once and the terms sorted by degree; a constant
-    term is kept.
-
-    Raises
-    ------
-    ValueError
-        A `FormulaError` with the position and the problem:
-
-        - the text cannot be parsed, or has more than 500 characters, more than 50 nested brackets or roots, neither x nor y, or a
-          function of a number outside the domain of the function;
-        - a polynomial has a degree above 12, more than 60 terms, or a coefficient whose magnitude is not between 1e-9 and 1e9;
-        - another formula and its derivatives up to the second have more than 120 products and functions.
-
-        Any other ValueError: a parameter is not a letter of the formula, its value is not legal, or V has no minimum to which
-        the axes could be moved.
-
-    Examples
-    --------
-    >>> from escape_explorer import parse_formula
-    >>> potential = parse_formula("½(x² + y²) + x²y − y³/3")
-    >>> potential.channels, round(potential.escape_energy, 6)
-    (3, 0.166667)
-    >>> parse_formula("½(x² + y²) − a x y²", parameters={"a": 1.5}).name
-    'x²/2 + y²/2 − 3xy²/2'
-    >>> parse_formula("½r² − a x²y exp(−y²)", parameters={"a": 2}).channels
-    2
-    """
+def make_potential(text: str, name: str = "", parameters: Mapping[str, float] = MappingProxyType({})) -> Potential:
+    """Return the potential of a formula, as `engine.systems.system.parse_formula` does, but without its system."""
     if len(text) > LONGEST_TEXT:
         raise FormulaError(LONGEST_TEXT, f"the text has {len(text)} characters; at most {LONGEST_TEXT} characters are allowed")
     clauses = split_clauses(text)
-    values = _exact_values(_letters_of(clauses), parameters or {})
+    values = _exact_values(_letters_of(clauses), parameters)
     form = _make_form(Parser(clauses.formula, values).parse())
     evaluate_number = partial(_evaluate_number, values=values)
     ends = [end for clause in clauses.ends for end in clause.evaluate(evaluate_number)]
@@ -199,7 +143,7 @@ def read_potential(attributes: Mapping[Any, Any]) -> Potential:
     if all(matches):
         form = as_form((int(match[2]), int(match[3]), float(match[1])) for match in matches if match is not None)
     else:
-        form = parse_formula(text).form
+        form = make_potential(text).form
     kinds = [kind for kind in end_kinds() if kind.attribute in attributes]
     ends = [end for kind in kinds for end in kind.read(attributes[kind.attribute])]
     x, y = json.loads(attributes.get("origin", "[0.0, 0.0]"))

@@ -245,7 +245,7 @@ def near(share: float, count: int) -> Any:
 
 def test_the_caption_of_the_draining_well_has_the_share_of_remaining_orbits() -> None:
     count = 40_000
-    times = classify_orbits(CASES["III"], 0.45, sample_starts(CASES["III"], 0.45, count, seed=1), t_max=50.0).escape_time
+    times = classify_orbits(CASES["III"], 0.45, sample_starts(CASES["III"], 0.45, count, rng=1), t_max=50.0).escape_time
     left = [float(np.mean(~(times <= t))) for t in (5.0, 50.0)]
     assert left == [near(0.42, count), near(1 / 7, count)]
     assert math.exp(-50.0 * compute_flux(CASES["III"], 0.45).decay_rate) == pytest.approx(1 / 4000, rel=0.1)

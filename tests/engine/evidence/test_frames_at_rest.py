@@ -45,7 +45,7 @@ WITH_RADIUS = replace(CASES["I"], escape_radius=3.0)
         compute_flux,
         find_stable_manifolds,
         find_entry_points,
-        lambda potential, energy: sample_entrances(potential, energy, 10),
+        lambda potential, energy: sample_entrances(potential, energy, 10, rng=0),
         lambda potential, energy: UnstableManifold.from_orbit(find_lyapunov_orbits(potential, energy)[0], Section.Y_UP.numbers),
     ],
 )

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from engine import parse_formula
 from engine.exits.lyapunov_orbits import UndefinedExitsError, find_lyapunov_orbits
 from engine.maps.compute import compute_map
 from engine.maps.spec import MapSpec
 from engine.propagation.fates import Evidence, Fate
 from engine.slices.planes import SECTION
-from engine.systems.formulas.formula_parser import parse_formula
 from engine.systems.known_potentials import POTENTIALS
 from engine.systems.potential import Potential
 from engine.trajectories.orbit_verdicts import judge_orbit

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 import sympy
 
+from engine import parse_formula
 from engine.expressions.calculus import derivative, substitute
 from engine.expressions.evaluation import evaluate
 from engine.expressions.graph import make_graph
 from engine.expressions.nodes import Coordinate, Expression, Function, Product, Sum, X, Y, linear_combination, multiply, number
 from engine.expressions.parity import EVEN, NEITHER, ODD, parity
-from engine.systems.formulas.formula_parser import parse_formula
 from tests.peers.random_systems import random_formula
 
 AXES = sympy.symbols("x y")

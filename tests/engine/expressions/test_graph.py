@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from engine import parse_formula
 from engine.expressions.calculus import derivative
 from engine.expressions.evaluation import evaluate, evaluate_at
 from engine.expressions.graph import Graph, Node, make_graph
 from engine.expressions.nodes import Expression
-from engine.systems.formulas.formula_parser import parse_formula
 
 
 def definition_of(text: str) -> Expression:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from engine import parse_formula
 from engine.expressions.evaluation import evaluate
 from engine.expressions.graph import make_graph
 from engine.expressions.intervals import Interval, enclose
-from engine.systems.formulas.formula_parser import parse_formula
 
 FORMULAS = [
     "x² − 3x y + y³ + 0.1exp(y)",

@@ -65,7 +65,7 @@ def test_area_agrees_with_the_share_of_random_points(potential: Potential, energ
 @each_system
 def test_starts_on_the_energy_surface_leave_at_the_rate_of_flux_over_volume(potential: Potential, energy: float) -> None:
     count, time = 50_000, 0.5
-    fate = classify_orbits(potential, energy, sample_starts(potential, energy, count, seed=2), t_max=time).fate
+    fate = classify_orbits(potential, energy, sample_starts(potential, energy, count, rng=2), t_max=time).fate
     found = compute_flux(potential, energy)
     for channel, flux in zip(found.channels, found.flux, strict=True):
         expected = flux * time / found.volume

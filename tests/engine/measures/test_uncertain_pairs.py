@@ -25,14 +25,14 @@ HENON_HEILES = MapSpec(CASES["II"], Plane.X_PX, 0.25)
 
 @pytest.fixture(scope="module")
 def henon_heiles() -> UncertaintyExponent:
-    return compute_uncertainty_exponent(HENON_HEILES, work=5e7)
+    return compute_uncertainty_exponent(HENON_HEILES, work=5e7, rng=0)
 
 
 @pytest.mark.slow
 def test_a_smooth_basin_boundary_has_exponent_one_and_the_correct_amplitude() -> None:
     energy = 1.0
     fit = compute_uncertainty_exponent(
-        MapSpec(SEPARABLE, Plane.X_PX, energy, resolution=(10, 10), t_max=12.0), pairs=100, separations=25
+        MapSpec(SEPARABLE, Plane.X_PX, energy, resolution=(10, 10), t_max=12.0), pairs=100, separations=25, rng=0
     )
     # The probability of a false alarm is 4e-8 for the exponent, and lower for the counts, which are of a hundred pairs or more.
     assert abs(fit.exponent - 1.0) < 5.5 * (fit.high - fit.low) / 3.92
@@ -77,7 +77,7 @@ def test_only_the_seed_affects_the_result() -> None:
     def run(**options: Any) -> UncertaintyExponent:
         return compute_uncertainty_exponent(MapSpec(CASES["II"], Plane.X_PX, 0.2), pairs=20, separations=6, **options)
 
-    one, same, other = run(), run(execution=Execution(SerialExecutor())), run(seed=1)
+    one, same, other = run(rng=0), run(rng=0, execution=Execution(SerialExecutor())), run(rng=1)
     np.testing.assert_array_equal(one.uncertain, same.uncertain)
     np.testing.assert_array_equal(one.pairs, same.pairs)
     assert one.exponent == same.exponent
@@ -85,7 +85,7 @@ def test_only_the_seed_affects_the_result() -> None:
 
 
 def test_pairs_still_inside_are_counted() -> None:
-    fit = compute_uncertainty_exponent(MapSpec(CASES["II"], Plane.X_PX, 0.17, t_max=200.0), pairs=50, separations=8)
+    fit = compute_uncertainty_exponent(MapSpec(CASES["II"], Plane.X_PX, 0.17, t_max=200.0), pairs=50, separations=8, rng=0)
     assert fit.horizon == 200.0
     assert (fit.one_inside > 0).all()
     assert (fit.one_inside <= fit.uncertain).all()
@@ -93,7 +93,7 @@ def test_pairs_still_inside_are_counted() -> None:
 
 
 def test_below_the_escape_energy_nothing_is_uncertain() -> None:
-    fit = compute_uncertainty_exponent(MapSpec(CASES["III"], Plane.X_PX, 0.2))
+    fit = compute_uncertainty_exponent(MapSpec(CASES["III"], Plane.X_PX, 0.2), rng=0)
     assert not fit.uncertain.any()
     np.testing.assert_array_equal(fit.both_inside, fit.pairs)
     assert "have the same fate" in fit.describe()
@@ -107,13 +107,15 @@ def test_a_cancelled_computation_raises() -> None:
         cancel.set()
 
     with pytest.raises(CancelledError):
-        compute_uncertainty_exponent(HENON_HEILES, execution=Execution(cancel=cancel, on_progress=stop))
+        compute_uncertainty_exponent(HENON_HEILES, execution=Execution(cancel=cancel, on_progress=stop), rng=0)
     assert len(shares) == 1
 
 
 def test_progress_increases_to_1() -> None:
     shares: list[float] = []
-    compute_uncertainty_exponent(HENON_HEILES, pairs=20, separations=6, work=1e7, execution=Execution(on_progress=shares.append))
+    compute_uncertainty_exponent(
+        HENON_HEILES, pairs=20, separations=6, work=1e7, execution=Execution(on_progress=shares.append), rng=0
+    )
     assert shares[-1] == 1.0
     assert shares == sorted(shares)
     assert len(shares) > 2

@@ -29,7 +29,7 @@ ENERGIES = [
 
 def outcomes_of(potential: Potential, energy: float) -> tuple[Outcomes, np.ndarray]:
     """Return outcomes, and whether each orbit passes a centre within ten radii."""
-    starts = sample_starts(potential, energy, STARTS, seed=3)
+    starts = sample_starts(potential, energy, STARTS, rng=3)
     wide = potential.with_outcomes([replace(c, radius=NEAR * c.radius) for c in potential.centres], potential.escape_radius)
     t_max = T_MAX * potential.well.exact_time_unit
     fate = classify_orbits(wide, energy, starts, t_max).fate

@@ -83,10 +83,31 @@ def test_a_potential_knows_its_system(system: System) -> None:
     assert ParameterAxis(system.parameter_names[-1], 0.5, 2.0, system.potential).system == system
 
 
-def test_a_changed_potential_is_not_of_the_system() -> None:
+def test_a_potential_with_other_outcomes_or_in_another_frame_is_not_of_the_system() -> None:
     potential = CASES["I"]
-    changed = potential.with_parameters(epsilon=2.0), potential.in_rotating_frame(0.1), potential.with_outcomes((), 5.0)
-    assert [each.system for each in changed] == [None, None, None]
+    changed = potential.in_rotating_frame(0.1), potential.with_outcomes((), 5.0)
+    assert [each.system for each in changed] == [None, None]
+    assert changed[0].with_parameters(epsilon=2.0).system is None
+
+
+def test_a_potential_with_other_parameters_is_of_the_system_with_these() -> None:
+    changed = CASES["I"].with_parameters(omega_1=0.8)
+    assert changed.system == System("I", parameters={"omega_1": 0.8})
+    twice = changed.with_parameters(epsilon=2.0, omega_1=0.5)
+    assert twice.system == System("I", parameters={"omega_1": 0.4, "epsilon": 2.0})
+    axis = ParameterAxis("epsilon", 0.5, 1.5, changed)
+    assert axis.potential(1.2) == CASES["I"].with_parameters(omega_1=0.8, epsilon=1.2)
+
+
+def test_a_potential_with_a_factor_that_the_system_cannot_have_is_not_of_the_system() -> None:
+    assert CASES["I"].with_parameters(omega_1=0.2).with_parameters(omega_1=0.2).system is None
+
+
+def test_the_letters_of_a_parsed_formula_can_be_varied() -> None:
+    potential = parse_formula("½r² − a x y²", parameters={"a": 1.5})
+    axis = ParameterAxis("a", 1.0, 2.0, potential)
+    assert axis.system == System.from_formula("½r² − a x y²", a=1.5)
+    assert axis.potential(2.0) == parse_formula("½r² − 2 x y²")
 
 
 def test_where_axes_are_moved_the_formula_says_from_where_they_count() -> None:

@@ -35,7 +35,7 @@ def times_inside(potential: Potential, energy: float, states: np.ndarray, t_max:
 
 @pytest.mark.parametrize(("potential", "energy"), OPEN)
 def test_the_mean_time_inside_is_volume_over_flux(potential: Potential, energy: float) -> None:
-    times = times_inside(potential, energy, sample_entrances(potential, energy, COUNT, seed=3), 1e4)
+    times = times_inside(potential, energy, sample_entrances(potential, energy, COUNT, rng=3), 1e4)
     error = float(times.std()) / math.sqrt(COUNT)
     assert float(times.mean()) == pytest.approx(compute_flux(potential, energy).mean_passage_time, abs=LARGEST_DEVIATION * error)
 
@@ -46,7 +46,7 @@ def test_orbits_that_enter_pass_the_volume_that_drains() -> None:
     Some orbits are still inside at t_max, and islands take much of the volume.
     """
     potential, energy, t_max = CASES["III"], 0.3, 1000.0
-    starts, entrances = (draw(potential, energy, 5 * COUNT, seed=1) for draw in (sample_starts, sample_entrances))
+    starts, entrances = (draw(potential, energy, 5 * COUNT, rng=1) for draw in (sample_starts, sample_entrances))
     times = times_inside(potential, energy, entrances, t_max)
     leave = classify_orbits(potential, energy, starts, t_max).fate > Fate.BOUNDED
     whole = compute_flux(potential, energy).mean_passage_time
@@ -57,7 +57,7 @@ def test_orbits_that_enter_pass_the_volume_that_drains() -> None:
 
 @pytest.mark.parametrize(("potential", "energy"), [*OPEN, (UNEQUAL, 1.2 * UNEQUAL.escape_energy)])
 def test_entrances_are_inside_and_go_inward(potential: Potential, energy: float) -> None:
-    states = sample_entrances(potential, energy, 500, seed=2)
+    states = sample_entrances(potential, energy, 500, rng=2)
     np.testing.assert_allclose(potential.energy(states), energy, rtol=0, atol=1e-14)
     for duration, outside in ((1e-4, False), (-1e-4, True)):
         x, y = (states[:, :2] + duration * states[:, 2:]).T.copy()
@@ -69,7 +69,7 @@ def test_entrances_are_inside_and_go_inward(potential: Potential, energy: float)
 def test_each_exit_has_its_share_of_the_flux() -> None:
     energy = 1.2 * UNEQUAL.escape_energy
     flux = compute_flux(UNEQUAL, energy)
-    states = sample_entrances(UNEQUAL, energy, 20_000, seed=4)
+    states = sample_entrances(UNEQUAL, energy, 20_000, rng=4)
     middles = [orbit.half_path[50] for orbit in find_lyapunov_orbits(UNEQUAL, energy)]
     nearest = np.argmin([np.hypot(*(states[:, :2] - middle).T) for middle in middles], axis=0)
     counts = np.bincount(nearest, minlength=flux.shares.size)

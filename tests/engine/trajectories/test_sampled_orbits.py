@@ -19,7 +19,7 @@ TIMES = np.linspace(0.0, 30.0, 61)
 
 
 def starts_of(case: str, count: int = 40) -> np.ndarray:
-    return sample_starts(CASES[case], ENERGIES[case], count, seed=3)
+    return sample_starts(CASES[case], ENERGIES[case], count, rng=3)
 
 
 @pytest.mark.parametrize("case", ENERGIES)

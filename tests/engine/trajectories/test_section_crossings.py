@@ -67,7 +67,7 @@ def test_two_passages_between_samples_are_one_crossing() -> None:
 def test_points_of_orbits_past_a_body_are_all_found_and_allowed() -> None:
     # Some pass the planet between two samples.
     potential, energy = POTENTIALS["Hill"], -2.2
-    orbits = [integrate_orbit(potential, start, 300.0) for start in sample_starts(potential, energy, 8, seed=1)]
+    orbits = [integrate_orbit(potential, start, 300.0) for start in sample_starts(potential, energy, 8, rng=1)]
     bounded = [orbit for orbit in orbits if orbit.fate == Fate.BOUNDED]
     assert len(bounded) > 2
     for orbit in bounded:

@@ -166,7 +166,7 @@ def test_deviations_grow_as_the_distance_of_a_neighbour_past_a_body() -> None:
 
 def test_orbits_around_a_body_are_not_called_chaotic_for_the_steps_past_it() -> None:
     potential = POTENTIALS["Hill"]
-    orbits = [integrate_orbit(potential, start, 1000.0) for start in sample_starts(potential, -2.2, 6, seed=1)]
+    orbits = [integrate_orbit(potential, start, 1000.0) for start in sample_starts(potential, -2.2, 6, rng=1)]
     bounded = [orbit for orbit in orbits if orbit.fate == Fate.BOUNDED]
     assert len(bounded) > 2
     assert all(judge_orbit(orbit).character is Verdict.REGULAR for orbit in bounded)

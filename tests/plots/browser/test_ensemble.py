@@ -59,7 +59,7 @@ def follow(case: str, energy: float, folder: Path, section: Section = Section.Y_
     potential = System(case).potential
     assert potential.units.length == potential.units.time == 1.0
     portable = make_portable_system(potential, review_system(System(case)).energies.high, section)
-    states = sample_starts(potential, energy, COUNT, seed=3)
+    states = sample_starts(potential, energy, COUNT, rng=3)
     times = np.sort(np.random.default_rng(1).uniform(0.0, LONGEST, FRAMES))
     data = {"system": portable.to_dict(), "module": portable.module, "energy": energy}
     data |= {"states": states.ravel().tolist(), "times": times.tolist()}
@@ -205,7 +205,7 @@ def test_equal_seeds_give_equal_starts(drawn: dict[str, np.ndarray]) -> None:
 
 @needs_node
 def test_starts_in_the_well_are_spread_evenly_over_the_energy_surface(drawn: dict[str, np.ndarray]) -> None:
-    states, expected = drawn["well"], sample_starts(System("III").potential, 0.45, 4000, seed=9)
+    states, expected = drawn["well"], sample_starts(System("III").potential, 0.45, 4000, rng=9)
     for column in (lambda each: each[:, 0], lambda each: each[:, 1], lambda each: np.arctan2(each[:, 3], each[:, 2])):
         assert stats.ks_2samp(column(states), column(expected)).pvalue > FALSE_ALARM
 
@@ -234,12 +234,12 @@ def test_entering_orbits_stay_as_long_as_entering_orbits_of_the_library(drawn: d
     # For orbits that are still inside at t_max and have no escape time, t_max stands for the time.
     found, wanted = (
         np.fmin(classify_orbits(potential, 0.45, states, t_max).escape_time, t_max)
-        for states in (drawn["exits"], sample_entrances(potential, 0.45, 4000, seed=8))
+        for states in (drawn["exits"], sample_entrances(potential, 0.45, 4000, rng=8))
     )
     assert (found == t_max).any()
     assert stats.ks_2samp(found, wanted).pvalue > FALSE_ALARM
     # The mean time until t_max is volume over flux times the share of all starts that leave until then.
-    leave = classify_orbits(potential, 0.45, sample_starts(potential, 0.45, 4000, seed=9), t_max).fate > 0
+    leave = classify_orbits(potential, 0.45, sample_starts(potential, 0.45, 4000, rng=9), t_max).fate > 0
     assert found.mean() == pytest.approx(compute_flux(potential, 0.45).mean_passage_time * leave.mean(), rel=0.1)
 
 

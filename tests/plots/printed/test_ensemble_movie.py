@@ -23,7 +23,7 @@ SMALL = FigureStyle(width=10.0, dpi=60.0)
 
 @pytest.fixture(scope="module")
 def orbits() -> SampledOrbits:
-    return sample_orbits(III, sample_starts(III, 0.45, 300, seed=1), np.linspace(0.0, 12.0, FRAMES))
+    return sample_orbits(III, sample_starts(III, 0.45, 300, rng=1), np.linspace(0.0, 12.0, FRAMES))
 
 
 @pytest.mark.parametrize("format", [MovieFormat.WEBP, MovieFormat.GIF])

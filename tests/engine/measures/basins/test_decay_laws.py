@@ -302,7 +302,7 @@ def test_the_rate_of_a_map_agrees_with_random_starts(energy: float, earlier: flo
     """The rate of hyperbolic escapes does not depend on the starts. For random starts, it is the slope of ln S."""
     laws = fit_decay_laws(compute_statistics(compute_map(MapSpec(CASES["II"], Plane.X_PX, energy, t_max=1e4))), 1e4)
     fitted, _ = both(laws)
-    states = sample_starts(CASES["II"], energy, 40_000, seed=11)
+    states = sample_starts(CASES["II"], energy, 40_000, rng=11)
     escape_time = classify_orbits(CASES["II"], energy, states, 1e3).escape_time
     # The negation also counts orbits that stay, whose escape time is NaN.
     remaining = [np.count_nonzero(~(escape_time <= t)) for t in (earlier, later)]

@@ -162,7 +162,7 @@ def test_equal_and_zero_times_have_a_histogram(whole: EscapeMap, times: list[flo
 
 def test_orbits_that_are_no_map_are_counted() -> None:
     potential, energy = CASES["III"], 0.36
-    outcomes = classify_orbits(potential, energy, sample_starts(potential, energy, 500, seed=2), 50.0)
+    outcomes = classify_orbits(potential, energy, sample_starts(potential, energy, 500, rng=2), 50.0)
     counted = compute_statistics(outcomes)
     assert counted.channel_counts == tuple(int((outcomes.fate == channel).sum()) for channel in range(1, 5))
     assert (counted.starts, counted.t_max) == (500, 50.0)

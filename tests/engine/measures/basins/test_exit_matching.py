@@ -41,7 +41,7 @@ def test_each_orbit_has_one_entrance(entrances: list[int]) -> None:
 
 def test_equally_many_orbits_pass_between_two_exits_in_both_directions() -> None:
     """Orbits are drawn according to the flux, and backward in time an orbit leads from its exit to its entrance."""
-    entrances, states = sample_entrances_by_exit(UNEQUAL, ENERGY, 4000, seed=5)
+    entrances, states = sample_entrances_by_exit(UNEQUAL, ENERGY, 4000, rng=5)
     counts = compute_exit_matching(entrances, classify_orbits(UNEQUAL, ENERGY, states, 1e4)).counts[:, 1:]
     assert counts.shape[0] == counts.shape[1] > 1
     assert counts.min() > 10
@@ -52,8 +52,8 @@ def test_equally_many_orbits_pass_between_two_exits_in_both_directions() -> None
 
 
 def test_states_are_those_of_the_entrances() -> None:
-    entrances, states = sample_entrances_by_exit(UNEQUAL, ENERGY, 50, seed=2)
-    np.testing.assert_array_equal(states, sample_entrances(UNEQUAL, ENERGY, 50, seed=2))
+    entrances, states = sample_entrances_by_exit(UNEQUAL, ENERGY, 50, rng=2)
+    np.testing.assert_array_equal(states, sample_entrances(UNEQUAL, ENERGY, 50, rng=2))
     # Backward in time orbits leave at once, through the exit by which they enter.
     reversed_states = states * [1.0, 1.0, -1.0, -1.0]
     np.testing.assert_array_equal(classify_orbits(UNEQUAL, ENERGY, reversed_states, 10.0).fate, entrances)

@@ -11,8 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine import CASES
-from engine.systems.formulas.formula_parser import parse_formula
+from engine import CASES, parse_formula
 from engine.systems.formulas.formula_tokens import FormulaError
 from engine.systems.formulas.formula_writer import write_formula
 from engine.systems.potential import Potential

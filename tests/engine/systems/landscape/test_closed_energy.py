@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine.systems.formulas.formula_parser import parse_formula
+from engine import parse_formula
 from engine.systems.known_potentials import POTENTIALS
 from engine.systems.landscape.closed_energy import HIGHEST_TRIED
 from engine.systems.potential import Potential

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine.systems.formulas.formula_parser import parse_formula
+from engine import parse_formula
 from engine.systems.landscape.exit_saddles import find_exit_lines, find_maxima_beside
 from engine.systems.potential import Potential
 from tests.peers.random_systems import random_well

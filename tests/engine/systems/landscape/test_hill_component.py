@@ -8,8 +8,8 @@ from functools import partial
 import numpy as np
 import pytest
 
+from engine import parse_formula
 from engine.expressions.nodes import from_terms
-from engine.systems.formulas.formula_parser import parse_formula
 from engine.systems.landscape.hill_component import Barrier, ComponentSearch, Extent
 
 # Formulas with the energy at which the region around the origin becomes unbounded.

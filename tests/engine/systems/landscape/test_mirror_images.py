@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine.systems.formulas.formula_parser import parse_formula
+from engine import parse_formula
 from engine.systems.landscape.mirror_images import MIRROR_X, MIRROR_Y, find_images, make_symmetric, mirrors_of, without_rounding
 
 # One point in each quadrant, each with an error of its own, and two points on the axes.

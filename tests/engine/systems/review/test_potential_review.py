@@ -6,7 +6,7 @@ import time
 
 import pytest
 
-from engine.systems.formulas.formula_parser import parse_formula
+from engine import parse_formula
 from engine.systems.known_potentials import POTENTIALS
 from engine.systems.potential import Potential
 from engine.systems.review.potential_review import review_potential
