@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
+    from matplotlib.collections import QuadMesh
     from matplotlib.colorbar import Colorbar
     from matplotlib.image import AxesImage
     from matplotlib.legend import Legend
@@ -24,8 +25,8 @@ class Drawing:
     artists
         All artists that show the result, from back to front.
     image
-        The image of a map or of another result with pixels; None for results without pixels. The image of a picture with a colour
-        scale contains the numbers, so it fits ``figure.colorbar(drawing.image)``.
+        The image of a map, of a sweep with two axes or of another result with pixels; None for results without pixels. The image
+        of a picture with a colour scale contains the numbers, so it fits ``figure.colorbar(drawing.image)``.
     legend
         The legend; None without one.
     colorbar
@@ -34,6 +35,6 @@ class Drawing:
 
     ax: Axes
     artists: tuple[Artist, ...]
-    image: AxesImage | None = None
+    image: AxesImage | QuadMesh | None = None
     legend: Legend | None = None
     colorbar: Colorbar | None = None

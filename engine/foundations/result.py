@@ -107,7 +107,7 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
             pictures with a colour scale, as for `matplotlib.axes.Axes.imshow`. ``picture`` of a map: ``"basins"``, ``"times"``,
             ``"crossings"``, ``"characters"`` or ``"curves"``. ``show`` of an orbit: ``"path"``, ``"crossings"`` of its section,
             ``"sali"``, ``"exponent"`` or ``"r2"``. ``measure`` of a sweep: a name of `MEASURES`, by default the first one with a
-            picture.
+            picture; ``outcome``, of which a sweep with two axes shows the share, 0 for bounded orbits.
 
         Returns
         -------

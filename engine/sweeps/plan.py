@@ -97,12 +97,12 @@ def plan_sweep(spec: SweepSpec, *, cores: int | None = None, execution: Executio
     workers = cores or execution.workers
     prepare_for_maps(spec.potential)
     prepare_for_evidence(spec.potential)
-    count = len(spec.values)
-    indices = np.unique(((np.arange(_MAX_PLANNED_VALUES) + 0.5) * count / _MAX_PLANNED_VALUES).astype(int))
-    seconds = [_predict_seconds(spec.point(spec.values[index]).map_spec, execution) for index in indices]
+    places = [(value, energy) for value in spec.values for energy in spec.energies_at(value)]
+    indices = np.unique(((np.arange(_MAX_PLANNED_VALUES) + 0.5) * len(places) / _MAX_PLANNED_VALUES).astype(int))
+    seconds = [_predict_seconds(spec.point(*places[index]).map_spec, execution) for index in indices]
     pixel_bytes = sum(np.dtype(dtype).itemsize for name, (dtype, _) in PIXEL_ARRAYS.items() if name != "started")
-    orbits = spec.count * spec.resolution[0] * spec.resolution[1]
-    return SweepPlan(orbits, spec.count * float(np.mean(seconds)) / workers, orbits * pixel_bytes, workers)
+    orbits = spec.map_count * spec.resolution[0] * spec.resolution[1]
+    return SweepPlan(orbits, spec.map_count * float(np.mean(seconds)) / workers, orbits * pixel_bytes, workers)
 
 
 def _predict_seconds(spec: MapSpec, execution: Execution) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import numbers
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
@@ -36,7 +37,7 @@ VALUE_ATTRIBUTES = ("requested", "refine", "count")
 
 @dataclass(frozen=True)
 class SweepSpec:
-    """A sweep of maps over energies, or over a parameter of the system, on one plane.
+    """A sweep of maps over energies, over a parameter of the system, or over both, on one plane.
 
     Parameters
     ----------
@@ -61,7 +62,8 @@ class SweepSpec:
     along
         The parameter; None for a sweep over energies. Outcomes have the numbers defined by `ParameterAxis`.
     energy
-        h of all maps along a parameter; None otherwise.
+        h of all maps along a parameter, or several energies: the second axis of the results, with a map at each energy for each
+        value of the parameter; None for a sweep over energies.
     refine
         Number of additional values, 0 to 1000, chosen while the sweep runs. Each is the middle of the two neighbouring values
         between which the share of an exit, or of bounded starts, changes most. The measure "shares" is required.
@@ -83,7 +85,7 @@ class SweepSpec:
     use_evidence: bool = True
     measures: Sequence[str] = ("maps",)
     along: ParameterAxis | None = None
-    energy: float | None = None
+    energy: float | tuple[float, ...] | None = None
     refine: int = 0
     section: Section = Section.Y_UP
 
@@ -101,7 +103,7 @@ class SweepSpec:
             use_evidence: bool = True,
             measures: Sequence[str] = ("maps",),
             along: ParameterAxis | None = None,
-            energy: float | None = None,
+            energy: float | Sequence[float] | np.ndarray | None = None,
             refine: int = 0,
             section: Section | str = Section.Y_UP,
         ) -> None: ...
@@ -110,10 +112,13 @@ class SweepSpec:
         check_type("along", self.along, (ParameterAxis, type(None)))
         if (self.along is None) != (self.energy is None):
             raise ValueError(f"energy={short_repr(self.energy)}: must be given along a parameter, and None along the energy")
-        if self.along is not None and self.energy is not None:
+        if not isinstance(self.energy, numbers.Real | None):
+            object.__setattr__(self, "energy", _checked_values("energy", self.energy))
+        if self.along is not None:
             # This validates the parameter, which must belong to the system of the potential.
-            MapSpec(self.potential, Slice(Coordinate.X, self.along), self.energy)
-        plane, values, measures = _checked_plane(self.plane), _checked_values(self.values), _checked_measures(self.measures)
+            MapSpec(self.potential, Slice(Coordinate.X, self.along), self.energies_at(self.along.high)[-1])
+        plane, measures = _checked_plane(self.plane), _checked_measures(self.measures)
+        values = _checked_values("values", self.values)
         refine = checked_count("refine", self.refine, 0, MOST_REFINED)
         if refine > 0 and "shares" not in measures:
             raise ValueError(f"refine={self.refine}: must be 0 without the measure 'shares', which decides where to refine")
@@ -121,7 +126,7 @@ class SweepSpec:
             raise ValueError("window=None: must be given for maps along a parameter, which have common axes")
         # The map at the highest value checks the other fields and converts them.
         highest = MapSpec(
-            self.potential, plane, self._energy_at(values[-1]), self.resolution, self.window, self.t_max, self.use_evidence,
+            self.potential, plane, self.energies_at(values[-1])[-1], self.resolution, self.window, self.t_max, self.use_evidence,
             section=self.section,
         )  # fmt: skip
         object.__setattr__(self, "values", values)
@@ -135,6 +140,11 @@ class SweepSpec:
         return len(self.values) + (self.refine if len(self.values) > 1 else 0)
 
     @property
+    def map_count(self) -> int:
+        """Number of maps, including those of `refine`."""
+        return self.count * len(self.energies_at(self.values[-1]))
+
+    @property
     def name(self) -> str:
         """The name of the varied quantity in datasets: "h", or the name of the parameter."""
         return "h" if self.along is None else self.along.key
@@ -146,9 +156,18 @@ class SweepSpec:
             return parameter_family(self.along).outcomes
         return self.potential.outcomes_at((self.values[0], self.values[-1]))
 
-    def point(self, value: float) -> SweepPoint:
-        """Return the request for the measurement at one value; ValueError if the system has no potential there."""
-        energy = self._energy_at(value)
+    def energies_at(self, value: float) -> tuple[float, ...]:
+        """Return h of the maps at a value."""
+        if isinstance(self.energy, tuple):
+            return self.energy
+        return (value if self.energy is None else self.energy,)
+
+    def point(self, value: float, energy: float | None = None) -> SweepPoint:
+        """Return the request for the measurement of one map; ValueError if the system has no potential at the value.
+
+        `energy` is one of `energies_at` the value, by default the highest.
+        """
+        energy = self.energies_at(value)[-1] if energy is None else energy
         if self.along is None:
             potential, numbers = self.potential, tuple(range(len(self.potential.outcomes) + 1))
         else:
@@ -163,6 +182,8 @@ class SweepSpec:
     def attributes(self) -> dict[str, Any]:
         """Return the request in plain values, with the integrator and the package version, as attributes of the dataset."""
         made_by = self.point(self.values[-1]).map_spec.provenance() | self.potential.provenance()
+        if isinstance(self.energy, tuple):
+            made_by["energy"] = list(self.energy)
         # Names of attributes that differ from map to map.
         differing = {"energy"} if self.along is None else {"terms"}
         if self._common_window() is None:
@@ -184,10 +205,6 @@ class SweepSpec:
             "count": self.count,
         }
 
-    def _energy_at(self, value: float) -> float:
-        """Return h of the map at a value."""
-        return value if self.energy is None else self.energy
-
     def _common_window(self) -> GivenWindow | None:
         """Return the window of all maps; None if each map has its default window."""
         if self.window is None and "maps" in self.measures:
@@ -203,15 +220,15 @@ def _checked_plane(plane: Any) -> Slice:
     return checked
 
 
-def _checked_values(values: Any) -> tuple[float, ...]:
+def _checked_values(name: str, values: Any) -> tuple[float, ...]:
     """Return the values, sorted and made unique."""
     try:
-        checked = tuple(sorted({float(h) for h in values}))
+        checked = tuple(sorted({float(value) for value in values}))
     except (TypeError, ValueError, OverflowError):
-        raise ValueError(f"values={short_repr(values)}: must be a sequence of finite numbers") from None
+        raise ValueError(f"{name}={short_repr(values)}: must be a sequence of finite numbers") from None
     if not 1 <= len(checked) <= MOST_VALUES or not np.all(np.abs(checked) <= LARGEST_NUMBER):
         legal = f"1 to {MOST_VALUES} different numbers, each finite and at most {LARGEST_NUMBER:g} in magnitude"
-        raise ValueError(f"values={short_repr(values)}: must be {legal}")
+        raise ValueError(f"{name}={short_repr(values)}: must be {legal}")
     return checked
 
 

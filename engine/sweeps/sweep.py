@@ -33,8 +33,9 @@ class Sweep(Result):
     Attributes
     ----------
     dataset
-        The measures along the first dimension, which has the name "h" or that of the parameter. Shares also have the dimension
-        "outcome", 0 for bounded orbits, and maps have the dimensions of their axes. The attributes are the request.
+        The measures along the first dimension, which has the name "h" or that of the parameter. Along a parameter at several
+        energies, the second dimension is "h". Shares also have the dimension "outcome", 0 for bounded orbits, and maps have the
+        dimensions of their axes. The attributes are the request.
     """
 
     dataset: xr.Dataset = field(repr=False)
@@ -48,6 +49,11 @@ class Sweep(Result):
     def symbol(self) -> str:
         """The symbol of the energy or of the parameter."""
         return str(self.dataset.attrs["symbol"])
+
+    @property
+    def axes(self) -> tuple[str, ...]:
+        """The names of the axes of the sweep, one or two: `name`, and "h" along a parameter at several energies."""
+        return (self.name, "h") if self.name != "h" and "h" in self.dataset.dims else (self.name,)
 
     @property
     def values(self) -> np.ndarray:
@@ -79,17 +85,19 @@ class Sweep(Result):
         return self[name] - error, self[name] + error
 
     def columns(self) -> Mapping[str, np.ndarray]:
-        """Return all numbers by name, the energy or parameter first.
+        """Return all numbers by name, the energy or parameter first, and for two axes a row for each map.
 
         A share has a column for each outcome, such as ``share_bounded`` and ``share_exit_1``.
         """
         labels = ["bounded", *(re.sub(r"\W+", "_", outcome.label) for outcome in self.outcomes)]
-        columns = {self.name: self.values}
+        grid = np.meshgrid(*(self[axis] for axis in self.axes), indexing="ij")
+        columns = {axis: values.ravel() for axis, values in zip(self.axes, grid, strict=True)}
         for name in map(str, self.dataset.data_vars):
-            if self.dataset[name].dims == (self.name,):
-                columns[name] = self[name]
-            elif self.dataset[name].dims == (self.name, "outcome"):
-                columns |= {f"{name}_{label}": share for label, share in zip(labels, self[name].T, strict=True)}
+            if self.dataset[name].dims == self.axes:
+                columns[name] = self[name].ravel()
+            elif self.dataset[name].dims == (*self.axes, "outcome"):
+                shares = self[name].reshape(-1, len(labels)).T
+                columns |= {f"{name}_{label}": share for label, share in zip(labels, shares, strict=True)}
         return columns
 
     def to_xarray(self) -> xr.Dataset:
@@ -99,7 +107,8 @@ class Sweep(Result):
     def describe(self) -> str:
         """Return the number of measured values, in a sentence."""
         attributes = self.dataset.attrs
-        return f"{self.values.size} of {attributes['count']} values of {self.symbol} on {attributes['plane']}."
+        energies = f", each at {self.dataset.sizes['h']} energies," if len(self.axes) > 1 else ""
+        return f"{self.values.size} of {attributes['count']} values of {self.symbol}{energies} on {attributes['plane']}."
 
 
 @shows_progress("sweep")
@@ -122,7 +131,8 @@ def compute_sweep(
 ) -> Sweep:
     """Compute the maps of a sweep one after the other, each on all workers, and their measures.
 
-    In memory, values are measured from coarse to fine, so that curves take shape early; in a store, in ascending order.
+    Along a parameter at several energies, the maps of all energies at a value of the parameter are measured together. In memory,
+    values are measured from coarse to fine, so that curves take shape early; in a store, in ascending order.
 
     Parameters
     ----------
@@ -191,13 +201,30 @@ def _measure_all(
     while (value := _next_value(spec, dataset, order)) is not None:
         part = execution.part(dataset.sizes[spec.name], spec.count)
         part.report(lambda: 0.0)
-        point = spec.point(value)
-        storage.append(measure(point) if measure is not None else compute_point(point, execution=part))
+        storage.append(_measure_value(spec, value, measure, part))
         dataset = storage.read()
         if on_frame is not None:
             on_frame(Sweep(dataset))
     execution.report(lambda: 1.0)
     return Sweep(dataset)
+
+
+def _measure_value(
+    spec: SweepSpec, value: float, measure: Callable[[SweepPoint], xr.Dataset] | None, execution: Execution
+) -> xr.Dataset:
+    """Return the measures of all maps at a value, with the second dimension "h" if the request has several energies."""
+    # This import is slow.
+    import xarray as xr
+
+    energies, measured = spec.energies_at(value), []
+    for number, energy in enumerate(energies):
+        point, part = spec.point(value, energy), execution.part(number, len(energies))
+        measured.append(measure(point) if measure is not None else compute_point(point, execution=part))
+    if not isinstance(spec.energy, tuple):
+        return measured[0]
+    h = xr.Variable("h", list(energies), {"long_name": "h", "units": "1"})
+    row: xr.Dataset = xr.concat([one.expand_dims("h", axis=1) for one in measured], h, combine_attrs="override")
+    return row
 
 
 class _MemoryStorage:
@@ -243,7 +270,8 @@ def _next_value(spec: SweepSpec, dataset: xr.Dataset, order: Sequence[float]) ->
         return next_given
     if values.size >= spec.count:
         return None
-    largest_changes = np.abs(np.diff(dataset["share"].values, axis=0)).max(axis=1)
+    changes = np.abs(np.diff(dataset["share"].values, axis=0))
+    largest_changes = changes.max(axis=tuple(range(1, changes.ndim)))
     steepest = int(np.argmax(largest_changes))
     return float(0.5 * (values[steepest] + values[steepest + 1]))
 

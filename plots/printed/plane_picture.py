@@ -63,6 +63,7 @@ class PlanePicture:
             artists.append(draw_pixels(axes, self.pixels, window))
         if self.values is not None and self.legend.scale is not None:
             scale_cmap, scale_norm = scale_colours(self.legend.scale)
+            scale_cmap.colorbar_extend = "both"  # type: ignore[assignment]  # The types of Matplotlib say bool.
             colours = scale_cmap if cmap is None else cmap, scale_norm if norm is None else norm
             artists.append(draw_pixels(axes, np.ma.masked_invalid(self.values), window, *colours))
         artists += draw_limits(axes, spec.potential, spec.plane, spec.energy, window, self.palette.channels)

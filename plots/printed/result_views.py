@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 
-from engine import EscapeMap, LyapunovOrbit, Orbit, OrbitFamily, PeriodicOrbit, Potential, Result, Window
+from engine import MEASURES, EscapeMap, LyapunovOrbit, Orbit, OrbitFamily, PeriodicOrbit, Potential, Result, Window
 from engine.results import (
     DecayLaws,
     EscapeStatistics,
@@ -40,7 +40,7 @@ from plots.studies.family import family_charts
 from plots.studies.measure_charts import pairs_chart, survival_chart
 from plots.studies.periodic import periodic_charts
 from plots.studies.section import section_charts
-from plots.studies.sweep_charts import sweep_charts
+from plots.studies.sweep_charts import CURVE_PANELS, SHARES, sweep_charts
 
 # Lowest position on a logarithmic axis, which cannot show 0. Smaller values are drawn at this position.
 _LOG_FLOOR = 1e-16
@@ -112,7 +112,7 @@ def view_of(result: Result, palette: Palette, *, cmap: Any = None, norm: Any = N
 def charts_of(result: Result, palette: Palette) -> list[Chart]:
     """Return the charts of a result; empty if it has other pictures."""
     match result:
-        case Sweep():
+        case Sweep() if len(result.axes) == 1:
             return sweep_charts(result, palette)
         case DecayLaws():
             return [survival_chart(result)]
@@ -163,6 +163,29 @@ def _plane_view(picture: PlanePicture, cmap: Any, norm: Any) -> View:
         is_plane=True,
         has_scale=picture.values is not None,
     )
+
+
+def _plate_view(result: Sweep, measure: str | None, outcome: int, cmap: Any, norm: Any) -> View:
+    """Return the view of a measure of a sweep with two axes, as an image; of the shares, that of one outcome."""
+    drawn = {one.name: next(iter(one.labels)) for one in CURVE_PANELS if set(one.labels) <= set(result.dataset)}
+    if "share" in result.dataset:
+        drawn = {SHARES.name: "share", **drawn}
+    if not (drawn and result.values.size):
+        raise NoPictureError("a sweep without numbers against the energy or a parameter has no picture")
+    name = next(iter(drawn)) if measure is None else measure
+    if name not in drawn:
+        raise ValueError(f"measure={measure!r}: must be one of {', '.join(drawn)}")
+    values, title = result[drawn[name]], MEASURES[name].title
+    if name == SHARES.name:
+        labels = ["bounded", *(each.label for each in result.outcomes)]
+        if outcome not in range(len(labels)):
+            raise ValueError(f"outcome={outcome!r}: must be a number from 0 to {len(labels) - 1}")
+        values, title = values[..., outcome], f"Share: {labels[outcome]}"
+
+    def draw(axes: Axes) -> list[Artist]:
+        return [axes.pcolormesh(result.values, result["h"], values.T, shading="nearest", cmap=cmap, norm=norm)]
+
+    return View((result.symbol, "h"), draw, title=title, is_plane=True, has_scale=True)
 
 
 def _check_scale(cmap: Any, norm: Any, *, has_scale: bool) -> None:
@@ -262,7 +285,12 @@ def _review_view(result: PotentialReview, palette: Palette) -> View:
 
 
 @view_of.register
-def _sweep_view(result: Sweep, palette: Palette, *, measure: str | None = None) -> View:
+def _sweep_view(
+    result: Sweep, palette: Palette, *, measure: str | None = None, outcome: int = 0, cmap: Any = None, norm: Any = None
+) -> View:
+    if len(result.axes) > 1:
+        return _plate_view(result, measure, outcome, cmap, norm)
+    _check_scale(cmap, norm, has_scale=False)
     charts = {chart.frame.name: chart for chart in charts_of(result, palette)}
     if not charts:
         raise NoPictureError("a sweep without numbers against the energy or a parameter has no picture")

@@ -12,6 +12,7 @@ from weakref import WeakKeyDictionary
 
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from matplotlib.legend import Legend
@@ -19,7 +20,7 @@ from matplotlib.legend import Legend
 from engine import EscapeMap, Result
 from engine.foundations.extras import require_package
 from engine.maps.pixels import PixelAnalysis
-from engine.results import Drawing
+from engine.results import Drawing, Sweep
 from plots.pictures.charts import Limits
 from plots.pictures.palette import DEFAULT_COLOURS, DEFAULT_PALETTE, find_palette
 from plots.printed.figure_axes import RENDER_LOCK, add_legend_below, figure_of, legend_handles, set_font, size_in_points
@@ -94,11 +95,11 @@ def _draw(view: View, axes: Axes, *, legend: bool, colorbar: bool) -> Drawing:
     for axis, axis_limits in limits.items():
         getattr(axes, f"set_{axis}lim")(axis_limits, auto=not view.is_plane)
     _LABELS.update(dict.fromkeys(artists, view.labels))
-    images = [artist for artist in artists if isinstance(artist, AxesImage)]
+    images = [artist for artist in artists if isinstance(artist, AxesImage | QuadMesh)]
     image = images[-1] if images else None
     bar = None
     if colorbar and image is not None:
-        bar = figure_of(axes).colorbar(image, ax=axes, label=view.title, extend="both")
+        bar = figure_of(axes).colorbar(image, ax=axes, label=view.title)
     return Drawing(axes, tuple(artists), image, _add_legend(view, axes, artists) if legend else None, bar)
 
 
@@ -167,6 +168,8 @@ def to_holoviews(result: Result) -> Any:
                     element.opts(**axis_options(chart))
         return hv.Layout(overlays).cols(2)
     table = result.to_pandas()
+    if isinstance(result, Sweep):
+        return hv.HeatMap(table, list(result.axes))
     if result.row_dimension:
         table = table.rename_axis(result.row_dimension).reset_index()
     index, *value_names = table.columns
