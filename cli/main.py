@@ -36,6 +36,7 @@ COMMANDS = (
     "lyapunov",
     "measures",
     "curves",
+    "where",
     "study",
     "ensemble",
     "sweep",

@@ -18,7 +18,7 @@ programs of this repository, and may change with any version.
 - measures: `MEASURES`, `Measure`; of basins and statistics `compute_basin_entropy`, `compute_wada_test`,
   `compute_uncertainty_exponent`, `compute_statistics`, `compute_islands`, `compute_chaotic_share`, `compute_exit_matching`,
   `fit_decay_laws`
-- sweeps over energies or a parameter: `SweepSpec`, `compute_sweep`, `plan_sweep`
+- sweeps over energies or a parameter: `SweepSpec`, `compute_sweep`, `plan_sweep`, `find_where`
 - files and execution: `Result`, `open_result`, `Execution`
 """
 
@@ -80,6 +80,7 @@ from engine.sweeps.plan import plan_sweep as plan_sweep
 from engine.sweeps.spec import SweepSpec as SweepSpec
 from engine.sweeps.stored_returns import store_returns as store_returns
 from engine.sweeps.sweep import compute_sweep as compute_sweep
+from engine.sweeps.threshold import find_where as find_where
 from engine.systems.catalogue.names import UnknownNameError as UnknownNameError
 from engine.systems.formulas.formula_tokens import FormulaError as FormulaError
 from engine.systems.formulas.formula_writer import write_formula as write_formula

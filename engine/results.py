@@ -24,6 +24,7 @@ from engine.periodic.symmetric.symmetric_families import SymmetricFamilies as Sy
 from engine.propagation.classification import Outcomes as Outcomes
 from engine.sweeps.plan import SweepPlan as SweepPlan
 from engine.sweeps.sweep import Sweep as Sweep
+from engine.sweeps.threshold import Threshold as Threshold
 from engine.systems.review.potential_review import PotentialReview as PotentialReview
 from engine.trajectories.birkhoff_digits import BirkhoffDigits as BirkhoffDigits
 from engine.trajectories.chaos_indicators import Verdict as Verdict

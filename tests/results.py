@@ -35,6 +35,7 @@ from engine import (
     find_returns,
     find_stable_manifolds,
     find_symmetric_families,
+    find_where,
     fit_decay_laws,
     integrate_orbit,
     judge_orbit,
@@ -83,6 +84,7 @@ _MAKERS: dict[str, Callable[[], Result | None]] = {
     "family along a parameter": lambda: continue_family(
         find_periodic_orbit(POTENTIAL, (0.0, 0.0, 0.0, 0.8), returns=1), 1.1, along="epsilon"
     ),
+    "threshold": lambda: find_where(SweepSpec(POTENTIAL, Plane.X_PX, (0.3, 0.36), (20, 20), t_max=100.0), "share_bounded", 0.5),
     "sweep": lambda: compute_sweep(SweepSpec(POTENTIAL, Plane.X_PX, (0.3, 0.36), (20, 20), t_max=100.0, measures="shares")),
 }
 

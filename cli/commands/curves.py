@@ -34,6 +34,7 @@ from plots.studies.against import AGAINST
 from plots.texts.exports import stem_of
 
 AGAINST_HELP = f"h, or a parameter: {', '.join(WELL_PARAMETERS)} or a letter of the formula."
+ENERGY_HELP = "h of all maps along a parameter."
 MEASURE_HELP = f"{', '.join(CURVES)}; all by default. Can be repeated."
 
 # Names of the columns that are only in files and JSON, not in the printed table.
@@ -50,7 +51,7 @@ def run(
     high: Annotated[float, DocumentedBy(space_values)],
     count: Annotated[int, DocumentedBy(space_values)],
     against: Annotated[str, typer.Option(help=AGAINST_HELP)] = "h",
-    energy: Annotated[float | None, DocumentedBy(SweepSpec)],
+    energy: Annotated[float | None, typer.Option(help=ENERGY_HELP)] = None,
     refine: Annotated[int, DocumentedBy(SweepSpec)],
     plane: Slice,
     resolution: Annotated[tuple[int, int], DocumentedBy(SweepSpec)] = (112, 112),

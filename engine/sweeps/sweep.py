@@ -89,7 +89,7 @@ class Sweep(Result):
 
         A share has a column for each outcome, such as ``share_bounded`` and ``share_exit_1``.
         """
-        labels = ["bounded", *(re.sub(r"\W+", "_", outcome.label) for outcome in self.outcomes)]
+        labels = share_names(self.outcomes)
         grid = np.meshgrid(*(self[axis] for axis in self.axes), indexing="ij")
         columns = {axis: values.ravel() for axis, values in zip(self.axes, grid, strict=True)}
         for name in map(str, self.dataset.data_vars):
@@ -109,6 +109,11 @@ class Sweep(Result):
         attributes = self.dataset.attrs
         energies = f", each at {self.dataset.sizes['h']} energies," if len(self.axes) > 1 else ""
         return f"{self.values.size} of {attributes['count']} values of {self.symbol}{energies} on {attributes['plane']}."
+
+
+def share_names(outcomes: Sequence[Outcome]) -> list[str]:
+    """Return the names of bounded starts and of outcomes in columns, such as "exit_1"."""
+    return ["bounded", *(re.sub(r"\W+", "_", outcome.label) for outcome in outcomes)]
 
 
 @shows_progress("sweep")

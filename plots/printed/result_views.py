@@ -21,6 +21,7 @@ from engine.results import (
     Returns,
     SampledOrbits,
     Sweep,
+    Threshold,
     UncertaintyExponent,
 )
 from engine.slices.default_window import default_window
@@ -114,6 +115,8 @@ def charts_of(result: Result, palette: Palette) -> list[Chart]:
     match result:
         case Sweep() if len(result.axes) == 1:
             return sweep_charts(result, palette)
+        case Threshold():
+            return [_threshold_chart(result)]
         case DecayLaws():
             return [survival_chart(result)]
         case EscapeStatistics():
@@ -127,6 +130,14 @@ def charts_of(result: Result, palette: Palette) -> list[Chart]:
         case OrbitFamily():
             return family_charts(result, palette)
     return []
+
+
+def _threshold_chart(result: Threshold) -> Chart:
+    """Return the chart of the measures of all maps, and the value that is reached."""
+    level = result.wanted, f"{result.quantity} = {result.wanted:.6g}"
+    frame = Frame("threshold", result.quantity, (result.axis, result.quantity), help="", level=level)
+    bars = result.measured_low, result.measured_high
+    return Chart(frame, [Series("maps", MEASURED, result.value, result.measured, Shape.POINTS, bars)])
 
 
 def _chart_view(chart: Chart) -> View:

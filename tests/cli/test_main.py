@@ -18,7 +18,20 @@ from engine.maps.spec import DEFAULT_RESOLUTION
 from plots.printed.figure_style import FigureStyle
 from tests.cli.conftest import Run
 
-COMMANDS = ("map", "orbit", "ensemble", "lyapunov", "measures", "curves", "study", "sweep", "potential", "reproduce", "serve")
+COMMANDS = (
+    "map",
+    "orbit",
+    "ensemble",
+    "lyapunov",
+    "measures",
+    "curves",
+    "where",
+    "study",
+    "sweep",
+    "potential",
+    "reproduce",
+    "serve",
+)
 MAP = ("map", "I", "--energy", 0.19, "--resolution", 9, "--t-max", 100)
 INVALID = {
     "missing command": (),

@@ -80,7 +80,7 @@ SPECS = {
 SHARED = (
     "trust", "origins", "descriptors", "separation", "divergent start", "entropy", "exponent", "Wada test",
     "Lyapunov orbit", "manifolds", "verdict", "review", "decay laws", "returns", "returns of orbits",
-    "periodic orbit", "periodic orbits", "family", "family along a parameter", "symmetric families",
+    "periodic orbit", "periodic orbits", "family", "family along a parameter", "symmetric families", "threshold",
 )  # fmt: skip
 RESULTS: dict[str, Callable[[], Result | None]] = {
     **{name: functools.partial(result_of, name) for name in SHARED},
