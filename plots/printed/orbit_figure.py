@@ -74,7 +74,9 @@ def draw_well_figure(
     figure = new_figure(style, style.width, f"The well at h = {energy:.6g}")
     axes = figure.subplots()
     draw_well(axes, potential, energy, window, palette)
-    _draw_paths(axes, orbits, window, [palette.path_colour(one.orbit.fate, one.orbit.outcomes, k) for k, one in enumerate(orbits)])
+    _draw_paths(
+        axes, orbits, window, [palette.path_colour(one.orbit.fate, one.orbit.outcomes, k) for k, one in enumerate(orbits)]
+    )
     show_window(axes, window, "x", "y", style, equal=True)
     add_figure_legend(figure, labelled(axes.collections), style, columns=2)
     return figure

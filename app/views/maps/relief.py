@@ -39,12 +39,13 @@ def shade_relief(spec: MapSpec) -> tuple[np.ndarray, Window]:
     The effective potential of a rotating system is shaded. Heights are cut off at a floor and at a plateau around the well.
     """
     window = _enlarged(spec.find_window())
-    assert spec.common_energy is not None
+    h = spec.common_energy
+    assert h is not None
     x, y = (np.linspace(low, high, _SIDE) for low, high in window.ranges)
     with np.errstate(all="ignore"):
         energies = spec.plane.required_energy(spec.potential, *np.meshgrid(x, y))
-    floor = _find_floor(spec, energies)
-    depth = spec.common_energy - floor or 1.0
+    floor = _find_floor(spec.potential.well.bottom, energies[energies <= h], h)
+    depth = h - floor or 1.0
     heights = np.clip(np.nan_to_num((energies - floor) / depth, nan=_PLATEAU), 0.0, _PLATEAU)
     slope_y, slope_x = np.gradient(heights * _DEPTH * (_SIDE - 1) / _MARGIN)
     brightness = (_LIGHT[2] - _LIGHT[0] * slope_x - _LIGHT[1] * slope_y) / np.sqrt(1.0 + slope_x**2 + slope_y**2) - _LIGHT[2]
@@ -53,11 +54,9 @@ def shade_relief(spec: MapSpec) -> tuple[np.ndarray, Window]:
     return np.clip(np.rint(middle * (1.0 + tone)), 0, _SHADES - 1).astype(np.uint8), window
 
 
-def _find_floor(spec: MapSpec, energies: np.ndarray) -> float:
-    """Return the bottom of the well; for an energy without a well, an energy above that of few places inside."""
-    bottom = spec.potential.well.bottom
-    inside = energies[energies <= spec.common_energy]
-    return bottom if bottom < spec.common_energy or not inside.size else float(np.quantile(inside, _BELOW_FLOOR))
+def _find_floor(bottom: float, inside: np.ndarray, h: float) -> float:
+    """Return the bottom of the well; if it is above h, as beside bodies, an energy above that of few places inside."""
+    return bottom if bottom < h or not inside.size else float(np.quantile(inside, _BELOW_FLOOR))
 
 
 def _enlarged(window: Window) -> Window:
