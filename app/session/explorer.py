@@ -82,8 +82,8 @@ class Explorer:
         pn.state.onload(lambda: self.links.begin(self._begin_view))
 
     def _make_presenters(self, context: SessionContext) -> None:
-        self.potential = PotentialPresenter(context, self.links.history)
         self.maps = MapPresenter(context, self.links.history, alone=self.links.embedded)
+        self.potential = PotentialPresenter(context, self.links.history, self.maps.view.well.show_sketch)
         self.analyses = AnalysisPresenter(context, self.maps.view)
         self.studies = {name: StudyPresenter(study, context) for name, study in STUDIES.items()}
         self.comparison = ComparisonPresenter(

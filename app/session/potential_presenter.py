@@ -9,7 +9,9 @@ from app.job_clients.latest_request import LatestRequest
 from app.session.context import History, SessionContext
 from app.state.system_review import PageReview, is_known, review_catalogue_entry, review_job
 from app.views.analysis.potential_panel import NEW_INTEGRATOR, PotentialPanel
-from engine import System
+from app.views.maps.well import prepare_sketch, sketch_spec
+from engine import MapSpec, Potential, System
+from engine.jobs.job import Job, Queue
 from engine.maps.warmup import is_ready_for_maps
 from engine.systems.system import TYPED
 
@@ -47,9 +49,13 @@ class PotentialPresenter:
         The session.
     history
         Numbers the entries of the browser's history.
+    show_sketch
+        Draws a potential that is typed and not used yet, or None.
     """
 
-    def __init__(self, context: SessionContext, history: History) -> None:
+    def __init__(
+        self, context: SessionContext, history: History, show_sketch: Callable[[MapSpec | None], None] = lambda spec: None
+    ) -> None:
         state = self._state = context.state
         self._history = history
         self._proposal: _Proposal | None = None
@@ -58,6 +64,10 @@ class PotentialPresenter:
         self._last_review: PageReview | None = None
         self.panel = PotentialPanel(state.reviewed, context.locked(self._take))
         self._request = LatestRequest(context.jobs, self._show, self._on_failure, context.locked)
+        # The potential of the latest sketch. If it cannot be drawn, the picture stays.
+        self._sketched: Potential | None = None
+        self._show_sketch = show_sketch
+        self._sketch_request = LatestRequest(context.jobs, show_sketch, lambda sentence: None, context.locked)
         state.param.watch(lambda *events: self._follow_system(), "system")
         self.panel.show(state.reviewed)
 
@@ -91,12 +101,24 @@ class PotentialPresenter:
             self._use(reviewed)
         else:
             self.panel.show(reviewed, NEW_INTEGRATOR)
+            energy = self._energy_for(reviewed)
+            spec = sketch_spec(reviewed.potential, reviewed.energies.first if energy is None else energy)
+            self._sketched = reviewed.potential
+            self._sketch_request.submit(Job(prepare_sketch, (spec,), queue=Queue.LONG_CALL))
+
+    def _end_sketch(self) -> None:
+        """Show the well of the view again, unless a map of the sketched potential follows."""
+        if self._sketched is not None and self._sketched != self._state.potential:
+            self._sketch_request.cancel()
+            self._sketched = None
+            self._show_sketch(None)
 
     def _use(self, reviewed: PageReview) -> None:
         """Show a valid system, and write it to the view state. An equal potential keeps energy, window and starts."""
         self.panel.used = reviewed
         self.panel.show(reviewed)
         if reviewed.system == self._state.system:
+            self._end_sketch()
             return
         self._history.begin_gesture()
         if reviewed.potential == self._state.potential:
@@ -163,6 +185,7 @@ class PotentialPresenter:
 
     def _follow_system(self) -> None:
         """Follow a system that the panel has not chosen, and cancel any review."""
+        self._end_sketch()
         if self._state.reviewed is not self.panel.used:
             self._proposal = self._waiting_proposal = None
             self._request.cancel()

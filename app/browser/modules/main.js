@@ -50,10 +50,10 @@ export function start(model, el) {
   const frames = new Frames(pool, workerCount(), (view, pixels, isMoving) => preview.show(view, pixels, isMoving))
   const store = storeOf(model.document)
   keepSharp(find("maps"), store)
-  const relief = new Relief()
+  const relief = new Relief(() => model.view.well)
   const overlay = new Overlay(el, relief)
   /** @type {Preview} */
-  const preview = new Preview(find, findSource, frames, overlay, relief, store)
+  const preview = new Preview(find, findSource, frames, overlay, store)
   const startLine = new StartLine(el, () => overlay.isShown)
   const film = new Film(el, "escapes-energy", () => `h = ${number(store.energy.value, 6)}`)
   const player = new EnergyPlayer(

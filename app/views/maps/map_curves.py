@@ -112,12 +112,12 @@ class MapCurves:
         style = {"line_color": theme_line("limiting_curve"), "fill_color": theme_line("limiting_curve")}
         return [(self._mark_source, Scatter(marker="marker", size=9, **style))]
 
-    def show(self, spec: MapSpec) -> None:
-        """Draw the curves of a map."""
+    def show(self, spec: MapSpec, *, exits: bool = True) -> None:
+        """Draw the curves of a map. Without `exits`, nothing is integrated."""
         curves = trace_curves(spec)
         self._limit_source.data = _columns_with_gaps(curves.limit)
         h = spec.common_energy
-        orbits = find_lyapunov_orbits(spec.potential, h) if spec.plane.shows_positions and h is not None else ()
+        orbits = find_lyapunov_orbits(spec.potential, h) if exits and spec.plane.shows_positions and h is not None else ()
         # Without orbits before and now, nothing needs to be sent.
         if orbits or self._exit_source.data["xs"]:
             self._show_exits(orbits)

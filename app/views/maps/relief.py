@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import functools
-from typing import Any
 
 import numpy as np
 from bokeh.models import ColumnDataSource, Image, LinearColorMapper
 from bokeh.plotting import figure
 
 from engine import MapSpec, Window
+from plots.browser.browser_system import system_key
 
 # Number of pixels along each side of the image.
 _SIDE = 192
@@ -82,21 +82,13 @@ class Relief:
     """Draws the relief of a well in a figure, below all curves."""
 
     def __init__(self, plot: figure) -> None:
-        self._source = ColumnDataSource(_columns([], []), name="relief")
+        self._source = ColumnDataSource(dict.fromkeys(("image", "x", "y", "dw", "dh", "well"), ()), name="relief")
         mapper = LinearColorMapper(palette=_palette(), low=0, high=_SHADES)
         plot.add_glyph(self._source, Image(image="image", dw="dw", dh="dh", color_mapper=mapper), level="image")
 
     def show(self, spec: MapSpec) -> None:
         """Draw the relief of a map in (x, y)."""
         shades, window = shade_relief(spec)
-        self._source.data = _columns([shades], [window])
-
-
-def _columns(images: list[np.ndarray], windows: list[Window]) -> dict[str, list[Any]]:
-    return {
-        "image": images,
-        "x": [window.x_low for window in windows],
-        "y": [window.ordinate_low for window in windows],
-        "dw": [window.width for window in windows],
-        "dh": [window.height for window in windows],
-    }
+        x, y = window.x_low, window.ordinate_low
+        image = {"image": shades, "x": x, "y": y, "dw": window.width, "dh": window.height, "well": system_key(spec.potential)}
+        self._source.data = {name: [value] for name, value in image.items()}

@@ -10,8 +10,8 @@ from bokeh.models import ColumnDataSource, ImageRGBA, MultiLine, Range1d, Scatte
 from app.state.view_state import ViewState
 from app.views.components.orbit_lines import in_front, line_columns, line_source, line_style, opacities, orbit_colours
 from app.views.components.plots import FigurePane, LaterGlyphs, PictureTexts, SourcedGlyphs, map_figure, set_range
-from app.views.maps.map_curves import MapCurves
-from app.views.maps.relief import Relief
+from app.views.maps.map_curves import MapCurves, trace_curves
+from app.views.maps.relief import Relief, shade_relief
 from engine import MapSpec, Potential, Window
 from engine.slices.axes import highest_energy
 from engine.slices.planes import SPACE
@@ -20,8 +20,11 @@ from plots.pictures.palette import LIGHT, MARK_EDGE, Palette
 from plots.texts.legends import legend_items
 
 TITLE = "The well in (x, y)"
+SKETCH_TITLE = "The well as typed"
 SHORT_TITLE = "Well"
 
+# Half of the width of a sketch, in units of the distance of the furthest saddle.
+_SKETCH_MARGIN = 1.5
 # The line of a long path: none, because an image shows the path.
 _NO_LINE = np.zeros(0), np.zeros(0)
 
@@ -29,6 +32,20 @@ _NO_LINE = np.zeros(0), np.zeros(0)
 def well_spec(potential: Potential, energy: float) -> MapSpec:
     """Return the specification of the map in (x, y) whose curves are the curves of the well."""
     return MapSpec(potential, SPACE, energy, window=find_well_window(potential, energy))
+
+
+def sketch_spec(potential: Potential, energy: float) -> MapSpec:
+    """Return a specification as `well_spec` does, with a window that needs no integration: the saddles and their surroundings."""
+    distance = float(np.hypot(*potential.saddles.T).max(initial=0.0)) or potential.units.length
+    half = _SKETCH_MARGIN * distance
+    return MapSpec(potential, SPACE, energy, window=Window(-half, half, -half, half))
+
+
+def prepare_sketch(spec: MapSpec) -> MapSpec:
+    """Trace the curves and shade the relief of a sketch, which caches keep, and return its specification."""
+    trace_curves(spec)
+    shade_relief(spec)
+    return spec
 
 
 class WellView:
@@ -53,6 +70,9 @@ class WellView:
         self._points = ColumnDataSource({"x": [], "y": [], "slot": []}, name="points")
         self._outlines = MapCurves(state)
         self._spec: MapSpec | None = None
+        # A potential without exits that is drawn in place of the map's.
+        self._sketch: MapSpec | None = None
+        self._given_orbits: tuple[Sequence[OrbitCurves | None], int] = (), 0
         self._orbits: list[tuple[int, OrbitCurves]] = []
         self._time: float | None = None
         # Map and palette of the drawn curves. Maps of other windows, and most orbits, need no new curves.
@@ -79,10 +99,22 @@ class WellView:
     def show_map(self, spec: MapSpec) -> None:
         """Show the well at the energy of a map."""
         self._spec = spec
+        if self._sketch is not None and self._sketch.potential == spec.potential:
+            self.show_sketch(None)
         self._outline()
+
+    def show_sketch(self, sketch: MapSpec | None) -> None:
+        """Show a potential in place of the map's, without orbits and exits, until a map has this potential; None ends that."""
+        if sketch != self._sketch:
+            self._sketch = sketch
+            self.show_orbits(*self._given_orbits)
+            self._outline()
 
     def show_orbits(self, orbits: Sequence[OrbitCurves | None], chosen: int) -> None:
         """Draw the known orbits in the well of the chosen orbit, which is highlighted; None stands for an unknown orbit."""
+        self._given_orbits = orbits, chosen
+        if self._sketch is not None:
+            orbits = ()
         if chosen < len(orbits) and (chosen_orbit := orbits[chosen]) is not None:
             well = chosen_orbit.orbit.potential
             orbits = [each if each is not None and each.orbit.potential == well else None for each in orbits]
@@ -122,13 +154,13 @@ class WellView:
         """Write title, legend and names of the axes."""
         if self._outline_key is not None:
             spec, _ = self._outline_key
-            self._write(
-                "well", PictureTexts(TITLE, SHORT_TITLE, spec.plane.axis_symbols, legend_items(self._outlines.entries(spec)))
-            )
+            title = TITLE if self._sketch is None else SKETCH_TITLE
+            legend = legend_items(self._outlines.entries(spec))
+            self._write("well", PictureTexts(title, SHORT_TITLE, spec.plane.axis_symbols, legend))
 
     def _outline(self) -> None:
         """Draw the curves of the well, unless they are already drawn."""
-        spec = self._spec
+        spec = self._sketch or self._spec
         if spec is None:
             return
         # The chosen orbit is the last.
@@ -137,12 +169,12 @@ class WellView:
         if chosen is not None and (spec.common_energy is None or spec.plane.parameter is not None):
             # On a slice of several energies or potentials, the chosen orbit determines the well.
             potential, energy = chosen.orbit.potential or potential, chosen.orbit.energy
-        outlined_spec = well_spec(potential, energy)
+        outlined_spec = self._sketch or well_spec(potential, energy)
         if (outlined_spec, self._state.colours) == self._outline_key:
             return
         self._outline_key = outlined_spec, self._state.colours
         self._relief.show(outlined_spec)
-        self._outlines.show(outlined_spec)
+        self._outlines.show(outlined_spec, exits=self._sketch is None)
         self._outlines.show_marks(outlined_spec.potential)
         self._go_to(outlined_spec.find_window())
         self.describe()

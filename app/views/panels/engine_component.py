@@ -143,6 +143,7 @@ def describe_view(state: ViewState) -> dict[str, Any]:
     colours = [entry.colour for entry in state.colours.end_entries(outcomes)]
     return {
         "system": system_key(state.potential, state.section),
+        "well": system_key(state.potential),
         "plane": slice_name(state.plane),
         # Only the server knows the potentials along a parameter.
         "slice": describe_slice(state.plane, state.potential, state.section) if state.plane.parameter is None else None,

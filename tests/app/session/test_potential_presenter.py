@@ -13,7 +13,7 @@ from app.session.potential_presenter import PotentialPresenter
 from app.state.system_review import review_for_page
 from app.state.view_state import ViewState
 from app.views.analysis.potential_panel import OUTDATED
-from engine import CASES, System
+from engine import CASES, MapSpec, System
 from engine.jobs.manager import Jobs
 from engine.maps.warmup import prepare_for_maps
 from engine.systems.parameters import WELL_PARAMETERS
@@ -41,7 +41,8 @@ class Session:
         self.changed = threading.Condition()
         self.state, self.history = ViewState(system=System("I"), energy=0.25, starts=((0.1, 0.1),)), History()
         self.context = context_of(self.state, Jobs(), self.changed)
-        self.presenter = PotentialPresenter(self.context, self.history)
+        self.sketches: list[MapSpec | None] = []
+        self.presenter = PotentialPresenter(self.context, self.history, self.sketches.append)
         self.panel = self.presenter.panel
 
     def type(self, text: str, *, enter: bool = True) -> None:
@@ -68,6 +69,18 @@ def session() -> Iterator[Session]:
     made = Session()
     yield made
     made.context.jobs.close()
+
+
+def test_the_well_of_a_text_that_is_not_used_yet_is_drawn_until_the_text_is_that_of_the_view(session: Session) -> None:
+    session.type(NEW, enter=False)
+    session.wait_for(lambda: bool(session.sketches))
+    [sketch] = session.sketches
+    assert sketch is not None
+    assert sketch.potential == System.from_formula(NEW).potential
+    # The energy has the same place in the well: twice the escape energy.
+    assert sketch.energy == pytest.approx(2.0 * sketch.potential.escape_energy, rel=1e-2)
+    session.type("½(x² + y²) − xy²", enter=False)
+    session.wait_for(lambda: session.sketches[-1] is None)
 
 
 def test_a_text_is_used_while_it_is_typed_unless_it_needs_another_integrator(session: Session) -> None:

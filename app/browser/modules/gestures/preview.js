@@ -18,6 +18,7 @@ import {LEAST_SIDE} from "../../../../plots/browser/modules/workers/frames.js"
  *
  * @typedef {object} ServerView
  * @property {string} system  key of the system
+ * @property {string} well  key of its potential
  * @property {string} plane  name of the slice
  * @property {import("../../../../plots/browser/modules/engine/system.js").Slice | null} slice  null for a slice that only the server can compute
  * @property {import("../../../../plots/browser/modules/engine/starts.js").Window | null} window  null for the default window of the energy
@@ -41,12 +42,10 @@ export class Preview {
    * @param {(picture: string, name: string) => any} findSource  finds a data source of a picture
    * @param {import("../../../../plots/browser/modules/workers/frames.js").Frames} frames
    * @param {import("../painting/overlay.js").Overlay} overlay
-   * @param {import("../painting/relief.js").Relief} relief
    * @param {import("../view_store.js").ViewStore} store
    */
-  constructor(find, findSource, frames, overlay, relief, {energy, window}) {
+  constructor(find, findSource, frames, overlay, {energy, window}) {
     this.#overlay = overlay
-    this.#relief = relief
     this.#find = find
     this.#frames = frames
     this.#energy = energy
@@ -63,7 +62,6 @@ export class Preview {
   #find
   #frames
   #overlay
-  #relief
   #energy
   #window
   #maps
@@ -97,10 +95,8 @@ export class Preview {
 
   /** @param {ServerView} view */
   setView(view) {
-    const systemChanged = this.#view !== null && view.system !== this.#view.system
-    const viewChanged = systemChanged || (this.#view !== null && view.plane !== this.#view.plane)
+    const viewChanged = this.#view && (view.system !== this.#view.system || view.plane !== this.#view.plane)
     this.#view = view
-    if (systemChanged) this.#relief.changeSystem()
     if (viewChanged) this.#restore()
   }
 

@@ -5,17 +5,16 @@ import {PixelImage} from "../../../../plots/browser/modules/painting/pixel_image
 import {wellPicture} from "./pictures.js"
 
 export class Relief {
-  #image = new PixelImage()
-  /** The relief of the last system. @type {any} */
-  #old = null
-
-  /** Paint nothing until the server sends the relief of another system. */
-  changeSystem() {
-    this.#old = rendererOf(wellPicture())?.data_source.data
+  /** @param {() => string} well  key of the potential of the view */
+  constructor(well) {
+    this.#well = well
   }
 
+  #well
+  #image = new PixelImage()
+
   /**
-   * Paint the relief in a window that fills the box.
+   * Paint the relief in a window that fills the box, unless the picture shows another potential.
    *
    * @param {CanvasRenderingContext2D} context
    * @param {{width: number, height: number}} box
@@ -24,7 +23,7 @@ export class Relief {
   paint(context, box, {xLow, xHigh, ordinateLow, ordinateHigh}) {
     const renderer = rendererOf(wellPicture())
     const data = renderer?.data_source.data
-    if (!data?.image[0] || data === this.#old) return
+    if (!data?.image[0] || data.well[0] !== this.#well()) return
     const [scaleX, scaleY] = [box.width / (xHigh - xLow), box.height / (ordinateHigh - ordinateLow)]
     context.save()
     context.imageSmoothingEnabled = true

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.views.maps.well import WellView
+from app.views.maps.well import WellView, sketch_spec
 from engine import (
     CASES,
     POTENTIALS,
@@ -64,6 +64,20 @@ def test_the_paths_end_and_begin_with_their_orbits() -> None:
     assert paths["slot"] == [2, 0]
     assert [line[-1] for line in paths["xs"]] == pytest.approx([drawings[1].orbit.x[-1], drawings[0].orbit.x[-1]])
     assert source(well, "points").data["x"] == pytest.approx([0.2, 0.1])
+
+
+def test_a_sketch_has_neither_exits_nor_orbits_and_ends_with_a_map_of_its_potential() -> None:
+    well, potential = make_well(), CASES["II"]
+    well.show_map(MapSpec(CASES["III"], Plane.X_PX, 0.4))
+    well.show_orbits([curves_of("III", 0.4)], 0)
+    well.show_sketch(sketch_spec(potential, 0.2))
+    assert len(source(well, "paths").data["xs"]) == len(source(well, "lyapunov_orbits").data["xs"]) == 0
+    half = 1.5 * float(np.hypot(*potential.saddles[0]))
+    assert edges(well) == pytest.approx((-half, half, -half, half))
+    well.show_map(MapSpec(CASES["III"], Plane.X_PX, 0.45))
+    assert edges(well) == pytest.approx((-half, half, -half, half))
+    well.show_map(MapSpec(potential, Plane.X_PX, 0.2))
+    assert len(source(well, "lyapunov_orbits").data["xs"]) == potential.channels
 
 
 def test_a_long_path_that_is_not_chosen_does_not_cover_the_chosen_one() -> None:
