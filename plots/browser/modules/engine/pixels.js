@@ -3,7 +3,7 @@
 
 import {Exits} from "./exits.js"
 import {findEnds} from "./orbits.js"
-import {energyAxis, findStarts, keepInside, placeWindow} from "./starts.js"
+import {energyAxis, findStarts, hasEqualRows, keepInside, placeWindow} from "./starts.js"
 
 /**
  * What a picture shows: a window of a slice at an energy, in units of the page.
@@ -87,7 +87,9 @@ export function findInside(integrator, {slice, window, columns, rows, energy}, p
   integrator.call("place_pixels", ...grid, axis, points, energyRows)
   const exits = new Exits(integrator, axis < 0 ? [scaledEnergy] : energiesAlong(axis, points.at(axis).values, part))
   const fate = integrator.array("int8", [count])
-  const inside = keepInside(integrator, findStarts(integrator, slice, scaledEnergy, points), exits, energyRows, fate)
+  // Whether a position is beyond an exit can take longer to find than the orbit.
+  const period = hasEqualRows(slice) ? part.columns : count
+  const inside = keepInside(integrator, findStarts(integrator, slice, scaledEnergy, points), exits, energyRows, fate, period)
   return {inside, exits, fate}
 }
 

@@ -39,6 +39,13 @@ export const showsPositions = ({axes}) => axes[0] === "x" && axes[1] === "y"
 export const energyAxis = ({axes}) => axes.indexOf("h")
 
 /**
+ * Whether the starts of a column of a picture have one position and one energy.
+ *
+ * @param {Pick<Slice, "motion">} slice
+ */
+export const hasEqualRows = ({motion: [, , along]}) => !along[0] && !along[1] && !along[along.length - 1]
+
+/**
  * Return the edges of a window in units of the well, in the form that kernels take.
  *
  * @param {Integrator} integrator
@@ -89,15 +96,18 @@ export function findStarts(integrator, slice, energy, points) {
  * @param {import("./exits.js").Exits} exits
  * @param {Integers} rows  row of each energy in the exits
  * @param {import("./integrator.js").Numbers<"int8">} fate  changed in place for the starts that are left out
+ * @param {number} [period]  number of starts after which positions and energies repeat; by default they do not
  * @returns {Inside}
  */
-export function keepInside(integrator, {states, energies}, exits, rows, fate) {
+export function keepInside(integrator, {states, energies}, exits, rows, fate, period = energies.shape[0]) {
   const count = energies.shape[0]
   const [outside, kept] = [integrator.array("int8", [count]), integrator.array("int64", [count])]
   // In the order of the kernel's parameters.
   const inside = {kept, states: integrator.array("float64", [count, 4]), rows: integrator.array("int64", [count])}
   const [kernel, ...inputs] = integrator.outsideTest
-  integrator.call(kernel, ...inputs, states.at(0), states.at(1), energies, exits.curves, rows, outside)
+  const [x, y, energy, row, isOutside] = [states.at(0), states.at(1), energies, rows, outside].map(each => each.first(period))
+  integrator.call(kernel, ...inputs, x, y, energy, exits.curves, row, isOutside)
+  for (let next = period; next < count; next += period) outside.values.copyWithin(next, 0, Math.min(period, count - next))
   const insideCount = integrator.call("select_starts", states, outside, rows, fate, ...Object.values(inside))
   return {kept: kept.first(insideCount), states: inside.states.first(insideCount), rows: inside.rows.first(insideCount)}
 }
