@@ -19,7 +19,7 @@
  */
 
 /** Smallest number of pixels along a side, while the view moves. */
-export const LEAST_SIDE = 76
+export const LEAST_SIDE = 48
 /** Longest time while the view moves, in units of the well. */
 const MOVING_HORIZON = 30
 /** Longest time at rest, in units of the well. */

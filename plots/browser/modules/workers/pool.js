@@ -16,8 +16,8 @@
 /** Largest number of workers. */
 const MOST_WORKERS = 8
 
-/** Return the number of workers, which leaves one core to the page. */
-export const workerCount = () => Math.min(Math.max(navigator.hardwareConcurrency - 1, 1), MOST_WORKERS)
+/** Return the number of workers: one for each core, because the page waits while they compute a picture. */
+export const workerCount = () => Math.min(navigator.hardwareConcurrency, MOST_WORKERS)
 
 export class Pool {
   /** @param {() => Worker} start  starts and returns a worker */
