@@ -18,6 +18,7 @@ from engine.jobs.job import Job, Queue
 from engine.maps.map_jobs import map_job, members_job
 from engine.maps.warmup import is_ready_for_maps, prepare_for_maps
 from plots.layers.map_images import layer_columns
+from plots.layers.table import LAYERS
 from plots.pictures.image_columns import draw_over, map_columns
 
 Columns = dict[str, list[Any]]
@@ -87,8 +88,9 @@ class MapRequests:
     ) -> None:
         self._state, self._listener, self._is_crowded, self._prepare = state, listener, is_crowded, prepare
         self._has_frame = False
-        # The complete map in view, if it has arrived, with the most pixels so far.
+        # The complete map of the view, and the same with the most pixels so far; None until they have arrived.
         self._complete_map: EscapeMap | None = None
+        self._sharpest_map: EscapeMap | None = None
         # The job that was requested last for the current map.
         self._last_job: Job[Any] | None = None
         # The map of the last delivered frame, and its image columns.
@@ -96,6 +98,7 @@ class MapRequests:
         self._request = LatestRequest(
             jobs, self._show, listener.map_failed, locked, convert=self._with_columns, begin=self._begin
         )
+        state.param.watch(lambda *events: self._follow_layers(), ["layers", "compared"])
         self._sharper_request = LatestRequest(
             jobs, self._show_sharper, lambda sentence: None, locked, convert=self._sharper_columns
         )
@@ -118,17 +121,18 @@ class MapRequests:
         """Request the complete map in view with more pixels, for a picture with this number of pixels along a side on the screen.
 
         All other computations go first, and only pictures change: numbers and data are those of the map of the view state.
-        With 0 pixels, or if the map has enough, a request under way is cancelled.
+        With 0 pixels, or if the map has enough, a request under way is cancelled. Pixels of layers and of a comparison belong to
+        the map of the view, which is then not computed with more.
         """
-        present = self._complete_map
+        present = self._sharpest_map or self._complete_map
         side = None if present is None else sharper_resolution(present.spec.resolution[0], pixels)
-        if present is None or side is None or self._is_crowded():
+        if present is None or side is None or self._has_more_pixels or self._is_crowded():
             self._sharper_request.cancel()
         else:
             self._sharper_request.submit(map_job(replace(present.spec, resolution=(side, side)), Queue.SPARE))
 
     def _cancel(self) -> None:
-        self._has_frame, self._complete_map = False, None
+        self._has_frame, self._complete_map, self._sharpest_map = False, None, None
         self._last_job = None
         self._request.cancel()
         self._sharper_request.cancel()
@@ -164,8 +168,24 @@ class MapRequests:
         return (frame, map_columns(frame)) if frame.complete else SKIPPED
 
     def _show_sharper(self, result: tuple[EscapeMap, Columns]) -> None:
-        self._complete_map = result[0]
+        self._sharpest_map = result[0]
         self._listener.map_sharpened(*result)
+
+    @property
+    def _has_more_pixels(self) -> bool:
+        """Whether layers or a comparison have pixels beside those of the map."""
+        layers = [LAYERS[name] for name in self._state.layers]
+        return self._state.compared is not None or any(layer.pixels is not None for layer in layers)
+
+    def _follow_layers(self) -> None:
+        """Show the map of the view again when layers or a comparison get pixels."""
+        complete_map = self._complete_map
+        if complete_map is None or not self._has_more_pixels:
+            return
+        self._sharper_request.cancel()
+        if self._sharpest_map is not None:
+            self._sharpest_map = None
+            self._listener.map_arrived(complete_map, map_columns(complete_map) | layer_columns(complete_map, self._state.layers))
 
 
 def _show_same_plane(one: MapSpec, other: MapSpec) -> bool:

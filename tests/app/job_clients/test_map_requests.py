@@ -289,3 +289,22 @@ def test_a_crowded_server_computes_no_more_pixels() -> None:
     jobs.listeners[-1](complete_frame(state))
     requests.sharpen(900)
     assert len(jobs.jobs) == 1
+
+
+def test_the_map_of_the_view_comes_back_with_a_layer_of_pixels(session: Session) -> None:
+    state, requests, recorder, _ = session
+    requests.request_map()
+    recorder.wait_for(recorder.complete)
+    requests.sharpen(200)
+    recorder.wait_for(lambda: len(sharper_maps(recorder)) == 1)
+    state.layers = frozenset({"manifolds"})
+    assert recorder.names()[-1] == "map sharpened"
+    state.layers = frozenset({"manifolds", "judge"})
+    assert recorder.calls[-1] == ("map arrived", recorder.last_frame())
+    assert recorder.complete()
+    requests.sharpen(200)
+    assert len(sharper_maps(recorder)) == 1
+    # Without the layer, the pixels come back.
+    state.layers = frozenset()
+    requests.sharpen(200)
+    recorder.wait_for(lambda: len(sharper_maps(recorder)) == 2)
