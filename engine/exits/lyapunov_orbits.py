@@ -84,9 +84,9 @@ def find_lyapunov_orbits(potential: Potential, energy: float) -> tuple[LyapunovO
     Raises
     ------
     ValueError
-        If `energy` is not finite, or if the exits are not defined at this energy: a Lyapunov orbit is not found or is not a graph
-        over a line, two exits meet, or channels form one exit all around the well. In a rotating frame also if several channels
-        form one exit, or if the parabola outside an orbit does not end on the walls of its channel.
+        If `energy` is not finite, or if the exits are not defined at this energy: a Lyapunov orbit is not found or cannot be
+        written as u = f(s) along a line, two exits meet, or channels form one exit all around the well. In a rotating frame also
+        if several channels form one exit, or if the parabola outside an orbit does not end on the walls of its channel.
 
     Examples
     --------

@@ -87,8 +87,8 @@ class EscapeMap(MapResult):
     batch
         States of the orbits of `continued_pixels` for ``resume``, in units of the well; None in frames.
     rounded_share
-        For a complete map in a deep zoom, the estimated share of the interior pixels that double precision does not support:
-        their outcome changes with the errors of the integration. Otherwise None.
+        For a complete map in a deep zoom, the estimated share of the interior pixels whose outcome is not reliable in double
+        precision, because it changes with the errors of the integration. Otherwise None.
 
     Examples
     --------

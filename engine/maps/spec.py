@@ -64,8 +64,8 @@ class MapSpec:
         pixels could lie on a line of symmetry, on which orbits stay for ever. The default window is then shifted by half a pixel.
     t_max
         Integration time, 0 < t_max ≤ 1e8, dimensionless. The default is 1000/abs(Ω) in a rotating frame, otherwise 1000 with
-        bodies or an escape radius, and otherwise 1e5. The first two are shorter because bounded orbits are then integrated to
-        the end. If the unit of time 1/ω of the well is above 1, the limit is 1e8 in this unit.
+        bodies or an escape radius, and otherwise 1e5. The first two are shorter because, without evidence of tori, each bounded
+        orbit must be integrated to t_max. If the unit of time 1/ω of the well is above 1, the limit is 1e8 in this unit.
     use_evidence
         Whether an orbit may be called bounded before t_max, on evidence that it never escapes, see `Evidence`.
     backward

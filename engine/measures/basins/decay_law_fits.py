@@ -48,7 +48,7 @@ def fit_decay_laws(
     Rates maximise the likelihood of the escape times inside the window, given that these times lie inside. Therefore neither
     regular orbits, which never escape, nor the cutoff at t_max cause a bias. Bit-identical escape times belong to mirror images
     and count once. All times count as independent draws although the starts form a grid: in a given window, rates from shifted
-    grids scattered 0.8 to 1.1 times as much as the interval implies (docs/measures.md). A law is ruled out by Neyman's smooth
+    grids scattered 0.8 to 1.1 times as much as the interval implies. A law is ruled out by Neyman's smooth
     test, with the fitted rate taken into account (Thomas & Pierce 1979, J. Am. Stat. Assoc. 74, 441).
 
     A window chosen automatically ends at t_max. Decreasing numbers of the latest escapes are tried until a law is ruled out
