@@ -55,8 +55,8 @@ def open_result(path: str | os.PathLike[str], kind: type[Any] = Result) -> Any:
     Returns
     -------
     A result identical to the written result, see `Result.identical`. A map of at most 2²⁰ pixels has no integration state and
-    cannot be resumed. `compute_sweep` accepts a `Sweep` as `earlier`. The dataset of a sweep in a store is read on access; measures
-    and analyses accept a map of the sweep, ``sweep.dataset.sel(h=0.3)``.
+    cannot be resumed. `compute_sweep` accepts a `Sweep` as `earlier`. The dataset of a sweep in a store is read on access;
+    measures and analyses accept a map of the sweep, ``sweep.dataset.sel(h=0.3)``.
 
     Raises
     ------
