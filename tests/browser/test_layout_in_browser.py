@@ -320,7 +320,7 @@ def test_a_picture_fills_the_height_when_it_is_enlarged(middling: ExplorerPage) 
     explorer = middling
     explorer.press(f"Enlarge, or show all: {TITLES['times']}")
     explorer.wait_for_view("focus=times")
-    explorer.page.wait_for_function(f"() => ({_FIGURES})().times[4] > {0.7 * 720}")
+    explorer.page.wait_for_function(f"() => ({_FIGURES})().times[4] > {0.65 * 720}")
     shown = figures(explorer)
     assert all(abs(frame[4] - frame[5]) <= 1 for frame in shown.values())
     assert max(frame[3] for frame in shown.values()) <= 720
