@@ -148,6 +148,7 @@ class OrbitPresenter:
         if [orbit.curves for orbit in orbits] != [orbit.curves for orbit in self._orbits]:
             self._interval, self._restricted_curves = None, []
         self._orbits = tuple(orbits)
+        state.known_orbits = {orbit.start: orbit.curves for orbit in orbits if orbit.curves is not None}
         # The chosen index is already that of a longer list of starts, whose orbits follow soon.
         if state.chosen >= len(orbits) and orbits:
             return

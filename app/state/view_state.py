@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import param
 
-from app.state.places import find_place
+from app.state.places import find_crossing, find_place
 from app.state.system_review import PageReview, review_catalogue_entry, review_job
 from app.state.view import ANALYSES, FIRST_VIEW, PICTURES, View, allowed_resolutions, allowed_t_max
 from app.state.watched_starts import WatchedStarts
@@ -23,7 +23,6 @@ from engine import (
     Slice,
     System,
     Window,
-    find_returns,
     integrate_orbit,
     start_states,
 )
@@ -36,6 +35,7 @@ from engine.systems.catalogue.table import PAPER_ENERGIES
 from engine.systems.system import TYPED
 from plots.layers.table import LAYERS
 from plots.links.map_view import RESOLUTION_CHOICES, SETTINGS, T_MAX_CHOICES, Start
+from plots.pictures.orbit_curves import OrbitCurves
 from plots.pictures.palette import DEFAULT_PALETTE, MOST_ORBITS, PALETTES, Palette
 from plots.pictures.time_scale import TimeScale
 from plots.studies.study import Subject
@@ -155,6 +155,8 @@ class ViewState(param.Parameterized):
         self._review = review_catalogue_entry(self.system.case)
         self.found_axis: ParameterAxis | None = None
         """The parameter along which the potentials have been found, by the last map."""
+        self.known_orbits: Mapping[Start, OrbitCurves] = {}
+        """The orbits of starts that have been integrated."""
         self.param.update(**values)
 
     def follow(self, show: Callable[..., object], *names: str) -> None:
@@ -293,20 +295,13 @@ class ViewState(param.Parameterized):
         self.param.update(plane=plane, window=None, starts=starts, chosen=index)
 
     def _place_on(self, plane: Slice, start: Start) -> Start | None:
-        """Return where the orbit of a start begins on another slice, or meets the slice first if it is that of the section."""
+        """Return where the orbit of a start begins on another slice, or first meets it, if it is the slice of the section."""
         state = self.start_state(start)
-        if state is None:
-            return None
-        place = find_place(plane, self.potential, self.energy, state)
-        if place is not None or plane != self.section.plane or not self.is_ready:
-            return place
-        energy = self.plane.energies(self.energy, *start)
-        try:
-            returns = find_returns(self.potential, energy, [state], t_max=self.t_max, section=self.section)
-        except ValueError:
-            # The exits are not defined at this energy.
-            return None
-        return find_place(plane, self.potential, self.energy, tuple(returns.states[0, 0].tolist()))
+        place = None if state is None else find_place(plane, self.potential, self.energy, state)
+        curves = self.known_orbits.get(start)
+        if place is None and curves is not None and curves.orbit.section == self.section:
+            return find_crossing(plane, self.potential, self.energy, curves)
+        return place
 
     def show_section(self, section: Section, *, with_slice: bool) -> None:
         """Set the section at which crossings are counted and, with `with_slice`, show a slice of starts on it."""

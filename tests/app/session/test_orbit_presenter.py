@@ -109,6 +109,15 @@ def test_another_slice_leaves_out_orbits_without_a_place_on_it_and_says_so(begin
     assert notice.object == ""
 
 
+def test_an_orbit_stays_where_it_meets_the_section_on_the_slice_of_the_section(begin: Callable[[Slice], Session]) -> None:
+    session = begin(Plane.X_Y)
+    session.state.add_start((0.1, 0.2))
+    session.wait_for_paths()
+    session.state.show_slice(Plane.X_PX)
+    assert len(session.state.starts) == 1
+    assert session.context.notice.layout().object == ""
+
+
 def test_the_chosen_orbit_is_removed_and_the_others_stay(begin: Callable[[Slice], Session]) -> None:
     session = begin(Plane.X_PX)
     starts = ((-0.3, 0.0), (0.1, 0.0), (0.2, 0.1))

@@ -12,18 +12,17 @@ from app.state.view_state import ViewState
 from engine import (
     CASES,
     Coordinate,
-    MapSpec,
     ParameterAxis,
     Plane,
     Slice,
     System,
     Window,
-    compute_map,
     integrate_orbit,
     read_section,
 )
 from engine.systems.catalogue.table import PAPER_ENERGIES
 from plots.links.map_view import default_settings
+from plots.pictures.orbit_curves import compute_orbit_curves
 from plots.pictures.palette import MOST_ORBITS
 
 
@@ -64,14 +63,26 @@ def test_an_existing_start_is_chosen() -> None:
 
 
 def test_orbits_stay_on_another_slice_at_their_start_or_where_they_meet_the_section() -> None:
-    # Orbits are followed to the section as soon as the kernels are compiled.
-    compute_map(MapSpec(CASES["II"], Plane.X_Y, 0.2, (2, 2), t_max=10.0))
     view = ViewState(system=System("II"), plane=Plane.X_Y, energy=0.2, starts=((0.1, 0.2), (0.0, 5.0), (0.3, 0.0)), chosen=2)
     state = view.start_state((0.1, 0.2))
     assert state is not None
+    orbit = integrate_orbit(CASES["II"], state, 100.0)
+    view.known_orbits = {(0.1, 0.2): compute_orbit_curves(CASES["II"], orbit)}
     view.show_slice(Plane.X_PX)
     assert view.starts[1] == (0.3, 0.0) == view.chosen_start
-    assert view.starts[0] == pytest.approx(integrate_orbit(CASES["II"], state, 100.0).find_section_crossings()[0], rel=1e-9)
+    states, _ = orbit.find_section_states()
+    assert view.start_state(view.starts[0]) == pytest.approx(states[0], abs=1e-12)
+
+
+@pytest.mark.parametrize("changed", ["energy", "section", "system"])
+def test_the_crossing_of_an_orbit_of_another_view_is_no_place(changed: str) -> None:
+    view = ViewState(system=System("II"), plane=Plane.X_Y, energy=0.2, starts=((0.1, 0.2),))
+    state = view.start_state((0.1, 0.2))
+    assert state is not None
+    view.known_orbits = {(0.1, 0.2): compute_orbit_curves(CASES["II"], integrate_orbit(CASES["II"], state, 100.0))}
+    view.param.update(**{changed: {"energy": 0.21, "section": read_section("y = 0 both"), "system": System("HH")}[changed]})
+    view.show_slice(Plane.X_PX)
+    assert view.starts == ()
 
 
 def test_an_orbit_without_a_place_on_another_slice_is_left_out() -> None:
