@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from concurrent.futures import CancelledError
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
 from typing import ClassVar
 
 import numpy as np
 
-from engine.exits.exit_rows import exit_curves_at
+from engine.exits.exit_rows import closed_exits, exit_curves_at
 from engine.exits.exit_shapes import exit_gates
 from engine.foundations.execution import Execution
 from engine.integrator.kernels.dense_output import trace_orbit
@@ -97,8 +99,9 @@ def classify_in_well_units(
     curve_row[is_orbit] = row
     batch = OrbitBatch.from_starts(states, curve_row)
     orbits = np.flatnonzero(batch.fate == Fate.NOT_COMPUTED)
-    if orbits.size:
-        curves = exit_curves_at(potential, values, execution)
+    # A cancelled search for the exits leaves all orbits as they are.
+    with suppress(CancelledError):
+        curves = exit_curves_at(potential, values, execution) if orbits.size else closed_exits(potential)[None]
         batch.mark_outside(potential, orbits, curves, execution=execution)
         propagate_batch(
             potential, curves, batch, orbits, t_max, final=True, execution=execution,
