@@ -11,21 +11,9 @@ from plots.pictures.palette import OUTCOMES, Palette
 _INTERIOR = "#7aa7d618"
 
 
-def _region_legend(shown: ShownMap) -> Legend:
-    return Legend(others=[*shown.outcome_entries().values()])
-
-
 def _basin_legend(shown: ShownMap) -> Legend:
     ends = shown.palette.legend_entries(shown.spec.outcomes)
     return Legend([*ends.values()], [*shown.outcome_entries().values()], is_short=True)
-
-
-def _time_legend(shown: ShownMap) -> Legend:
-    return Legend(others=[*shown.outcome_entries().values()], scale=shown.time_scale())
-
-
-def _crossing_legend(shown: ShownMap) -> Legend:
-    return Legend(shown.palette.crossing_entries, [*shown.outcome_entries().values()])
 
 
 def _other_legend(shown: ShownMap) -> Legend:
@@ -71,7 +59,7 @@ CURVES = Picture(
     help="",
     column="fate",
     colours=_region_colours,
-    legend=_region_legend,
+    legend=lambda shown: Legend(others=[*shown.outcome_entries().values()]),
 )
 
 BASINS = Picture(
@@ -102,7 +90,7 @@ TIMES = Picture(
     ),
     column="fate",
     colours=_background_colours,
-    legend=_time_legend,
+    legend=lambda shown: Legend(others=[*shown.outcome_entries().values()], scale=shown.time_scale()),
     has_times=True,
 )
 
@@ -119,7 +107,7 @@ CROSSINGS = Picture(
     ),
     column="crossing_class",
     colours=_crossing_colours,
-    legend=_crossing_legend,
+    legend=lambda shown: Legend(shown.palette.crossing_entries, [*shown.outcome_entries().values()]),
 )
 
 COMPARED = Picture(
