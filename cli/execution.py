@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import signal
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, ThreadPoolExecutor
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, fields, replace
@@ -105,21 +105,25 @@ THREADS_ONLY = OptionChanges(without=("scheduler", "local_cluster"))
 """Mark of a place for a command that computes only in this process."""
 
 
-@contextmanager
-def _cancel_on_ctrl_c(cancel: threading.Event) -> Iterator[None]:
+def _cancel_on_ctrl_c(cancel: threading.Event) -> AbstractContextManager[None]:
     """Set `cancel` at the first Ctrl-C, and raise KeyboardInterrupt at the second."""
-    is_main_thread = threading.current_thread() is threading.main_thread()
-    if not is_main_thread or signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
-        # Only the main thread can set signal handlers. A shell starts background jobs with SIGINT ignored, which must remain so.
-        yield
-        return
 
     def stop(number: int, frame: FrameType | None) -> None:
         if cancel.is_set():
             signal.default_int_handler(number, frame)
         cancel.set()
 
-    previous_handler = signal.signal(signal.SIGINT, stop)
+    # A shell starts background jobs with SIGINT ignored, which must remain so.
+    return nullcontext() if signal.getsignal(signal.SIGINT) is signal.SIG_IGN else _handle_ctrl_c(stop)
+
+
+@contextmanager
+def _handle_ctrl_c(handler: Callable[[int, FrameType | None], None] | signal.Handlers) -> Iterator[None]:
+    """Replace the handler of Ctrl-C. Only the main thread can do so; in other threads the handler stays."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    previous_handler = signal.signal(signal.SIGINT, handler)
     try:
         yield
     finally:
@@ -154,7 +158,8 @@ def _connect(scheduler: str | None, local_workers: int | None) -> Client:
 
     if scheduler is not None:
         return distributed.Client(scheduler)  # type: ignore[no-untyped-call]
-    with _ignore_ctrl_c():
+    # A terminal sends Ctrl-C to the whole process group. The workers ignore it, and this process ends them.
+    with _handle_ctrl_c(signal.SIG_IGN):
         # The dashboard takes a free port on the loopback interface.
         return distributed.Client(n_workers=local_workers, threads_per_worker=1, dashboard_address="127.0.0.1:0")  # type: ignore[no-untyped-call]
 
@@ -176,16 +181,3 @@ def describe_losses() -> Iterator[None]:
         if isinstance(error, BrokenExecutor | CommClosedError) or (type(error) is OSError and error.errno is None):
             raise ConnectionError("the scheduler of the cluster is lost; start it, then run the same command again") from error
         raise
-
-
-@contextmanager
-def _ignore_ctrl_c() -> Iterator[None]:
-    """Make child processes ignore Ctrl-C, which a terminal sends to the whole process group. This process ends the children."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    previous_handler = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, previous_handler)

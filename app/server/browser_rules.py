@@ -233,14 +233,6 @@ def _is_active(group: Any, value: Any) -> bool:
     )
 
 
-def _is_tab(tabs: Any, value: Any) -> bool:
-    return _is_between(value, 0, len(tabs.tabs) - 1)
-
-
-def _is_direction(_: Any, value: Any) -> bool:
-    return _is_between(value, -1, 1)
-
-
 def _is_short(box: Any, value: Any) -> bool:
     return len(value) <= (LONGEST_TEXT if box.max_length is None else box.max_length)
 
@@ -249,17 +241,14 @@ def _is_boolean(_: Any, value: Any) -> bool:
     return isinstance(value, bool)
 
 
-def _is_number(_: Any, value: Any) -> bool:
-    return _is_between(value, None, None)
-
-
 def _is_position(_: Any, value: Any) -> bool:
     """Whether a value is a position on an axis; NaN stands for a pointer outside the plot."""
     return value is None or isinstance(value, int | float)
 
 
-def _is_size(_: Any, value: Any) -> bool:
-    return _is_between(value, 0, None)
+def _between(low: Any, high: Any) -> Check:
+    """Return a check whether a value is a number within two limits."""
+    return lambda _, value: _is_between(value, low, high)
 
 
 def _is_nonnegative_list(_: Any, value: Any) -> bool:
@@ -296,13 +285,13 @@ _EDITABLE: dict[type[Model], Mapping[str, Check]] = {
     Toggle: {"active": _is_boolean},
     Checkbox: {"active": _is_boolean},
     Switch: {"active": _is_boolean},
-    Tabs: {"active": _is_tab},
-    Player: {"value": _is_on_slider, "value_throttled": _is_on_slider, "direction": _is_direction},
+    Tabs: {"active": lambda tabs, value: _is_between(value, 0, len(tabs.tabs) - 1)},
+    Player: {"value": _is_on_slider, "value_throttled": _is_on_slider, "direction": _between(-1, 1)},
     Card: {"collapsed": _is_boolean},
-    Column: {"scroll_position": _is_size},
-    Range1d: {"start": _is_number, "end": _is_number},
+    Column: {"scroll_position": _between(0, None)},
+    Range1d: dict.fromkeys(("start", "end"), _between(None, None)),
     Span: {"location": _is_position},
-    Plot: dict.fromkeys(("inner_width", "inner_height", "outer_width", "outer_height"), _is_size),
+    Plot: dict.fromkeys(("inner_width", "inner_height", "outer_width", "outer_height"), _between(0, None)),
     Selection: {"indices": _is_nonnegative_list, "line_indices": _is_nonnegative_list},
 }
 """Properties that a browser may change, each with a check of its value, by class of model. The checks also apply to subclasses.

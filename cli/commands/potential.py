@@ -54,15 +54,8 @@ def _print(review: PotentialReview, as_json: bool) -> None:
         (point.kind.value, f"({point.x:.9g}, {point.y:.9g})", f"{point.energy:.9g}", str(point.channel or ""))
         for point in review.critical_points
     ]
-    answer = {
-        "formula": review.formula,
-        "escape_energy": review.escape_energy,
-        "closed_energy": review.closed_energy,
-        "channels": review.channels,
-        "highest_energy": review.highest_energy,
-        "critical_points": points,
-        "remarks": list(review.remarks),
-    }
+    names = ("formula", "escape_energy", "closed_energy", "channels", "highest_energy")
+    answer = {name: getattr(review, name) for name in names} | {"critical_points": points, "remarks": list(review.remarks)}
     exits = f"{review.channels} exits above h = {review.escape_energy:.12g}" if review.channels else "no exits"
     sentence = f"V = {review.formula}: {exits}."
     print_result(as_json, answer, sentence, Table(("critical point", "(x, y)", "V", "channel"), rows), *review.remarks)
