@@ -269,6 +269,8 @@ WRONG_CALLS = (
     ("POTENTIALS['HH'].jacobi_energy(float('nan'))", "potential=HH: its frame must rotate"),
     ("POTENTIALS['Hill'].jacobi_energy(float('nan'))", "constant=nan: must be"),
     ("POTENTIALS['Hill'].jacobi_constant([1.0, np.inf])", "energy="),
+    ("POTENTIALS['Hill'].jacobi_energy('3.17')", "constant='3.17': must be an array of real numbers with rows of equal length"),
+    ("sample_orbits(III, [[0, 0, 0.1, 0.2j]], (0.0, 1.0))", "states=[[0, 0, 0.1, 0.2j]]: must be an array of real numbers with"),
     ("compute_wada_test(m, valid=[])", "valid=[]: must be None for a map, of which the interior pixels count"),
     ("Centre(0.0, 0.0, True)", "centre radius=True: must be from 1e-06 to 1e+06"),
     ("Potential('', ((2, 0, 0.5),), mass=0.0)", "mass=0.0: must be from 1e-06 to 1e+06"),
