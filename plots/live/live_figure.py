@@ -121,7 +121,7 @@ def _page(view: LiveView, found: EscapeMap, place: Mapping[str, str], execution:
         "live_figure", place, title=escape(view.heading),
         choices="".join(f'<option value="{name}">{escape(PICTURES[name].title)}</option>' for name in view.pictures),
         no_energy=" hidden" if spec.common_energy is None else "", low=data["low"], high=data["high"],
-        energy=data["energy"], shown_energy=f"{data['energy']:.{data['decimals']}f}",
+        energy=data["energy"], shown_energy=f"{data['energy']:.{data['decimals']}f}".replace("-", "−"),
         legends="".join(_legend(name, shown, hidden=name != view.picture) for name in view.pictures),
         caption=" ".join(filter(None, lines)), provenance=escape(provenance_line(found)), data=_inline(data),
     )  # fmt: skip

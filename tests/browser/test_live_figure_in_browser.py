@@ -163,8 +163,9 @@ def test_a_print_in_the_dark_theme_has_dark_lines_and_square_pictures(open_figur
     page = open_figure(theme="dark")
     page.emulate_media(media="print")
     canvas = page.locator("#map")
-    line = canvas.evaluate("canvas => [...canvas.getContext('2d').getImageData(61, 200, 1, 1).data]")
-    assert line == [27, 32, 39, 255]
+    # The browser tells the page of the print with its next frame.
+    line = "canvas => canvas.getContext('2d').getImageData(61, 200, 1, 1).data.join() === '27,32,39,255'"
+    page.wait_for_function(line, arg=canvas.element_handle())
     box = canvas.bounding_box()
     assert box is not None
     assert box["height"] / box["width"] == pytest.approx(canvas.evaluate("canvas => canvas.height / canvas.width"), rel=0.01)

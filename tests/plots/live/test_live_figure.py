@@ -59,6 +59,13 @@ def test_the_view_is_that_of_the_map(found: EscapeMap, page: str) -> None:
     assert data["labels"] == [outcome.label for outcome in found.outcomes]
 
 
+def test_a_negative_energy_has_a_minus_sign() -> None:
+    spec = MapSpec(POTENTIALS["Hill"], Plane.X_PX, -2.0, (4, 4), t_max=1.0)
+    page = live_figure(LiveView(spec), compute_map(spec))
+    assert '<output id="shown-energy">−2.0' in page
+    assert data_of(page)["energy"] == -2.0
+
+
 def test_the_policy_allows_the_script_of_the_file_and_no_request(page: str) -> None:
     [script] = re.findall(r"<script>(.*?)</script>", page, re.DOTALL)
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()

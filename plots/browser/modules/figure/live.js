@@ -129,7 +129,7 @@ class LiveFigure {
     this.#energy = energy
     if (this.#isHome) this.#window = this.#homeWindow()
     part("energy").value = String(energy)
-    part("shown-energy").textContent = energy.toFixed(this.#data.decimals)
+    part("shown-energy").textContent = energy.toFixed(this.#data.decimals).replace("-", "−")
     this.#request()
     this.#listOrbits()
   }
