@@ -83,7 +83,9 @@ class PotentialReview(Result):
 
     @cached_property
     def energies(self) -> EnergyRange:
-        """Energies to explore, derived from the potential. They are not defined for a refused potential."""
+        """Energies to explore, derived from the potential; ValueError for a refused potential."""
+        if self.refusal is not None:
+            raise ValueError(f"energies: not defined for a refused potential. {self.refusal}")
         energies = [point.energy for point in self.critical_points]
         return energy_range(self.potential, self.highest_energy, self.closed_energy, energies)
 

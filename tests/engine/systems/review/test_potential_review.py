@@ -126,6 +126,12 @@ def test_degenerate_point_outside_the_well_is_refused() -> None:
     assert "degenerate critical point at (1, 0)" in refusal
 
 
+def test_a_refused_potential_has_no_energies_to_explore() -> None:
+    review = review_potential(parse_formula("½(x² + 2y²) − x³/3 − xy²"))
+    with pytest.raises(ValueError, match=r"energies: not defined for a refused potential\. V has a degenerate"):
+        _ = review.energies
+
+
 @pytest.mark.parametrize("n", [5, 8])
 def test_the_family_has_its_symmetries(n: int) -> None:
     review = review_potential(channel_family(n))
