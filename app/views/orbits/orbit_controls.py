@@ -182,14 +182,14 @@ class OrbitControls:
 
 
 def _indicator_rows(verdicts: Sequence[IndicatorVerdict]) -> str:
-    """Return the rows of the table of indicators. Neighbours with the same verdict share its cell."""
+    """Return the rows of the table of indicators: what they show, then values. Neighbours with the same verdict share its cell."""
     rows = ""
     for (conclusion, sentence), group in groupby(verdicts, lambda one: (one.conclusion, one.sentence)):
         names = [f"<th scope=row>{one.name}<br>{_value(one.value)}</th>" for one in group]
         verdict = f"<b>{conclusion}</b><br>" if conclusion else ""
         cell = f"<td rowspan={len(names)}>{verdict}{escape(sentence)}</td>"
         first, *others = names
-        rows += f"<tr>{first}{cell}</tr>" + "".join(f"<tr>{name}</tr>" for name in others)
+        rows += f"<tr>{cell}{first}</tr>" + "".join(f"<tr>{name}</tr>" for name in others)
     return rows
 
 
