@@ -4,21 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from engine import EscapeMap, Fate, MapSpec, TimeDirection, compute_lagrangian_descriptor
+from engine import MapSpec, TimeDirection, compute_lagrangian_descriptor
 from engine.jobs.job import Job
 from engine.maps.analyses.descriptors import DEFAULT_DURATION, checked_choices
 from engine.maps.map_jobs import map_job
 from engine.results import DescriptorMap
 from plots.layers.layer import Layer, Pixels
-from plots.layers.picture import ColourScale, Legend, Picture, ShownMap
-from plots.pictures.image_columns import FIRST_CLASS, pixel_codes
-from plots.pictures.palette import Palette, value_colours
+from plots.layers.picture import Legend, Picture, ShownMap
+from plots.layers.value_scale import ValueScale
 from plots.pictures.setting import Setting, Settings
-
-# Number of classes of values, of equal width. Their codes and the codes of other pixels fit into uint8.
-_CLASSES = 240
-# Share of the values below the scale, and equal share above the scale. They are drawn in the colours of its ends.
-_CLIPPED_SHARE = 0.01
 
 DURATION = Setting(
     name="descriptor_time",
@@ -52,40 +46,12 @@ def _job(spec: MapSpec, settings: Settings) -> Job[DescriptorMap]:
     return Job(compute_lagrangian_descriptor, (map_job(spec),), tuple(choices.items()))
 
 
-def _colours(palette: Palette) -> list[str]:
-    return [*palette.outcome_colours, *value_colours(_CLASSES)]
-
-
-def _limits(values: np.ndarray) -> tuple[float, float]:
-    """Return the ends of the scale. Few pixels have values beyond the ends."""
-    values = values[np.isfinite(values)]
-    if not values.size:
-        return 0.0, 1.0
-    low, high = np.quantile(values, (_CLIPPED_SHARE, 1.0 - _CLIPPED_SHARE)).tolist()
-    return (low, high) if low < high else (low, low + 1.0)
-
-
-def _codes(result: DescriptorMap, frame: EscapeMap | None) -> np.ndarray:
-    """Return the codes of the pixels. Pixels without a value have the code of their fate, if it needs no orbit."""
-    values = result.descriptor
-    low, high = _limits(values)
-    is_known = np.isfinite(values)
-    share = (np.clip(np.where(is_known, values, low), low, high) - low) / (high - low)
-    fate = np.full(values.shape, Fate.NOT_COMPUTED) if frame is None else frame.fate
-    fate_without_value = np.where((fate == Fate.FORBIDDEN) | (fate == Fate.OUTSIDE), fate, Fate.NOT_COMPUTED)
-    classes = np.minimum((share * _CLASSES).astype(int), _CLASSES - 1)
-    # `pixel_codes` keeps the classes of bounded pixels, so all pixels with a value are passed as bounded.
-    return pixel_codes(np.where(is_known, Fate.BOUNDED, fate_without_value), classes, bounded_too=True)
+SCALE: ValueScale[DescriptorMap] = ValueScale(lambda result: result.descriptor)
+"""The scale of the descriptors."""
 
 
 def _legend(shown: ShownMap) -> Legend:
-    """Return the legend of a map with a result; "…" until there is one."""
-    result = shown.results.get("descriptor")
-    if result is None:
-        return Legend(sentence="…")
-    others = [entry for fate, entry in shown.outcome_entries().items() if fate in {Fate.FORBIDDEN, Fate.OUTSIDE}]
-    low, high = (float(f"{end:.3g}") for end in _limits(result.descriptor))
-    return Legend(others=others, scale=ColourScale(low, high, value_colours(_CLASSES), is_logarithmic=False))
+    return SCALE.legend(shown, shown.results.get("descriptor"))
 
 
 DESCRIPTORS = Layer(
@@ -98,13 +64,12 @@ DESCRIPTORS = Layer(
     settings=(DURATION, POWER, DIRECTION),
     pixels=Pixels(
         column="descriptor",
-        codes=_codes,
-        colours=_colours,
+        codes=SCALE.codes,
+        colours=SCALE.colours,
         entries=lambda result, palette: [],
         values=lambda result: result.descriptor.astype(np.float32),
         value_name="Lagrangian descriptor",
-        # The hover text shows the value itself.
-        sentences=[""] * (FIRST_CLASS + _CLASSES),
+        sentences=SCALE.no_sentences,
     ),
     picture=Picture(
         name="descriptors",
@@ -116,7 +81,7 @@ DESCRIPTORS = Layer(
             "both directions on both. The integral ends at the exit, so it is small where orbits leave at once."
         ),
         column="descriptor",
-        colours=_colours,
+        colours=SCALE.colours,
         legend=_legend,
     ),
     variables=("descriptor",),
