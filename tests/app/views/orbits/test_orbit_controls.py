@@ -18,7 +18,7 @@ def test_indicators_with_the_same_verdict_share_its_sentence() -> None:
     assert table.count("The orbit is too short.") == 1
     assert "no verdict" not in table
     assert table.count("<tr>") == table.count("</tr>") == 3
-    assert table.index("SALI") < table.index("<td rowspan=2>") < table.index("digits")
+    assert table.index("<td rowspan=2>") < table.index("SALI") < table.index("digits")
 
 
 def test_the_nearest_periodic_orbit_is_offered_where_the_starts_have_one_potential() -> None:
