@@ -183,8 +183,7 @@ class Over[Found]:
 
 def _spec_of(result: Any) -> MapSpec:
     """Return the request of a result that has it as an attribute."""
-    spec: MapSpec = result.spec
-    return spec
+    return result.spec
 
 
 @dataclass(frozen=True, kw_only=True)

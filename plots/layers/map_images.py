@@ -129,5 +129,4 @@ def _marks(name: str, picture: str, columns: dict[str, list[Any]]) -> np.ndarray
     over = LAYERS[name].over_picture(picture)
     if layer_pixels is None or over is None or over.pixel_colours is None:
         return np.zeros((*columns["fate"][0].shape, 4), np.uint8)
-    marks: np.ndarray = rgba(over.pixel_colours)[columns[layer_pixels.column][0]]
-    return marks
+    return rgba(over.pixel_colours)[columns[layer_pixels.column][0]]

@@ -36,8 +36,7 @@ def _codes(trust: TrustMap, frame: EscapeMap | None) -> np.ndarray:
     """Return the codes of `Trust`, with `_LIGHT` for every second doubtful pixel."""
     rows, columns = np.indices(trust.trust.shape)
     is_light = (trust.trust == Trust.DOUBTFUL) & ((rows + columns) % 2 == 1)
-    codes: np.ndarray = np.where(is_light, _LIGHT, trust.trust).astype(np.uint8)
-    return codes
+    return np.where(is_light, _LIGHT, trust.trust).astype(np.uint8)
 
 
 def _colours(palette: Palette) -> list[str]:

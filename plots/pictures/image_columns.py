@@ -179,8 +179,7 @@ def pixel_coding(outcomes: Sequence[Outcome], section: Section = Section.Y_UP) -
 def end_numbers(fate: np.ndarray, outcomes: Sequence[Outcome]) -> np.ndarray:
     """Return the number of the end of each fate, 1 for the first of `Palette.ends`; 0 for fates that are not ends."""
     numbers = np.array([0, *(place + 1 for place in end_places(outcomes))])
-    end_of_pixels: np.ndarray = numbers[np.maximum(fate, 0)]
-    return end_of_pixels
+    return numbers[np.maximum(fate, 0)]
 
 
 def pixel_codes(fate: np.ndarray, classes: np.ndarray, *, bounded_too: bool = False) -> np.ndarray:

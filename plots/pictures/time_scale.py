@@ -47,8 +47,7 @@ class TimeScale:
     def classes(self, times: np.ndarray, count: int) -> np.ndarray:
         """Return the index of the colour of each time, of shape (n,), out of `count` colours."""
         share = np.log(np.clip(times, self.low, self.high) / self.low) / math.log(self.high / self.low)
-        index: np.ndarray = np.minimum((share * count).astype(int), count - 1)
-        return index
+        return np.minimum((share * count).astype(int), count - 1)
 
 
 WITHOUT_ESCAPES = TimeScale(1.0, 100.0)

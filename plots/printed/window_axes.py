@@ -174,14 +174,12 @@ def _thin_out(ticks: list[tuple[float, str]], width: float) -> list[tuple[float,
 def _to_shares(shown_window: Window, points: np.ndarray) -> np.ndarray:
     """Convert points of the plane, of shape (n, 2), to shares of a window's width and height."""
     low, high = _corners(shown_window)
-    shares: np.ndarray = (points - low) / (high - low)
-    return shares
+    return (points - low) / (high - low)
 
 
 def _from_shares(shown_window: Window, shares: np.ndarray) -> np.ndarray:
     low, high = _corners(shown_window)
-    points: np.ndarray = low + shares * (high - low)
-    return points
+    return low + shares * (high - low)
 
 
 def _corners(window: Window) -> np.ndarray:

@@ -86,8 +86,7 @@ def velocities(potential: Potential, states: np.ndarray) -> np.ndarray:
 
 def monodromy_matrix(potential: Potential, start: np.ndarray, period: float) -> np.ndarray:
     """Return the monodromy matrix, (4, 4), of an orbit that begins at a state (4,), in units of the well."""
-    matrix: np.ndarray = transition_matrices_of(potential, start[None], np.array([period]))[0]
-    return matrix
+    return transition_matrices_of(potential, start[None], np.array([period]))[0]
 
 
 def transition_matrices_of(potential: Potential, starts: np.ndarray, durations: np.ndarray) -> np.ndarray:

@@ -99,8 +99,7 @@ def _null_vectors_across(parameter: FamilyParameter, trial: Trial, secant: np.nd
     null_vectors = np.linalg.svd(equations.jacobian)[2][-1 - dimensions :]
     # The secant has no numbers for nodes between returns.
     shares = np.linalg.lstsq(null_vectors[:, trial.is_of_returns].T, secant, rcond=None)[0]
-    across: np.ndarray = np.linalg.svd(shares[None])[2][1:] @ null_vectors
-    return across
+    return np.linalg.svd(shares[None])[2][1:] @ null_vectors
 
 
 def _directions(across: np.ndarray, periods: int) -> np.ndarray:

@@ -61,8 +61,7 @@ class HalfOrbits:
 
     def gaps(self, states: np.ndarray) -> np.ndarray:
         """Return how far states (…, 4) on the section are from those that the symmetry leaves unchanged, with a sign, (…)."""
-        gaps: np.ndarray = states @ self.reversal.coordinate
-        return gaps
+        return states @ self.reversal.coordinate
 
     def stability_indices(self, starts: np.ndarray, half_periods: np.ndarray) -> np.ndarray:
         """Return a = ½ (tr M − 2), (m,), of symmetric periodic orbits, from the transition matrices A of half their periods.

@@ -140,8 +140,7 @@ class _Search:
 
     def _primitive_part(self, n: int, places: np.ndarray) -> np.ndarray:
         """Return, at places (m, 2), what vanishes where half a period has n crossings, but not where it has a divisor of n."""
-        part: np.ndarray = primitive_parts(self._orbits.crossings(places, n)[0])[-1]
-        return part
+        return primitive_parts(self._orbits.crossings(places, n)[0])[-1]
 
     def _places(self, corners: np.ndarray) -> np.ndarray:
         """Return the places (m, 2) of points of the grid, given by column and row."""

@@ -66,8 +66,7 @@ class SymmetricFamilies(PointsOfOrbits):
     @property
     def energy(self) -> np.ndarray:
         """(points,) energy h of the orbits."""
-        energies: np.ndarray = self.spec.energies(self.abscissa, self.ordinate)
-        return energies
+        return self.spec.energies(self.abscissa, self.ordinate)
 
     def orbit(self, point: int) -> PeriodicOrbit:
         """Return the orbit of a point, from 0, with all its returns.
