@@ -1,7 +1,5 @@
 """Entries of the catalogue with rotating frames or bodies."""
 
-from __future__ import annotations
-
 from engine.systems.catalogue.entry import CatalogueEntry, EnergyRange
 from engine.systems.parameters import ROTATION
 
