@@ -51,9 +51,7 @@ def refusal_reason(state: ProcessState, network: str) -> str | None:
     network
         The network of the visitor, see `app.runtime.visitors.network_of`.
     """
-    if state.stopping.is_set():
-        return "The server is stopping."
-    return _full_reason(state, network)
+    return "The server is stopping." if state.stopping.is_set() else _full_reason(state, network)
 
 
 def _full_reason(state: ProcessState, network: str = "") -> str | None:

@@ -57,17 +57,12 @@ _VIEW_PARAMETERS = (*SYSTEM_FORMATS, PLANE, FIX, ENERGY, _SECTION.name)
 _PLACES = {str(place + 1): place for place in range(MOST_ORBITS)}
 
 
-def _sides() -> dict[str, int]:
-    """Return the columns and rows that the server's settings allow, by their text in a link."""
-    return sides_in_links(allowed_resolutions())
-
-
 # Link parameters of attributes of the view state with one parameter each, in the order of links: fields of `View`, then the
 # visitor's own choices.
 _LINKED: dict[str, LinkParameter] = {
     "section": _SECTION,
     "t_max": replace(MAP_PARAMETERS["t_max"], form=number_choice_format(allowed_t_max)),
-    "resolution": replace(MAP_PARAMETERS["resolution"], form=number_choice_format(_sides)),
+    "resolution": replace(MAP_PARAMETERS["resolution"], form=number_choice_format(lambda: sides_in_links(allowed_resolutions()))),
     "window": MAP_PARAMETERS["window"],
     "box": LinkParameter("box", WINDOW, of_system=True),
     "analysis": LinkParameter("analysis", name_format(ANALYSES)),

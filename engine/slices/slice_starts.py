@@ -50,12 +50,8 @@ def check_coordinates(
         )
     if decided is not Coordinate.SPEED and (angle_count or decided in all_used):
         raise ValueError(f"slice of {names}: {decided.key}, which the energy decides, must not be set by an axis or an angle")
-    if np.linalg.matrix_rank(_axis_directions(axes)) < sum(_moves_state(axis) for axis in axes):
+    if np.linalg.matrix_rank(_axis_directions(axes)) < sum(isinstance(axis, Direction) or axis in STATE for axis in axes):
         raise ValueError(f"slice of {names}: the directions of the axes must not be parallel")
-
-
-def _moves_state(axis: Axis) -> bool:
-    return isinstance(axis, Direction) or axis in STATE
 
 
 def _axis_directions(axes: tuple[Axis, Axis]) -> np.ndarray:

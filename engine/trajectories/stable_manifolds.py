@@ -255,12 +255,8 @@ def _arcs_of(channel: int, arcs_by_channel: dict[int, list[ManifoldArc]], mirror
     """Return the arcs of a channel; if they are not computed, those of its mirror channel, mirrored."""
     if channel in arcs_by_channel:
         return arcs_by_channel[channel]
-    return [_mirrored(arc, channel) for arc in arcs_by_channel[mirror_channel]]
-
-
-def _mirrored(arc: ManifoldArc, channel: int) -> ManifoldArc:
-    """Return an arc on a section that is its own image under x → −x, which maps (x, px) to (−x, −px)."""
-    return ManifoldArc(channel, arc.image, -arc.x, -arc.ordinate)
+    # The section is its own image under x → −x, which maps (x, px) to (−x, −px).
+    return [ManifoldArc(channel, arc.image, -arc.x, -arc.ordinate) for arc in arcs_by_channel[mirror_channel]]
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,9 +13,6 @@ from plots.pictures.palette import CROSSING_CLASSES, OUTCOMES, PAPER, end_places
 NO_LAYER = [np.zeros((1, 1), np.uint8)]
 """Column of a layer that is off."""
 
-# Columns of images that do not belong to a layer.
-_IMAGES = ("fate", "crossing_class", "crossings", "escape_time")
-
 # Pixel codes by fate, of fates that are not ends.
 _OUTCOME_CODES = {fate: code for code, fate in enumerate(OUTCOMES)}
 FIRST_CLASS = len(OUTCOMES)
@@ -27,7 +24,6 @@ _UNDECIDED = _OUTCOME_CODES[Fate.NOT_COMPUTED]
 _WITHOUT_ORBIT = (_OUTCOME_CODES[Fate.OUTSIDE], _OUTCOME_CODES[Fate.FORBIDDEN])
 # Fewest crossings of each crossing class.
 _LEAST_CROSSINGS = np.array([least for least, _ in CROSSING_CLASSES])
-
 
 PIXEL_COLUMNS = ("fate", "crossing_class", "crossings", "escape_time")
 """The images of a map by itself."""
@@ -90,7 +86,7 @@ def draw_over(columns: dict[str, list[Any]], earlier: dict[str, list[Any]], side
     earlier_index, is_inside = _pixels_at(earlier, x, y)
     is_decided = is_inside & (earlier["fate"][0][earlier_index] != _UNDECIDED)
     is_kept = is_decided & (is_earlier_finer | (columns["fate"][0][index] == _UNDECIDED))
-    images = {name: [np.where(is_kept, earlier[name][0][earlier_index], columns[name][0][index])] for name in _IMAGES}
+    images = {name: [np.where(is_kept, earlier[name][0][earlier_index], columns[name][0][index])] for name in PIXEL_COLUMNS}
     return columns | images
 
 

@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from engine import MapSpec, PeriodicOrbit, Stability
+from engine import MapSpec, Stability
 from engine.jobs.job import Job
 from engine.results import PeriodicOrbits
-from plots.pictures.charts import Chart, Frame, Limits, Series, Shape
+from plots.pictures.charts import Chart, Frame, Series, Shape
 from plots.pictures.palette import Palette
 from plots.pictures.periodic_marks import RETURNS, STABILITY_COLOURS, periodic_job
 from plots.pictures.setting import NO_SETTINGS, Setting, Settings
@@ -55,9 +55,7 @@ def periodic_charts(found: PeriodicOrbits, palette: Palette, settings: Settings 
     is_drawn = found.returns <= UP_TO.value_in(settings)
     if not is_drawn.any():
         return []
-    window = found.spec.find_window()
-    limits: tuple[Limits, Limits] = window.ranges
-    notes = np.array([note_of(orbit) for orbit in found], object)
+    notes = np.array([orbit.describe().removesuffix(".") for orbit in found], object)
     series = []
     for stability, colour in STABILITY_COLOURS.items():
         shown = is_drawn & (found.stability == stability)
@@ -65,12 +63,7 @@ def periodic_charts(found: PeriodicOrbits, palette: Palette, settings: Settings 
             x, y = found.points[shown].T
             shape = Shape.RINGS if stability is Stability.STABLE else Shape.CROSSES
             series.append(Series(stability.value, colour, x, y, shape, notes=notes[found.orbit[shown] - 1].tolist()))
-    return [Chart(replace(FRAME, labels=found.section.axes.symbols), series, limits)]
-
-
-def note_of(orbit: PeriodicOrbit) -> str:
-    """Return the description of an orbit for its points."""
-    return orbit.describe().removesuffix(".")
+    return [Chart(replace(FRAME, labels=found.section.axes.symbols), series, found.spec.find_window().ranges)]
 
 
 def _changes(subject: Subject, axis: str, found: PeriodicOrbits, click: Click) -> Changes:

@@ -148,10 +148,6 @@ def _sentence(found: Returns) -> str:
     return f"{found.describe()}{' Click a point to follow its orbit.' if can_click else ''}"
 
 
-def _caption(found: Returns) -> str:
-    return f"{found.spec.potential.name}: {found.describe()}"
-
-
 SECTION_STUDY = Study(
     name="section",
     title="Section",
@@ -165,7 +161,7 @@ SECTION_STUDY = Study(
     changes=_changes,
     files="section",
     figure="Surface of section",
-    caption=_caption,
+    caption=lambda found: f"{found.spec.potential.name}: {found.describe()}",
     settings=(COLOURS,),
 )
 """Islands of regular orbits, resonances and the chaotic sea."""

@@ -62,7 +62,7 @@ class Downloads:
         self.saver = FileSaver()
         self.link = button("Copy link", copy_link)
         self.embed = button("Copy embed code", copy_embed_code, disabled=not may_embed)
-        self.figure = FigureForm(state, results, self.saver, self._figure_name, on_copied)
+        self.figure = FigureForm(state, results, self.saver, partial(_file_name, results, state), on_copied)
         self.data = {
             label: button(label, partial(self._save, label))
             for label in (LIVE, MAPS, ORBITS, CROSSINGS, *map(_table_label, STUDIES.values()), SCRIPT)
@@ -92,9 +92,6 @@ class Downloads:
         choices = file_choices(self._results, self._state)
         for label, save_button in self.data.items():
             save_button.disabled = label not in choices
-
-    def _figure_name(self, ending: str) -> str:
-        return _file_name(self._results, self._state, ending)
 
 
 def file_choices(results: ShownResults, state: ViewState) -> dict[str, File]:

@@ -108,9 +108,7 @@ def _split_direction(text: str) -> tuple[str, str]:
     if comma and (velocity := _VELOCITY.match(last.strip())):
         return before.strip(), " ".join(velocity.groups())
     head, _, word = text.rpartition(" ")
-    if word in _ALL_DIRECTIONS:
-        return head.strip().removesuffix(",").strip(), word
-    return text, ""
+    return (head.strip().removesuffix(",").strip(), word) if word in _ALL_DIRECTIONS else (text, "")
 
 
 def _read_direction(word: str, directions: Mapping[str, Crossing]) -> Crossing:
