@@ -19,9 +19,9 @@ FILM = "● Film"
 # Largest difference of a compressed colour, per channel.
 COLOUR_ERROR = 24
 # Side of the frames that are compared, and number of pixels that are more than an error of the encoder.
-SIDE, FEW_PIXELS = 400, 40
+SIDE, FEW_PIXELS = 600, 40
 # Number of frames that are compared, per second.
-RATE = 4
+RATE = 3
 
 
 def film_of(explorer: ExplorerPage, button: int, folder: Path) -> tuple[str, np.ndarray]:
@@ -56,7 +56,7 @@ def test_a_film_of_the_energy_shows_the_maps_up_to_the_highest_energy(open_explo
 
 
 def test_a_film_of_orbits_shows_how_they_leave(open_explorer: OpenExplorer, tmp_path: Path) -> None:
-    explorer = open_explorer(1280, 800, f"{QUICK}&analysis=watch&watch=well,1000,1,-2")
+    explorer = open_explorer(1280, 800, f"{QUICK}&analysis=watch&watch=well,5000,1,-2")
     expect(explorer.page.get_by_role("button", name="Watch them leave")).to_be_enabled()
     explorer.page.get_by_label("Speed").select_option("fast")
     name, frames = film_of(explorer, 1, tmp_path)

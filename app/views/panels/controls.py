@@ -44,6 +44,9 @@ FILM = "● Film"
 STOP = "■ Stop"
 """Label of the button that stops the animation."""
 
+# Margin of the buttons below the box of the energy.
+_BELOW = (8, 10, 0, 10)
+
 
 class Controls:
     """Widgets that write to the view state and follow it.
@@ -92,9 +95,9 @@ class Controls:
             AXES, lambda: toggle_drawer("slice"), kind="light", css_classes=["half", "choice"], margin=(8, 10, 8, 4)
         )
         self.energy = EnergySlider(name="energy", sizing_mode="stretch_width", margin=(0, 10), css_classes=["energy"])
-        self.play = button(PLAY, engine.play, min_width=84, css_classes=["half", "play-energy"], margin=(0, 10), align="end")
-        self.film = button(FILM, engine.film, css_classes=["half", "film-energy"], margin=(0, 10, 0, 0), align="end")
-        self.exact_energy = EnergyBox(sizing_mode="stretch_width", css_classes=["half", "exact-energy"], margin=(0, 0, 0, 10))
+        self.play = button(PLAY, engine.play, min_width=84, css_classes=["half", "play-energy"], margin=_BELOW, align="end")
+        self.film = button(FILM, engine.film, css_classes=["half", "film-energy"], margin=_BELOW, align="end")
+        self.exact_energy = EnergyBox(sizing_mode="stretch_width", css_classes=["half", "exact-energy"], margin=(0, 10))
         self.facts = TextPane(margin=(6, 10), sizing_mode="stretch_width", css_classes=["facts"])
         self.layers = LayerSwitches(state)
         self.comparison = ComparisonSwitch(state, swap_views)
