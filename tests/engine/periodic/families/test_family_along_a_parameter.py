@@ -14,6 +14,7 @@ from engine import (
     CASES,
     POTENTIALS,
     OrbitFamily,
+    Potential,
     SpecialKind,
     System,
     continue_family,
@@ -149,9 +150,16 @@ def test_what_is_no_parameter_of_the_system_is_refused() -> None:
         continue_family(STRAIGHT, 2.0, along="m")
     with pytest.raises(ValueError, match=r"parameter omega_1 from 1 to 20: must be between 0\.1 and 10"):
         continue_family(STRAIGHT, 20.0, along="omega_1")
-    unknown = find_periodic_orbit(parse_formula("½(x² + y²) − x²y²"), STRAIGHT.start, 1)
+    unknown = find_periodic_orbit(Potential("by terms", III.terms), STRAIGHT.start, 1)
     with pytest.raises(ValueError, match=r"along='c': must be one of h; the parameters of .* are not known"):
         continue_family(unknown, 2.0, along="c")
+
+
+def test_a_family_is_continued_along_a_letter_of_a_parsed_formula() -> None:
+    orbit = find_periodic_orbit(parse_formula("½(x² + y²) − a x²y²", parameters={"a": 1.0}), STRAIGHT.start, 1)
+    family = continue_family(orbit, 2.0, along="a")
+    assert family.along == "a"
+    assert family.value[-1] == 2.0
 
 
 def test_branches_of_a_family_along_a_parameter_move_in_their_own_potentials(in_epsilon: OrbitFamily) -> None:
