@@ -46,6 +46,9 @@ WATCH_ADDRESS = f"{_PAGE_FOLDER}/gestures/watch.js"
 LIVE_SECTION_ADDRESS = f"{_PAGE_FOLDER}/gestures/live_section.js"
 """Address of the module of the live section, which the page loads when the section is first shown."""
 
+TOUR_ADDRESS = f"{_PAGE_FOLDER}/gestures/tour.js"
+"""Address of the module of the tour, which the page loads when the tour begins."""
+
 KERNELS_ADDRESS = f"{_FOLDER}/kernels.wasm"
 """Address of the kernels, relative to the page."""
 

@@ -98,7 +98,7 @@ class Explorer:
         may_embed = bool(process_state().settings.ancestors_at(page_host(self._document)))
         copy_link = partial(self._copy, None)
         self.downloads = Downloads(state, results, copy_link, self._copy_embed_code, locked(self._copied), may_embed=may_embed)
-        self.gallery = Gallery(state, locked(self._show_preset))
+        self.gallery = Gallery(state, locked(self._show_preset), locked(self._take_tour))
         keys = WINDOW_MOVES if self.links.embedded else KEYS
         self.browser = BrowserEvents(state, keys, locked, self._press, self.links.navigate, self._copied)
         lock_times = lambda on: state.param.update(lock_times=self.maps.view.times if on else None)  # noqa: E731
@@ -110,7 +110,7 @@ class Explorer:
                 "slice": ("", "Slice", [lambda: SlicePanel(state).build()]),
                 "gallery": ("Gallery", "Gallery", [self.gallery.build]),
                 "share": ("Share", "Share and download", [self.downloads.build]),
-                "help": ("Help", "Help", [lambda: help_panes(state, results)]),
+                "help": ("Help", "Help", [lambda: help_panes(state, results, self._take_tour)]),
             },
             self.browser.focus_drawer,
             self._later,
@@ -164,6 +164,11 @@ class Explorer:
         if self.state.touch:
             self.drawers.show(None)
         self._open_view(preset_view(preset).system, preset_view(preset).within_limits().values())
+
+    def _take_tour(self) -> None:
+        # A drawer would cover what the tour is about.
+        self.drawers.show(None)
+        self._later(self.browser.begin_tour)()
 
     def _copied(self, success: bool) -> None:
         self.notice.show("Copied." if success else "The browser does not allow copying.")

@@ -141,9 +141,9 @@ def test_enter_on_a_button_sets_no_orbit(explorer: ExplorerPage) -> None:
 
 
 @pytest.mark.slow
-def test_the_first_view_invites_to_six_others(explorer: ExplorerPage) -> None:
+def test_the_first_view_invites_to_the_tour_and_six_others(explorer: ExplorerPage) -> None:
     card = explorer.page.get_by_role("button", name="A sticky orbit")
-    expect(explorer.page.locator("[role=toolbar] button")).to_have_count(6)
+    expect(explorer.page.locator("[role=toolbar] button")).to_have_count(7)
     card.click()
     explorer.wait_for_view("case=III", "orbits=")
     expect(card).to_be_hidden()

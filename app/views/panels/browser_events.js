@@ -181,13 +181,16 @@ export function render({model, el}) {
     for (const name of ["focusin", "keydown"]) document.removeEventListener(name, updateFocusedPicture)
   })
   model.on("command", async () => {
-    const {name, text} = model.command
+    const {name, text, address, steps: tour} = model.command
     if (name === "copy") model.send_msg({copied: await copy(text ?? window.location.href)})
     else if (name === "focus") {
       opener = focusedElement()
       focusDrawer(DRAWER_TRIES)
     } else if (name === "return") opener?.focus({preventScroll: true})
-    else history.go(name === "back" ? -1 : 1)
+    else if (name === "tour") {
+      const {startTour} = await import(new URL(address, document.baseURI).href)
+      startTour(tour, focusedElement())
+    } else history.go(name === "back" ? -1 : 1)
   })
   if (matchMedia("(pointer: coarse)").matches) model.send_msg({touch: true})
   sendIfNarrow()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
+from dataclasses import asdict
 from itertools import count
 from pathlib import Path
 from types import MappingProxyType
@@ -11,8 +12,10 @@ from typing import Any
 import param
 from panel.custom import JSComponent
 
+from app.browser.module_files import TOUR_ADDRESS
 from app.job_clients.latest_request import Locked
 from app.state.navigation import WINDOW_MOVES
+from app.state.tour import TOUR
 from app.state.view import PICTURES
 from app.state.view_state import ViewState
 from plots.layers import table
@@ -47,7 +50,8 @@ class BrowserEvents(JSComponent):
 
     - `address`: {link, entry, steps, number}, the link of the view, the number of its entry in the history, the number of steps
       through the history that the view has followed, and a serial number,
-    - `command`: {name, number}, or {name, text, number} to copy a text; the name is copy, back, forward, focus or return.
+    - `command`: {name, number}, with a text to copy, or with the address of the module and the steps of the tour; the name is
+      copy, back, forward, focus, return or tour.
 
     The serial number makes equal addresses and equal commands differ.
 
@@ -112,6 +116,10 @@ class BrowserEvents(JSComponent):
     def focus_drawer(self, is_open: bool) -> None:
         """Move the keyboard's focus into an opened drawer, or back to the place before the drawer opened."""
         self._send_command("focus" if is_open else "return")
+
+    def begin_tour(self) -> None:
+        """Begin the tour at its first step. No other command may be sent with the same message."""
+        self._send_command("tour", address=TOUR_ADDRESS, steps=[asdict(step) for step in TOUR])
 
     def _send_command(self, name: str, **details: Any) -> None:
         self.command = {"name": name, **details, "number": next(self._numbers)}

@@ -10,6 +10,7 @@ import panel as pn
 import param
 from panel.custom import JSComponent
 
+from app.state.tour import TOUR_LINE, TOUR_TITLE
 from app.state.view_state import ViewState
 from plots.layers.table import TITLES
 from plots.links.presets import GROUPS, PRESETS, Preset
@@ -60,6 +61,18 @@ p {
 """
 
 
+# The data of the card of the tour, as those of `_card`.
+_TOUR_CARD = {
+    "key": "tour",
+    "group": INVITATION,
+    "title": TOUR_TITLE,
+    "caption": "",
+    "line": TOUR_LINE,
+    "alt": "",
+    "thumbnail": f"{_THUMBNAILS}/basins-in-phase-space.png",
+}
+
+
 # In the browser, Bokeh does not register classes whose name starts with an underscore.
 class GalleryCards(JSComponent):
     """Shows cards in the browser, and sends the key of the chosen card."""
@@ -72,10 +85,10 @@ class GalleryCards(JSComponent):
 
 
 class Gallery:
-    """Shows `PRESETS`, and passes the chosen preset to `on_preset`, without the session's lock."""
+    """Shows `PRESETS`. It passes the chosen preset to `on_preset`, or calls `on_tour`, without the session's lock."""
 
-    def __init__(self, state: ViewState, on_preset: Callable[[Preset], None]) -> None:
-        self._on_preset = on_preset
+    def __init__(self, state: ViewState, on_preset: Callable[[Preset], None], on_tour: Callable[[], None]) -> None:
+        self._on_preset, self._on_tour = on_preset, on_tour
         self._presets = {preset.key: preset for preset in PRESETS}
         self._invitation: GalleryCards | None = None
         self._state = state
@@ -86,9 +99,9 @@ class Gallery:
         return [self._make_cards([_card(preset) for preset in PRESETS], groups=list(GROUPS), hint=HINT)]
 
     def invitation(self) -> pn.viewable.Viewable:
-        """Return the invitation: some of the cards in one group, for a page without orbits."""
+        """Return the invitation: the tour and some of the cards in one group, for a page without orbits."""
         if self._invitation is None:
-            cards = [
+            cards = [_TOUR_CARD] + [
                 {**_card(preset), "group": INVITATION, "line": typeset(preset.invitation)}
                 for preset in PRESETS
                 if preset.invitation
@@ -111,6 +124,8 @@ class Gallery:
         # A browser can send anything: unexpected messages are ignored.
         if isinstance(message, str) and message in self._presets:
             self._on_preset(self._presets[message])
+        elif message == _TOUR_CARD["key"]:
+            self._on_tour()
 
 
 def _card(preset: Preset) -> dict[str, str]:

@@ -1,7 +1,8 @@
-"""The drawer "Help": how to read the pictures, the equations of the system in view, terms, a table of the page, and keys."""
+"""The drawer "Help": the tour, how to read the pictures, the equations of the system, terms, a table of the page, and keys."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import astuple
 from html import escape
 
@@ -13,6 +14,7 @@ from app.state.help_texts import HELP_TEXTS
 from app.state.view_state import ViewState
 from app.views.components.collapsible_section import Fold
 from app.views.components.texts import TextPane, escape_facts
+from app.views.components.widgets import button
 from app.views.panels.browser_events import key_legend
 from engine import Fate, System, compute_statistics
 from engine.foundations.wording import format_number, format_share, format_whole
@@ -20,9 +22,10 @@ from engine.propagation.fates import UNRESOLVED
 from plots.layers.table import PICTURES
 
 
-def help_panes(state: ViewState, results: ShownResults) -> list[pn.viewable.Viewable]:
-    """Return the parts of the drawer. Terms and table open on demand."""
+def help_panes(state: ViewState, results: ShownResults, take_tour: Callable[[], None]) -> list[pn.viewable.Viewable]:
+    """Return the parts of the drawer, first the button that calls `take_tour`. Terms and table open on demand."""
     return [
+        button("Take the tour", take_tour, margin=(0, 10)),
         TextPane(f"<h3>How to read the pictures</h3>{_meanings()}", sizing_mode="stretch_width", margin=(0, 10)),
         _equations_pane(state),
         *Fold("Terms", lambda: [TextPane(glossary_list(), sizing_mode="stretch_width", margin=(0, 10))]).parts(),

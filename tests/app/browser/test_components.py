@@ -159,8 +159,8 @@ EXAMPLES = {
         lambda report: OrbitPlayer(report, begin=0.0, end=0.0), [], [{"step": 3, "begin": 0, "end": 0}]
     ),
     "gallery": Example(
-        lambda report: Gallery(ViewState(), report).build()[0],
-        [(PRESETS[1].key, (PRESETS[1],))],
+        lambda report: Gallery(ViewState(), report, lambda: report("tour")).build()[0],
+        [(PRESETS[1].key, (PRESETS[1],)), ("tour", ("tour",))],
         ["no such key", [PRESETS[0].key], {PRESETS[0].key: 1}],
     ),
     "keys and history": Example(

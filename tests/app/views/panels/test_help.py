@@ -10,8 +10,12 @@ from engine import CASES, MapSpec, Plane, System, compute_map
 from tests.disc import disc_map
 
 
-def test_help_begins_with_the_meaning_of_the_pictures_and_ends_with_the_keys() -> None:
-    first, *_, last = help_panes(ViewState(), ShownResults())
+def test_help_begins_with_the_tour_and_the_meaning_of_the_pictures_and_ends_with_the_keys() -> None:
+    tours: list[str] = []
+    tour, first, *_, last = help_panes(ViewState(), ShownResults(), lambda: tours.append("begun"))
+    assert tour.label == "Take the tour"
+    tour.clicks += 1
+    assert tours == ["begun"]
     assert first.object.startswith("<h3>How to read the pictures</h3><p><b>The well.</b> The zero-velocity curve")
     assert first.object.count("<p>") == 4
     assert last.object.startswith("<h3>Keys</h3>")
