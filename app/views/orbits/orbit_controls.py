@@ -182,7 +182,7 @@ class OrbitControls:
 
 
 def _indicator_rows(verdicts: Sequence[IndicatorVerdict]) -> str:
-    """Return the rows of the table of indicators: what they show, then values. Neighbours with the same verdict share its cell."""
+    """Return the rows of the table of indicators, with values last. Neighbours with the same verdict share its cell."""
     rows = ""
     for (conclusion, sentence), group in groupby(verdicts, lambda one: (one.conclusion, one.sentence)):
         names = [f"<th scope=row>{one.name}<br>{_value(one.value)}</th>" for one in group]
