@@ -65,6 +65,17 @@ def test_every_preset_has_a_card_and_pictures_are_loaded(explorer: ExplorerPage)
     close(explorer, "Gallery")
 
 
+def test_the_gallery_is_searched(explorer: ExplorerPage) -> None:
+    explorer.press("Gallery")
+    cards = explorer.page.locator(".gallery:not(.few) button")
+    expect(cards).to_have_count(len(PRESETS))
+    explorer.page.get_by_role("searchbox", name="Search the gallery").fill("sticky orbit")
+    expect(cards.filter(visible=True).first).to_contain_text("sticky")
+    assert cards.filter(visible=True).count() < 5
+    explorer.page.get_by_role("searchbox", name="Search the gallery").fill("")
+    expect(cards.filter(visible=True)).to_have_count(len(PRESETS))
+
+
 def test_the_gallery_of_a_phone_shows_four_whole_cards(open_explorer: Callable[..., ExplorerPage]) -> None:
     phone = open_explorer(390, 844, QUICK, touch=True)
     phone.press("Gallery")

@@ -134,7 +134,7 @@ def test_well_and_basins_are_above_the_other_pictures_and_all_are_seen_beside_th
 # Class names of titles, legends and names that cover the frame of a picture, for each large picture.
 _COVERED = """() => {
     const shown = [...Bokeh.index.all_views()].filter(view => view.model.type == "Figure" && view.canvas_view.el.clientWidth
-        && ["picked", "equal"].includes(view.model.css_classes[1]))
+        && ["picked", "equal", "half"].includes(view.model.css_classes[1]))
     return shown.map(view => {
         const [canvas, {left, top, right, bottom}] = [view.canvas_view.el.getBoundingClientRect(), view.frame.bbox]
         const [x0, y0, x1, y1] = [canvas.left + left, canvas.top + top, canvas.left + right, canvas.top + bottom]

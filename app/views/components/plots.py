@@ -68,6 +68,10 @@ _COMPACT_BORDERS = {"min_border_left": 12, "min_border_right": 12, "min_border_t
 _SMALL_BORDERS = dict.fromkeys(_PICTURE_BORDERS, 2)
 _BORDERS = {"compact": _COMPACT_BORDERS, "small": _SMALL_BORDERS}
 
+# Desired number of labels of an axis, and that of pictures below the large ones.
+_MOST_TICKS = 5
+_TICKS = {"half": 3, "third": 3}
+
 
 def map_figure(name: str, title: str, x: Range1d, y: Range1d) -> figure:
     """Return the square figure of a picture, see `square_figure`. `PictureTexts` stand around its frame."""
@@ -75,7 +79,7 @@ def map_figure(name: str, title: str, x: Range1d, y: Range1d) -> figure:
     plot = square_figure(name, title, HELP_TEXTS[name], x_range=x, y_range=y, frame_align=False, **_PICTURE_BORDERS)
     for axis in (*plot.below, *plot.left):
         axis.major_label_text_font_size = "14px"
-        axis.ticker.desired_num_ticks = 5
+        axis.ticker.desired_num_ticks = _MOST_TICKS
     return plot
 
 
@@ -90,6 +94,7 @@ def set_borders(plot: figure, kind: str) -> None:
     """Set the borders of a picture, and show its axes unless the kind is "compact" or "small"."""
     for axis in (*plot.below, *plot.left):
         axis.visible = kind not in _BORDERS
+        axis.ticker.desired_num_ticks = _TICKS.get(kind, _MOST_TICKS)
     plot.update(**_BORDERS.get(kind, _PICTURE_BORDERS))
 
 

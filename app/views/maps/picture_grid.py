@@ -23,12 +23,12 @@ FIRST_PICTURE = "basins"
 # Number of pictures of the first row, which are the well and the basins, or the maps of two views.
 _LARGE = 2
 # Arrangement and kind of the other pictures, by their number: with whole titles, with short titles, without axes.
-_OTHERS = {1: ("two", "equal"), 2: ("two", "equal"), 3: ("three", "third"), 4: ("four", "compact")}
+_OTHERS = {1: ("two", "half"), 2: ("two", "half"), 3: ("three", "third"), 4: ("four", "compact")}
 # The same for more pictures, which have no legends.
 _MORE = ("many", "compact")
 _ARRANGEMENTS = {"enlarged", _MORE[0], *(arrangement for arrangement, _ in _OTHERS.values())}
 # Kinds of pictures with whole titles.
-_WITH_TITLE = ("picked", "equal")
+_WITH_TITLE = ("picked", "equal", "half")
 
 
 class PictureGrid:

@@ -46,6 +46,41 @@ function makeCard(card, index, show) {
   return [button, description]
 }
 
+/** Whether all words of a search are in the texts of a card. @type {(card: Card | undefined, search: string) => boolean} */
+export function matches(card, search) {
+  const text = card ? Object.values(card).join(" ").toLowerCase() : ""
+  return search
+    .toLowerCase()
+    .split(/\s+/)
+    .every(word => text.includes(word))
+}
+
+/**
+ * Make a box that hides the cards, and the groups without cards, that do not match what is typed.
+ *
+ * @param {Card[]} cards @param {HTMLElement[]} groups
+ */
+function makeSearch(cards, groups) {
+  const search = /** @type {HTMLInputElement} */ (
+    make("input", {type: "search", placeholder: "Search", ariaLabel: "Search the gallery"})
+  )
+  search.addEventListener("input", () => {
+    for (const group of groups) {
+      const buttons = [...group.querySelectorAll("button")]
+      for (const button of buttons) {
+        button.hidden = !matches(
+          cards.find(card => card.key === button.dataset.key),
+          search.value,
+        )
+      }
+      const shown = buttons.filter(button => !button.hidden)
+      buttons.forEach(button => (button.tabIndex = button === shown[0] ? 0 : -1))
+      group.hidden = shown.length === 0
+    }
+  })
+  return search
+}
+
 /** @param {{model: any, el: HTMLElement}} component */
 export function render({model, el}) {
   /** @type {Card[]} */
@@ -67,10 +102,13 @@ export function render({model, el}) {
     const groupCards = cards.filter(card => card.group === group)
     strip.append(...groupCards.flatMap((card, index) => makeCard(card, index, show)))
     const buttons = [...strip.querySelectorAll("button")]
-    strip.addEventListener("keydown", event => moveFocus(event, buttons))
+    const shown = () => buttons.filter(button => !button.hidden)
+    strip.addEventListener("keydown", event => moveFocus(event, shown()))
     return make("section", {}, make("h3", {}, group), strip)
   })
-  const body = make("div", {className: model.hint ? "gallery" : "gallery few"}, ...strips, ...(model.hint ? [caption] : []))
+  const body = model.hint
+    ? make("div", {className: "gallery"}, makeSearch(cards, strips), ...strips, caption)
+    : make("div", {className: "gallery few"}, ...strips)
   body.addEventListener("click", event => {
     const button = event.target instanceof Element && event.target.closest("button")
     if (!button) return

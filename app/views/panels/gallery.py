@@ -28,6 +28,11 @@ _THUMBNAILS = "app/static/gallery"
 _STYLE = """
 :host { min-width: 0 }
 .gallery { font-family: inherit; font-size: 0.875rem; line-height: 1.4; color: inherit }
+[hidden] { display: none !important }
+input {
+  box-sizing: border-box; width: 100%; height: var(--ui-control); padding: 0 10px; border: 1px solid var(--ui-edge);
+  border-radius: var(--ui-radius); background: var(--ui-surface); color: inherit; font: inherit;
+}
 h3 { margin: 8px 0 4px; font-size: inherit; font-weight: 600 }
 [role=toolbar] { display: grid; grid-template-columns: repeat(auto-fill, minmax(112px, 1fr)); gap: 6px }
 .few h3 { margin: 8px 0; font-weight: inherit }

@@ -51,7 +51,7 @@ def test_one_picture_is_enlarged_and_the_others_have_no_axes() -> None:
 
 @pytest.mark.parametrize(
     ("layers", "arrangement", "kind", "has_axes"),
-    [(0, "two", "equal", True), (1, "three", "third", True), (2, "four", "compact", False), (3, "many", "compact", False)],
+    [(0, "two", "half", True), (1, "three", "third", True), (2, "four", "compact", False), (3, "many", "compact", False)],
 )
 def test_two_pictures_keep_their_places_above_the_others_of_which_few_have_axes(
     layers: int, arrangement: str, kind: str, has_axes: bool
