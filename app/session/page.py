@@ -32,8 +32,7 @@ LONGEST_FORMULA = 80
 @cache
 def _template() -> Template:
     """Return the HTML of the page without its widgets."""
-    template: Template = parse_template(Path(__file__).with_name("page.html").read_text(encoding="utf-8"))
-    return template
+    return parse_template(Path(__file__).with_name("page.html").read_text(encoding="utf-8"))
 
 
 def link_title(view: View) -> str:

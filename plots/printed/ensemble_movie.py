@@ -145,8 +145,7 @@ def _draw_chart(axes: Axes, potential: Potential, orbits: SampledOrbits, style: 
     axes.yaxis.set_major_locator(LogLocator())
     style_axes(axes, style, grid=True, labels=("t", "share inside"), title="Share still inside")
     axes.legend(loc="upper right", fontsize=style.small_size, frameon=False)
-    line: Line2D = survival
-    return line
+    return survival
 
 
 def _show_frame(stage: _Stage, orbits: SampledOrbits, index: int) -> None:

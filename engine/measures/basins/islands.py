@@ -89,10 +89,8 @@ def compute_islands(starts: Measurable | Starts) -> Islands:
     part_numbers, _ = ndimage.label(bounded, np.ones((3, 3)))
     # The number 0 means that a start is not bounded.
     pixel_counts = np.bincount(part_numbers.ravel())[1:]
-    if pixel_counts.max(initial=0) >= MIN_ISLAND_PIXELS:
-        in_largest = part_numbers == 1 + int(pixel_counts.argmax())
-    else:
-        in_largest = np.zeros_like(bounded)
+    has_island = pixel_counts.max(initial=0) >= MIN_ISLAND_PIXELS
+    in_largest = part_numbers == 1 + int(pixel_counts.argmax()) if has_island else np.zeros_like(bounded)
     return Islands(
         *_measure_area(bounded, checked_starts.pixel_area),
         int(np.count_nonzero(pixel_counts >= MIN_ISLAND_PIXELS)),
