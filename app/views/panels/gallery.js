@@ -33,7 +33,7 @@ function moveFocus(event, buttons) {
 function makeCard(card, index, show) {
   // With loading set after src, the browser would fetch the picture at once, even in a closed gallery.
   const picture = make("img", {loading: "lazy", alt: card.alt, width: 112, height: 112, src: card.thumbnail})
-  const button = make("button", {type: "button", tabIndex: index ? -1 : 0}, make("span", {}, card.title), picture)
+  const button = make("button", {type: "button", tabIndex: index ? -1 : 0}, card.title, picture)
   button.dataset.key = card.key
   if (card.line) {
     button.append(make("small", {}, card.line))
