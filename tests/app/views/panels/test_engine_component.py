@@ -15,6 +15,8 @@ from engine.jobs.subscription import Subscription
 from engine.systems.system import TYPED
 from plots.browser.browser_system import system_key
 from plots.pictures.palette import PALETTES
+from tests.app.browser_messages import send
+from tests.app.map_actions import make_browser_engine
 
 
 @dataclass
@@ -108,3 +110,21 @@ def test_the_browser_learns_the_section_and_where_its_points_are_drawn() -> None
     assert view["slice"]["mirrored"] is None
     state.show_slice(Plane.X_Y)
     assert describe_view(state)["slice"]["sectionColumns"] is None
+
+
+def test_a_film_is_an_animation_that_ends_as_any_other() -> None:
+    engine = make_browser_engine(ViewState(system=System("I"), energy=0.19))
+    engine.film()
+    assert (engine.playing, engine.command["name"]) == (True, "film")
+    engine.film()
+    assert engine.command["name"] == "stop"
+    send(engine, {"playing": False})
+    assert not engine.playing
+
+
+def test_the_pixels_of_the_screen_are_passed_on_and_other_values_are_ignored() -> None:
+    pixels: list[int] = []
+    engine = make_browser_engine(on_pixels=pixels.append)
+    for value in (756, "900", None, 0):
+        send(engine, {"pixels": value})
+    assert pixels == [756, 0]
