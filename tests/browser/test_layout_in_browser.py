@@ -245,6 +245,7 @@ def test_a_picture_has_a_frame_of_focus_for_keys_only(wide: ExplorerPage) -> Non
     assert wide.page.evaluate(width) == "0px"
     wide.page.keyboard.press("ArrowRight")
     assert wide.page.evaluate(width) == "1px"
+    wide.wait_for_view("orbits=", "window=")
     wide.return_home()
 
 
