@@ -96,6 +96,8 @@ def places(explorer: ExplorerPage) -> dict[str, Any]:
 def test_nothing_moves_with_further_orbits_messages_and_the_player(open_explorer: Callable[..., ExplorerPage]) -> None:
     explorer = open_explorer(height=1000, link=f"{QUICK}&orbits=0.1,0.05")
     explorer.wait_for_data("r2_histories", "data.xs.length == 1")
+    # The thumb of the slider of the energy is higher once the slider has its picture.
+    explorer.page.locator(".rail > [data-pictured]").wait_for()
     begin = explorer.page.evaluate(_PAINTED)
     before = places(explorer)
     # The chart of the distance of two orbits opens below the histories, so only what is below them may move.
