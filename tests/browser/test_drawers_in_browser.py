@@ -134,6 +134,8 @@ _SHIFTS = """() => {
 @pytest.mark.parametrize("size", [(420, 850), (768, 1024)])
 def test_nothing_moves_when_a_drawer_opens_or_closes(open_explorer: Callable[..., ExplorerPage], size: tuple[int, int]) -> None:
     explorer = open_explorer(*size, QUICK)
+    # The thumb of the slider of the energy is higher once the slider has its picture.
+    explorer.page.locator(".rail > [data-pictured]").wait_for()
     explorer.page.evaluate(_SHIFTS)
     explorer.press("Share")
     expect(heading(explorer, "Share")).to_be_visible()

@@ -80,7 +80,6 @@ def test_two_fingers_that_part_zoom_the_map(explorer: ExplorerPage) -> None:
 def test_a_finger_that_rests_shows_the_orbit_under_it(open_explorer: Callable[..., ExplorerPage]) -> None:
     explorer = open_touched(open_explorer, 420)
     explorer.start_engine()
-    explorer.radio("Scroll").scroll_into_view_if_needed()
     card, session = explorer.page.locator(".orbit-card"), explorer.page.context.new_cdp_session(explorer.page)
     x, y = middle_of(explorer)
 
