@@ -83,22 +83,17 @@ class NeighbourRequests:
 
     Parameters
     ----------
-    state, jobs, notify, locked
-        The view state, what computes, what shows why a search has failed, and a wrapper to run under the session's lock.
+    state, jobs, locked
+        The view state, what computes, and a wrapper to run under the session's lock.
     show
-        Shows a sentence, and the neighbour if it is known.
+        Shows a sentence, which may say why a search has failed, and the neighbour if it is known.
     """
 
-    def __init__(
-        self,
-        state: ViewState,
-        jobs: JobSubmitter,
-        show: Callable[[str, Start | None], None],
-        notify: Callable[[str], None],
-        locked: Locked,
-    ) -> None:
+    def __init__(self, state: ViewState, jobs: JobSubmitter, show: Callable[[str, Start | None], None], locked: Locked) -> None:
         self._state, self._show = state, show
-        self._request = LatestRequest(jobs, self._show_found, notify, locked, begin=lambda job: show(_SEARCHING, None))
+        self._request = LatestRequest(
+            jobs, self._show_found, lambda sentence: show(sentence, None), locked, begin=lambda job: show(_SEARCHING, None)
+        )
 
     def follow(self, orbits: Sequence[StartOrbit]) -> None:
         """Request the neighbour of the chosen start, once its orbit is known."""
@@ -113,7 +108,7 @@ class NeighbourRequests:
 
     def _show_found(self, found: DivergentStart | None) -> None:
         if found is None:
-            self._show("No start near this one leaves elsewhere.", None)
+            self._show("No start that ends elsewhere was found near this one.", None)
             return
         ending = outcome_of(found.fate, found.outcomes).present
         self._show(f"A start {format_number(found.distance, 2)} away {ending}.", (found.x, found.ordinate))
@@ -127,7 +122,7 @@ class PeriodicOrbitRequests:
     Parameters
     ----------
     state, jobs, notify, locked
-        As for neighbours; `notify` shows the progress as well.
+        As for neighbours; `notify` shows the progress, and why a search has failed.
     change
         Changes the view.
     name

@@ -83,7 +83,7 @@ class OrbitPresenter:
         self.inspector = Inspector(self.controls, self.player, self.plots, self._separation_plot, latest)
         self._orbit_requests = OrbitRequests(state, jobs, self._show, self.controls.say, latest)
         self._neighbour: Start | None = None
-        self._neighbour_requests = NeighbourRequests(state, jobs, self._show_neighbour, self.controls.say, locked)
+        self._neighbour_requests = NeighbourRequests(state, jobs, self._show_neighbour, locked)
         self._periodic_orbit_requests = PeriodicOrbitRequests(
             state, jobs, self.controls.say, locked, context.change, self._orbit_requests.name_periodic
         )

@@ -28,6 +28,7 @@ class Recorder:
         self.orbits: tuple[StartOrbit, ...] = ()
         self.messages: list[str] = []
         self.separations: list[tuple[tuple[int, int] | None, Separation | None]] = []
+        self.neighbours: list[tuple[str, Start | None]] = []
         self.changed = threading.Condition()
 
     def record(self, act: Callable[[], None]) -> None:
@@ -43,6 +44,9 @@ class Recorder:
 
     def show_separation(self, pair: tuple[int, int] | None, separation: Separation | None) -> None:
         self.record(lambda: self.separations.append((pair, separation)))
+
+    def show_neighbour(self, sentence: str, neighbour: Start | None) -> None:
+        self.record(lambda: self.neighbours.append((sentence, neighbour)))
 
     def wait_for(self, true: Callable[[], bool]) -> None:
         with self.changed:
@@ -109,13 +113,12 @@ def test_a_cached_orbit_is_delivered_at_once_and_follows_the_energy(session: Ses
 
 def test_the_neighbour_of_the_chosen_start_ends_elsewhere(session: Session) -> None:
     state, _, recorder, jobs = session
-    found: list[tuple[str, Start | None]] = []
-    neighbours = NeighbourRequests(state, jobs, lambda *shown: found.append(shown), recorder.notify, unlocked)
+    neighbours = NeighbourRequests(state, jobs, recorder.show_neighbour, unlocked)
     state.add_start((0.1, 0.05))
     recorder.wait_for(lambda: recorder.all_computed(1))
     neighbours.follow(recorder.orbits)
-    recorder.wait_for(lambda: found[-1][1] is not None)
-    sentence, neighbour = found[-1]
+    recorder.wait_for(lambda: recorder.neighbours[-1][1] is not None)
+    sentence, neighbour = recorder.neighbours[-1]
     assert neighbour is not None
     state.add_start(neighbour)
     recorder.wait_for(lambda: recorder.all_computed(2))
@@ -128,24 +131,22 @@ def test_the_neighbour_of_the_chosen_start_ends_elsewhere(session: Session) -> N
 
 def test_no_neighbour_is_searched_while_the_orbit_is_not_known(session: Session) -> None:
     state, _, recorder, jobs = session
-    found: list[tuple[str, Start | None]] = []
-    neighbours = NeighbourRequests(state, jobs, lambda *shown: found.append(shown), recorder.notify, unlocked)
+    neighbours = NeighbourRequests(state, jobs, recorder.show_neighbour, unlocked)
     state.add_start((0.1, 0.05))
     recorder.wait_for(lambda: recorder.all_computed(1))
     neighbours.follow([StartOrbit(state.starts[0])])
     wait_until_idle(jobs)
-    assert found == [("", None)]
+    assert recorder.neighbours == [("", None)]
 
 
 def test_a_start_without_a_neighbour_that_leaves_gets_a_sentence(session: Session) -> None:
     state, _, recorder, jobs = session
-    found: list[tuple[str, Start | None]] = []
-    neighbours = NeighbourRequests(state, jobs, lambda *shown: found.append(shown), recorder.notify, unlocked)
+    neighbours = NeighbourRequests(state, jobs, recorder.show_neighbour, unlocked)
     state.energy = 0.1
     state.add_start((0.1, 0.05))
     recorder.wait_for(lambda: recorder.all_computed(1))
     neighbours.follow(recorder.orbits)
-    recorder.wait_for(lambda: ("No start near this one leaves elsewhere.", None) in found)
+    recorder.wait_for(lambda: ("No start that ends elsewhere was found near this one.", None) in recorder.neighbours)
 
 
 def test_the_last_two_orbits_are_compared(session: Session) -> None:
