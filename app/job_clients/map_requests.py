@@ -183,9 +183,10 @@ class MapRequests:
         if complete_map is None or not self._has_more_pixels:
             return
         self._sharper_request.cancel()
-        if self._sharpest_map is not None:
+        if self._sharpest_map is not None and self._delivered_columns is not None:
             self._sharpest_map = None
-            self._listener.map_arrived(complete_map, map_columns(complete_map) | layer_columns(complete_map, self._state.layers))
+            _, columns = self._delivered_columns
+            self._listener.map_arrived(complete_map, columns | layer_columns(complete_map, self._state.layers))
 
 
 def _show_same_plane(one: MapSpec, other: MapSpec) -> bool:

@@ -69,9 +69,10 @@ export class StartLine {
 
   /** Return the line of the chosen start; null unless both ends are on the screen. @returns {Line | null} */
   #chosen() {
+    if (this.#isCovered()) return null
     const well = wellPicture()
     const points = well && rendererOf(well, "points")
-    if (!points || this.#isCovered()) return null
+    if (!points) return null
     // The largest map, and of equal maps the first.
     const [map] = mapPictures().sort((one, other) => other.box.width - one.box.width)
     const starts = map && rendererOf(map, "starts")?.data_source.data
