@@ -24,9 +24,9 @@ from engine import (
 from engine.foundations.execution import DEFAULT_EXECUTION
 from engine.measures.compute import compute_point
 from engine.results import RegularityMap, Sweep, UncertaintyExponent
-from reproduction.analyses.super_sticky import SuperStickySearch, find_super_sticky_orbits
 from reproduction.paper_ranges import STICKY_CASE, STICKY_ENERGY, curve_energies
 from reproduction.quality import Quality
+from reproduction.super_sticky import SuperStickySearch, find_super_sticky_orbits
 
 
 class MapCache:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from engine import CASES
+from engine.systems.catalogue.published_fits import PAPER_FITS
 from engine.systems.catalogue.table import PAPER_ENERGIES
-from reproduction.analyses.published_fits import PAPER_FITS
 
 CHANNEL_ENERGIES = {"I": 0.15, "II": 0.2, "III": 0.3}
 """Energies of the figures that show an orbit through each exit."""

@@ -31,10 +31,6 @@ def _difference_legend(shown: ShownMap) -> Legend:
     return Legend(CLASSES)
 
 
-def _fate_colours(palette: Palette) -> list[str]:
-    return [*palette.outcome_colours, *palette.ends]
-
-
 def _region_colours(palette: Palette) -> list[str]:
     """Return the colours of the picture of the exits, where the interior has a single colour."""
     starts_without_orbit = (Fate.OUTSIDE, Fate.FORBIDDEN)
@@ -74,7 +70,7 @@ BASINS = Picture(
         "t_max; many of them never will; dots are passages of the chosen orbits through the plane."
     ),
     column="fate",
-    colours=_fate_colours,
+    colours=lambda palette: palette.fate_colours,
     legend=_basin_legend,
 )
 
@@ -120,7 +116,7 @@ COMPARED = Picture(
         "the orbit of the view in the controls."
     ),
     column="fate",
-    colours=_fate_colours,
+    colours=lambda palette: palette.fate_colours,
     legend=_other_legend,
     compares=True,
 )

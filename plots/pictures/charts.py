@@ -79,6 +79,29 @@ class Series:
         return (self.x if axis == "x" else self.y), *(self.bars if has_bars and self.bars else ())
 
 
+@dataclass(frozen=True, eq=False)
+class Tile:
+    """A small image in a chart, with a text above it.
+
+    Attributes
+    ----------
+    codes
+        (rows, columns) uint8 indices of `Chart.tile_colours`, row 0 lowest.
+    left, bottom
+        Coordinates of the lower left corner.
+    text
+        The text above the image.
+    side
+        Width and height, in the coordinates of the chart.
+    """
+
+    codes: np.ndarray
+    left: float
+    bottom: float
+    text: str
+    side: float = 1.0
+
+
 @dataclass(frozen=True)
 class Frame:
     """What charts of different results have in common.
@@ -102,8 +125,10 @@ class Frame:
         Letters of the logarithmic axes, such as "xy".
     level
         Value of a marked horizontal line with its label; None for no line.
-    is_square
-        Whether the chart is as high as wide, as a picture of a plane.
+    aspect
+        Width of the chart over its height; 1 for a picture of a plane.
+    has_tiles
+        Whether the charts consist of tiles, without axes.
     """
 
     name: str
@@ -114,16 +139,38 @@ class Frame:
     described: Shape = Shape.POINTS
     logarithmic: str = ""
     level: tuple[float, str] | None = None
-    is_square: bool = False
+    aspect: float = 1.7
+    has_tiles: bool = False
+
+    @property
+    def is_square(self) -> bool:
+        """Whether the chart is as high as wide, as a picture of a plane."""
+        return self.aspect == 1.0
 
 
 @dataclass(frozen=True, eq=False)
 class Chart:
-    """Series in a frame. `limits` are those of the x axis and the y axis; None fits an axis to the points, see `axis_limits`."""
+    """Series, or tiles, in a frame.
+
+    Attributes
+    ----------
+    frame
+        The frame.
+    series
+        The series.
+    limits
+        Limits of the x axis and the y axis; None fits an axis to the points, see `axis_limits`.
+    tiles
+        The tiles.
+    tile_colours
+        Colours of the codes of the tiles.
+    """
 
     frame: Frame
     series: Sequence[Series]
     limits: tuple[Limits | None, Limits | None] = (None, None)
+    tiles: Sequence[Tile] = ()
+    tile_colours: Sequence[str] = ()
 
     @property
     def axis_limits(self) -> tuple[Limits, Limits]:

@@ -188,6 +188,11 @@ class Palette:
         """Colours of the pixel codes of fates that are not ends. These codes come first in all pictures."""
         return [entry.colour for entry in self.outcomes.values()]
 
+    @property
+    def fate_colours(self) -> list[str]:
+        """Colours of the pixel codes of fates, see `image_columns.fate_codes`."""
+        return [*self.outcome_colours, *self.ends]
+
 
 def short_label(label: str) -> str:
     """Return the short form of a label: the number of an exit, the kind of a bounded orbit, or what stands before a remark."""

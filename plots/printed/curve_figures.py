@@ -14,8 +14,8 @@ from matplotlib.figure import Figure
 
 from engine import Result
 from engine.results import EscapeStatistics
-from plots.pictures.charts import ONLY_POINTS, Chart, Series, Shape
-from plots.pictures.palette import DEFAULT_COLOURS, THRESHOLD
+from plots.pictures.charts import ONLY_POINTS, Chart, Series, Shape, Tile
+from plots.pictures.palette import DEFAULT_COLOURS, THRESHOLD, rgba
 from plots.pictures.setting import Settings
 from plots.printed.figure_axes import Corner, add_panel_legend, new_figure, set_title, style_axes
 from plots.printed.figure_style import SCREEN, FigureStyle
@@ -47,8 +47,8 @@ def draw_study_figure(study: Study[Any], found: Result, style: FigureStyle, sett
     if not charts:
         raise ValueError(f"{study.files}: there must be at least one point")
     columns = min(style.columns(2), len(charts))
-    is_square = any(chart.frame.is_square for chart in charts)
-    row_height = _SQUARE / columns if is_square else _ROW_HEIGHT if columns == 2 else _ONE_COLUMN_ROW_HEIGHT
+    is_high = any(chart.frame.aspect <= 1.0 for chart in charts)
+    row_height = _SQUARE / columns if is_high else _ROW_HEIGHT if columns == 2 else _ONE_COLUMN_ROW_HEIGHT
     height = style.width * row_height * math.ceil(len(charts) / columns)
     return _draw_figure(charts, new_figure(style, height, study.caption(found)), style, columns)
 
@@ -79,6 +79,10 @@ def draw_chart(axes: Axes, chart: Chart, style: FigureStyle = SCREEN, corner: Co
         axes.set(**{f"{axis}scale": "log"})
     for axis, limits in zip("xy", chart.axis_limits, strict=True):
         axes.set(**{f"{axis}lim": limits})
+    if frame.has_tiles:
+        axes.set_axis_off()
+        axes.set_aspect("equal")
+        return
     style_axes(axes, style, grid=True, labels=frame.labels)
     if corner is not None and len(chart.legend()) > 1:
         add_panel_legend(axes, corner, style)
@@ -87,10 +91,20 @@ def draw_chart(axes: Axes, chart: Chart, style: FigureStyle = SCREEN, corner: Co
 def draw_series(axes: Axes, chart: Chart) -> list[Artist]:
     """Draw the series and the level of a chart, and return them."""
     artists = [artist for series in chart.series for artist in _draw_one(axes, series)]
+    artists += [artist for tile in chart.tiles for artist in _draw_tile(axes, tile, chart.tile_colours)]
     if chart.frame.level is not None:
         value, label = chart.frame.level
         artists.append(axes.axhline(value, color=THRESHOLD, linestyle="--", linewidth=1.2, label=label))
     return artists
+
+
+def _draw_tile(axes: Axes, tile: Tile, colours: Sequence[str]) -> list[Artist]:
+    left, bottom, top = tile.left, tile.bottom, tile.bottom + tile.side
+    image = axes.imshow(
+        rgba(colours)[tile.codes], extent=(left, left + tile.side, bottom, top), origin="lower", interpolation="nearest",
+        aspect="auto",
+    )  # fmt: skip
+    return [image, axes.text(left, top, tile.text, fontsize="small", verticalalignment="bottom")]
 
 
 def _draw_one(axes: Axes, series: Series) -> list[Artist]:

@@ -39,7 +39,8 @@ def _job(subject: Subject, axis: str) -> Job[Sweep]:
     return sweep_job(spec)
 
 
-def _progress(curves: Sweep) -> float:
+def sweep_progress(curves: Sweep) -> float:
+    """Return the share of the values of a sweep that have been measured."""
     return float(curves.values.size / curves.dataset.attrs["count"])
 
 
@@ -69,7 +70,7 @@ AGAINST = Study(
     axes=energy_and_parameters,
     job=_job,
     function=compute_sweep,
-    progress=_progress,
+    progress=sweep_progress,
     sentence=_sentence,
     frames=(measure_frame(SHARES), *map(measure_frame, CURVE_PANELS)),
     charts=lambda curves, palette, settings: sweep_charts(curves, palette),

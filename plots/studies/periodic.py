@@ -26,7 +26,7 @@ FRAME = Frame(
     "all energies.",
     "@note<br>Click to follow the orbit from (@x{number}, @y{number})",
     described=Shape.RINGS,
-    is_square=True,
+    aspect=1.0,
 )
 
 UP_TO = Setting(

@@ -30,7 +30,7 @@ FRAME = Frame(
     'Controls, "Axes …", chooses the section.',
     "Click to follow the orbit from (@x{number}, @y{number})",
     described=Shape.DOTS,
-    is_square=True,
+    aspect=1.0,
 )
 
 

@@ -8,11 +8,12 @@ from typing import Any
 
 from plots.studies.against import AGAINST
 from plots.studies.family import FAMILY_STUDY
+from plots.studies.nine_energies import NINE_ENERGIES
 from plots.studies.periodic import PERIODIC_STUDY
 from plots.studies.section import SECTION_STUDY
 from plots.studies.study import Study
 
-_ENTRIES: tuple[Study[Any], ...] = (SECTION_STUDY, PERIODIC_STUDY, AGAINST, FAMILY_STUDY)
+_ENTRIES: tuple[Study[Any], ...] = (SECTION_STUDY, PERIODIC_STUDY, NINE_ENERGIES, AGAINST, FAMILY_STUDY)
 
 STUDIES: Mapping[str, Study[Any]] = MappingProxyType({study.name: study for study in _ENTRIES})
 """The studies by name, in the order of their tabs."""

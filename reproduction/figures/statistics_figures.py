@@ -5,37 +5,25 @@ As in the paper, Ne of N0 starts escape, Nde without a crossing, and dN_n after 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from engine import Plane, compute_statistics, fit_decay_laws
-from engine.results import EscapeStatistics
 from plots.pictures.palette import LIGHT, MEASURED, PAPER, THRESHOLD
 from plots.printed.curve_figures import draw_chart
 from plots.printed.figure_axes import add_panel_legend, label_axes, new_figure, set_titles, style_axes
 from plots.printed.figure_style import SCREEN
+from plots.studies.escape_charts import crossing_charts
 from plots.studies.measure_charts import survival_chart
 from plots.studies.sweep_charts import sweep_charts
-from reproduction.analyses.share_fits import CaseFit, fit_case
 from reproduction.map_cache import MapCache
 from reproduction.notation import plane_label
+from reproduction.numbers.share_fits import CaseFit, fit_case
 from reproduction.paper_ranges import nine_energies, three_energies
 
-MOST_CROSSINGS = 40
-"""Upper end of the axis of crossings. Few orbits escape after more crossings."""
-
-FEWEST_REMAINING = 50
-"""Smallest number of remaining starts for which p_n is drawn. With fewer, p_n depends on the grid."""
-
-# First index of the colours of escape times that contrast with white.
-_LIGHTEST = 50
-# Last index of the colours of escape times.
-_DARKEST = 255
 # Number of points of a fitted curve.
 _SAMPLES = 400
 
@@ -49,7 +37,9 @@ def draw_statistics(case: str, cache: MapCache) -> Figure:
     label_axes(panels[0], "$h$", "$N_e/N_0$")
     label_axes(panels[1], "$h$", "$N_{de}/N_0$")
     statistics = {energy: compute_statistics(cache.map(case, Plane.X_PX, energy)) for energy in nine_energies(case)}
-    _draw_crossings(panels[2], panels[3], statistics)
+    for axes, chart, label in zip(panels[2:], crossing_charts(statistics), ("$dN_n/N_0$", "$p_n$"), strict=True):
+        draw_chart(axes, chart, corner="upper right" if axes is panels[2] else None)
+        label_axes(axes, "$n$", label)
     after = "after $n$ crossings"
     set_titles(panels, ["escaping starts", "direct escapes", f"escapes {after}", f"probability of escape {after}"])
     return figure
@@ -65,27 +55,6 @@ def _draw_fits(axes: Axes, fit: CaseFit) -> None:
     axes.set_xlim(h[0], h[-1])
     style_axes(axes, grid=True)
     add_panel_legend(axes, "lower right")
-
-
-def _draw_crossings(share_axes: Axes, probability_axes: Axes, statistics_by_energy: Mapping[float, EscapeStatistics]) -> None:
-    """Draw both panels against n, with a line for each energy. Lower energies have darker lines."""
-    colour_indices = np.linspace(_DARKEST, _LIGHTEST, len(statistics_by_energy)).astype(int)
-    for (energy, statistics), colour_index in zip(statistics_by_energy.items(), colour_indices, strict=True):
-        style: dict[str, Any] = {"color": PAPER.escape_time[colour_index], "linewidth": 1.2, "marker": "o", "markersize": 2.4}
-        escapes = statistics.crossing_counts[: MOST_CROSSINGS + 1]
-        remaining = statistics.decided - np.cumsum(escapes) + escapes
-        with np.errstate(divide="ignore"):
-            log_shares = np.where(escapes > 0, np.log10(escapes / statistics.starts), np.nan)
-        n = np.arange(escapes.size)
-        probabilities = np.where(remaining >= FEWEST_REMAINING, statistics.escape_probabilities[: escapes.size], np.nan)
-        share_axes.plot(n, log_shares, label=f"$h = {energy:.2f}$", **style)
-        probability_axes.plot(n, probabilities, **style)
-    label_axes(share_axes, "$n$", r"$\log_{10}(dN_n/N_0)$")
-    label_axes(probability_axes, "$n$", "$p_n$")
-    for axes in (share_axes, probability_axes):
-        axes.set_xlim(-0.5, MOST_CROSSINGS + 0.5)
-        style_axes(axes, grid=True)
-    add_panel_legend(share_axes, "upper right", columns=3)
 
 
 def draw_percentages(case: str, cache: MapCache) -> Figure:

@@ -22,12 +22,12 @@ from plots.printed.figure_axes import (
     style_axes,
 )
 from plots.printed.figure_style import SCREEN
-from reproduction.analyses.super_sticky import SuperStickySearch
 from reproduction.figures.map_figures import draw_map_panel
 from reproduction.map_cache import MapCache
 from reproduction.notation import plane_label
 from reproduction.paper_ranges import STICKY_CASE, STICKY_ENERGY
 from reproduction.sample_orbits import find_lyapunov_r2
+from reproduction.super_sticky import SuperStickySearch
 
 LONGEST_DRAWN = 4e6
 """Latest escape time of a drawn orbit, dimensionless, unless all escape later. Integration takes a second per 1e5 time units."""

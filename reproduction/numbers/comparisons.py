@@ -10,13 +10,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from engine import Plane
-from reproduction.analyses.super_sticky import SuperStickySearch
 from reproduction.map_cache import MapCache
 from reproduction.numbers.map_structure import share_in_basins
 from reproduction.numbers.measures import ComputedNumbers, counted_codes
 from reproduction.numbers.reasons import explain
 from reproduction.numbers.stated_numbers import STATED_NUMBERS, Quantity, Relation, StatedNumber
 from reproduction.numbers.unknown_windows import FittedWindow, fit_window
+from reproduction.super_sticky import SuperStickySearch
 
 POINTS = 2.0
 """Largest difference of shares that agree, in percentage points."""

@@ -8,12 +8,12 @@ from types import MappingProxyType
 import numpy as np
 
 from engine import CASES, EscapeMap, Fate, Plane, compute_statistics
-from reproduction.analyses.super_sticky import SuperStickySearch
 from reproduction.map_cache import MapCache
 from reproduction.numbers.map_structure import orders_of_escape_times, share_in_basins, share_next_to_all_basins
 from reproduction.numbers.stated_numbers import Quantity, StatedNumber
 from reproduction.paper_ranges import STICKY_CASE, plane_energies
 from reproduction.sample_orbits import find_lyapunov_r2
+from reproduction.super_sticky import SuperStickySearch
 
 ACCURATE_ENERGY_ERROR = 1e-11
 """Largest relative energy error of most orbits of the paper."""

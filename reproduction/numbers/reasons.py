@@ -10,7 +10,7 @@ from types import MappingProxyType
 import numpy as np
 
 from engine import Fate, compute_statistics
-from reproduction.analyses.published_fits import PAPER_FITS
+from engine.systems.catalogue.published_fits import PAPER_FITS
 from reproduction.numbers.measures import ComputedNumbers
 from reproduction.numbers.stated_numbers import Quantity, StatedNumber
 

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 from engine import CASES, Plane, compute_statistics, fit_decay_laws
 from engine.foundations.wording import format_number
-from reproduction.analyses.published_fits import ShareCurve
-from reproduction.analyses.share_fits import ShareFit, fit_case, measure_deviation
+from engine.systems.catalogue.published_fits import ShareCurve
 from reproduction.map_cache import MapCache
 from reproduction.notation import write_rows
+from reproduction.numbers.share_fits import ShareFit, fit_case, measure_deviation
 from reproduction.paper_ranges import three_energies
 
 _FITS_INTRODUCTION = """\

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from engine import CASES
-from reproduction.analyses.super_sticky import SuperStickySearch
 from reproduction.map_cache import MapCache
 from reproduction.notation import write_rows
 from reproduction.paper_ranges import STICKY_CASE, nine_energies
+from reproduction.super_sticky import SuperStickySearch
 
 # Number of late escapes in the table.
 _LIST_LENGTH = 20

@@ -10,13 +10,13 @@ from importlib import metadata
 import numpy as np
 
 from engine import CASES
-from reproduction.analyses.super_sticky import SuperStickySearch
 from reproduction.map_cache import MapCache
 from reproduction.notation import write_rows
 from reproduction.numbers.comparisons import PERCENT, POINTS, Comparison
 from reproduction.numbers.map_structure import BOUNDARY_PIXELS
 from reproduction.numbers.stated_numbers import Counting, StatedNumber
 from reproduction.numbers.unknown_windows import STEP
+from reproduction.super_sticky import SuperStickySearch
 from reproduction.tables.fit_sections import write_fits, write_laws
 from reproduction.tables.late_sections import write_late_escapes, write_super_sticky
 

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from app.views.components.charts import ChartView
 from engine import CASES, MapSpec, Plane, SweepSpec, compute_map, compute_statistics, compute_sweep, fit_decay_laws
-from plots.pictures.charts import Chart, Frame, Limits, Series, Shape
+from plots.pictures.charts import Chart, Frame, Limits, Series, Shape, Tile
 from plots.pictures.holoviews_elements import axis_options
 from plots.pictures.palette import PAPER
 from plots.printed.curve_figures import draw_chart
@@ -23,6 +23,7 @@ FRAME = Frame("points", "Points", ("x", "y"), help="Three points.")
 POINTS = Series("points", "#123456", np.array([5.0, 6.0, np.nan]), np.array([10.0, 20.0, 30.0]), Shape.POINTS)
 BARS = (np.array([9.0, 18.0, 28.0]), np.array([11.0, 22.0, 32.0]))
 EDGES = (np.array([0.5, 1.5]), np.array([1.5, 2.5]))
+TILE = Tile(np.array([[0, 1], [1, 0]], np.uint8), 0.5, 0.25, "a map")
 CHARTS = {
     "fitted": Chart(FRAME, [POINTS]),
     "fitted to error bars": Chart(FRAME, [replace(POINTS, bars=BARS)]),
@@ -33,6 +34,7 @@ CHARTS = {
     "of rings": Chart(FRAME, [replace(POINTS, shape=Shape.RINGS, notes=("one", "two", "three"))]),
     "of crosses": Chart(FRAME, [replace(POINTS, shape=Shape.CROSSES)]),
     "of a thick line": Chart(FRAME, [replace(POINTS, shape=Shape.THICK)]),
+    "with tiles": Chart(replace(FRAME, has_tiles=True), [], ((0.0, 2.0), (0.0, 1.5)), [TILE], ["#123456", "#abcdef"]),
     "without points": Chart(FRAME, [replace(POINTS, x=np.zeros(0), y=np.zeros(0))]),
     "without points, logarithmic": Chart(replace(FRAME, logarithmic="xy"), []),
 }
@@ -78,6 +80,20 @@ def test_axes_are_equal_in_all_renderers(name: str) -> None:
 def test_axes_of_measures_are_equal_in_all_renderers() -> None:
     for chart in charts_of_results():
         assert_equal_axes(chart)
+
+
+def test_tiles_have_the_same_places_and_colours_on_the_page_and_in_figures() -> None:
+    chart = CHARTS["with tiles"]
+    view = ChartView(chart.frame)
+    view.show(chart)
+    data = view.tiles.data
+    assert [data[name][0] for name in ("x", "y", "side", "top", "text")] == [0.5, 0.25, 1.0, 1.25, "a map"]
+    axes = Figure().subplots()
+    draw_chart(axes, chart)
+    (image,) = axes.images
+    assert image.get_extent() == [0.5, 1.5, 0.25, 1.25]
+    np.testing.assert_array_equal(image.get_array()[0, 1], [0xAB, 0xCD, 0xEF, 0xFF])
+    np.testing.assert_array_equal(data["image"][0], TILE.codes)
 
 
 @pytest.mark.parametrize("name", [name for name in CHARTS if name.startswith(("fitted", "of"))])

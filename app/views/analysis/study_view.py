@@ -28,9 +28,6 @@ from plots.studies.study import Click, Study
 STOP = "Stop"
 """Label of the button while a study is computed."""
 
-# Width of a chart over its height.
-_ASPECT = 1.7
-
 
 class StudyView:
     """Shows a study. Its figures are made for the first result.
@@ -68,9 +65,7 @@ class StudyView:
         self.text = TextPane(self._hint, name=study.name, margin=(4, 10), sizing_mode="stretch_width", css_classes=["whole-row"])
         self._mark_line = moving_line("height", location=0.0, line_dash="dotted")
         options: dict[str, Any] = {"x_range": Range1d(0.0, 1.0)} if study.axes(state.system) else {}
-        self._charts = {
-            each.name: ChartView(each, aspect_ratio=1.0 if each.is_square else _ASPECT, **options) for each in study.frames
-        }
+        self._charts = {each.name: ChartView(each, aspect_ratio=each.aspect, **options) for each in study.frames}
         self._charts_in_turns = InTurns([partial(self._build_chart, chart) for chart in self._charts.values()], self._add, later)
         self._plots = pn.Column(sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=["charts"], visible=False)
         self._choices = [setting_choice(state, setting) for setting in study.settings]

@@ -10,18 +10,22 @@ from typing import Any
 import numpy as np
 import panel as pn
 from bokeh.events import Event
-from bokeh.models import ColumnDataSource, MultiLine, Range1d, Scatter, Segment, Span
+from bokeh.models import ColumnDataSource, Image, LinearColorMapper, MultiLine, Range1d, Scatter, Segment, Span, Text
 from bokeh.plotting import figure
 
 from app.views.components.plots import FigurePane, chart_hover, set_range, square_figure
 from app.views.components.texts import TextPane
-from plots.pictures.charts import ONLY_POINTS, Chart, Frame, Limits, Series, Shape
+from app.views.components.theme import theme_line
+from plots.pictures.charts import ONLY_POINTS, Chart, Frame, Limits, Series, Shape, Tile
 from plots.pictures.palette import THRESHOLD
 from plots.texts.legends import legend
 
 _POINT_COLUMNS = ("x", "y", "low", "high", "colour", "label", "marker", "size", "filled", "note")
 _LINE_COLUMNS = ("xs", "ys", "colour", "dash", "width", "label")
 _DOT_COLUMNS = ("x", "y", "colour")
+_TILE_COLUMNS = ("image", "x", "y", "side", "top", "text")
+# Borders of charts without axes, in pixels. The title is above the frame.
+_TILE_BORDERS = {"min_border_left": 0, "min_border_right": 0, "min_border_top": 28, "min_border_bottom": 0}
 _DASHES = {Shape.DASHED: "8 8"}
 _WIDTHS, _WIDTH = {Shape.THICK: 4}, 2
 _SHAPES_WITH_POINTS = (Shape.POINTS, Shape.JOINED_POINTS, Shape.RINGS, Shape.CROSSES)
@@ -81,6 +85,15 @@ class ChartView:
         return ColumnDataSource({name: [] for name in _DOT_COLUMNS}, name=f"{self.frame.name}_dots")
 
     @cached_property
+    def tiles(self) -> ColumnDataSource:
+        """The tiles of the chart, with their texts."""
+        return ColumnDataSource({name: [] for name in _TILE_COLUMNS}, name=f"{self.frame.name}_tiles")
+
+    @cached_property
+    def _tile_colours(self) -> LinearColorMapper:
+        return LinearColorMapper()
+
+    @cached_property
     def _legend(self) -> TextPane:
         return TextPane(margin=(0, 10))
 
@@ -92,6 +105,10 @@ class ChartView:
         self.lines.data, self.points.data = _line_columns(chart.series), _point_columns(chart.series)
         if self.frame.described is Shape.DOTS:
             self.dots.data = _dot_columns(chart.series)
+        if self.frame.has_tiles:
+            colours = [*chart.tile_colours]
+            self._tile_colours.update(palette=colours, low=-0.5, high=len(colours) - 0.5)
+            self.tiles.data = _tile_columns(chart.tiles)
         for axis_range, limits in zip((self.x_range, self.y_range), chart.axis_limits, strict=True):
             set_range(axis_range, *limits)
         entries = chart.legend()
@@ -110,7 +127,11 @@ class ChartView:
         frame = self.frame
         scales = {f"{axis}_axis_type": "log" for axis in frame.logarithmic}
         ranges = {"x_range": self.x_range, "y_range": self.y_range}
-        plot = square_figure(frame.name, frame.title, frame.help, x_axis_label=" ", **ranges, **scales, **self._options)
+        options = self._options | (_TILE_BORDERS if frame.has_tiles else {})
+        plot = square_figure(frame.name, frame.title, frame.help, x_axis_label=" ", **ranges, **scales, **options)
+        if frame.has_tiles:
+            self._draw_tiles(plot)
+            return plot
         lines = plot.add_glyph(self.lines, MultiLine(line_color="colour", line_dash="dash", line_width="width"))
         ends = {"x0": "x", "x1": "x", "y0": "low", "y1": "high"}
         plot.add_glyph(self.points, Segment(**ends, line_color="colour", line_alpha=0.6))
@@ -143,6 +164,15 @@ class ChartView:
             plot.add_layout(Span(location=frame.level[0], dimension="width", **style))
         return plot
 
+    def _draw_tiles(self, plot: figure) -> None:
+        image = Image(image="image", x="x", y="y", dw="side", dh="side", color_mapper=self._tile_colours)
+        plot.add_tools(chart_hover(self.frame.text, [plot.add_glyph(self.tiles, image)]))
+        font = {"text_font_size": "11px", "text_line_height": 1.1, "text_baseline": "bottom", "text_color": theme_line("text")}
+        plot.add_glyph(self.tiles, Text(x="x", y="top", text="text", **font))
+        plot.outline_line_color = None
+        for axis in (*plot.below, *plot.left):
+            axis.visible = False
+
     def _name_axes(self) -> None:
         if self.plot is not None:
             self.plot.below[0].axis_label, self.plot.left[0].axis_label = self._labels
@@ -163,6 +193,11 @@ def _dot_columns(series: Sequence[Series]) -> dict[str, Any]:
     # Numbers of 32 bits are as precise as a pixel, and half as long in a message.
     x, y = (np.concatenate([np.zeros(0), *(getattr(one, axis) for one in dots)]).astype(np.float32) for axis in "xy")
     return {"x": x, "y": y, "colour": np.repeat([one.colour for one in dots], [one.x.size for one in dots]).tolist()}
+
+
+def _tile_columns(tiles: Sequence[Tile]) -> dict[str, list[Any]]:
+    columns = [(tile.codes, tile.left, tile.bottom, tile.side, tile.bottom + tile.side, tile.text) for tile in tiles]
+    return {name: [column[k] for column in columns] for k, name in enumerate(_TILE_COLUMNS)}
 
 
 def _point_columns(series: Sequence[Series]) -> dict[str, Any]:

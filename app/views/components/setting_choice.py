@@ -21,7 +21,9 @@ def setting_choice(state: ViewState, setting: Setting) -> SegmentedControl:
                 state.param.update(settings={**state.settings, setting.name: value})
 
     # The first label also has the word of the setting.
-    (first_label, first_value), *other_options = ((name.capitalize(), value) for name, value in setting.choices.items())
+    (first_label, first_value), *other_options = (
+        (name.replace("_", " ").capitalize(), value) for name, value in setting.choices.items()
+    )
     labels = {f"{setting.word} {first_label}": first_value, **dict(other_options)}
     choice = SegmentedControl(label=setting.title, options=labels, margin=(6, 10))
     state.follow(lambda settings: choice.param.update(value=settings[setting.name]), "settings")

@@ -16,13 +16,13 @@ from PIL import Image, ImageColor
 from engine import CASES, Fate, Plane, classify_orbits
 from plots.layers.regularity import CODES
 from plots.pictures.palette import PAPER
-from reproduction.analyses.super_sticky import SuperStickySearch
 from reproduction.figures.all_figures import FIGURES
 from reproduction.figures.sticky_figures import LONGEST_DRAWN, find_displayed_orbit
 from reproduction.map_cache import MapCache
 from reproduction.paper_ranges import curve_energies, nine_energies, plane_energies
 from reproduction.quality import FULL, QUICK, Quality
 from reproduction.sample_orbits import SHOWN_CROSSINGS, find_sample_starts
+from reproduction.super_sticky import SuperStickySearch
 
 TINY = Quality(
     "tiny", resolution=15, t_max=300.0, curve_points=7, search_resolution=9,
@@ -38,7 +38,7 @@ DRAWN = {
     "crossings-xpx": ("III", 9, [0] * 9, {"$x$"}, {r"$\dot{x}$"}),
     "percentages": ("III", 0, [5, 5], {"$h$"}, {"percentage of starts"}),
     "xh": ("II", 1, [0], {"$x$"}, {"$h$"}),
-    "statistics": ("I", 0, [3, 3, 9, 9], {"$h$", "$n$"}, {"$N_e/N_0$", "$N_{de}/N_0$", r"$\log_{10}(dN_n/N_0)$", "$p_n$"}),
+    "statistics": ("I", 0, [3, 3, 9, 9], {"$h$", "$n$"}, {"$N_e/N_0$", "$N_{de}/N_0$", "$dN_n/N_0$", "$p_n$"}),
     "survival": ("II", 0, [1, 1, 1], {"$t$"}, {"$S(t)$"}),
 }
 FAMILIES = tuple(DRAWN)

@@ -18,12 +18,12 @@ from engine import (
     compute_regularity,
     compute_uncertainty_exponent,
 )
-from reproduction.analyses.super_sticky import SuperStickySearch
 from reproduction.map_cache import MapCache
 from reproduction.numbers.comparisons import Comparison, compare_all
 from reproduction.numbers.stated_numbers import Counting, Quantity, Relation, StatedNumber
 from reproduction.numbers.unknown_windows import fit_window
 from reproduction.quality import Quality
+from reproduction.super_sticky import SuperStickySearch
 
 SMALL = Quality(
     "small", resolution=22, t_max=300.0, curve_points=7, search_resolution=9,

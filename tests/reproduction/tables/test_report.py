@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 
 from engine import CASES, MapSpec, Plane
-from reproduction.analyses.super_sticky import SuperStickySearch
 from reproduction.map_cache import MapCache
 from reproduction.notation import write_rows
 from reproduction.numbers.comparisons import Comparison, compare_all
 from reproduction.numbers.stated_numbers import Counting, Quantity, Relation, StatedNumber
 from reproduction.paper_ranges import nine_energies
 from reproduction.quality import Quality
+from reproduction.super_sticky import SuperStickySearch
 from reproduction.tables.late_sections import write_late_escapes
 from reproduction.tables.report import describe_verdict, write_report, write_table
 

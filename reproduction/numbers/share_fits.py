@@ -10,7 +10,7 @@ import numpy as np
 from scipy import optimize, special
 
 from engine.results import Sweep
-from reproduction.analyses.published_fits import PAPER_FITS, HyperbolicTangent, Polynomial, ShareCurve
+from engine.systems.catalogue.published_fits import PAPER_FITS, HyperbolicTangent, Polynomial, ShareCurve
 
 # Confidence level of the intervals.
 _CONFIDENCE = 0.95

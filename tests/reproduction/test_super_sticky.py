@@ -13,7 +13,7 @@ import pytest
 from engine import CASES, EscapeMap, MapSpec, Plane, Regularity, classify_orbits, compute_map, compute_regularity
 from engine.foundations.execution import Execution
 from engine.results import RegularityMap
-from reproduction.analyses.super_sticky import SuperStickySearch, find_super_sticky_orbits
+from reproduction.super_sticky import SuperStickySearch, find_super_sticky_orbits
 
 LONG = 2e4
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from reproduction.analyses.published_fits import PAPER_FITS
+from engine.systems.catalogue.published_fits import PAPER_FITS
 
 
 # ½[1 + tanh u] = 1 / (1 + exp(−2u)).

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.stats import binom
 
-from reproduction.analyses.published_fits import HyperbolicTangent, Polynomial
-from reproduction.analyses.share_fits import ShareFit, fit_direct_shares, fit_escape_shares, measure_deviation
+from engine.systems.catalogue.published_fits import HyperbolicTangent, Polynomial
+from reproduction.numbers.share_fits import ShareFit, fit_direct_shares, fit_escape_shares, measure_deviation
 
 ENERGIES = np.linspace(0.26, 0.6, 25)
 TANGENT = HyperbolicTangent(15.85, 4.93)

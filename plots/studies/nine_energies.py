@@ -1,0 +1,156 @@
+"""The study of the maps at nine energies: small pictures of the basins, with a measure of each, and their escapes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from engine import MEASURES, Plane, Section, SweepSpec, compute_statistics, compute_sweep
+from engine.foundations.wording import format_number
+from engine.jobs.job import Job
+from engine.measures.table import QUICK_CURVES
+from engine.results import Sweep
+from engine.sweeps.sweep_job import sweep_job
+from engine.systems.catalogue.published_fits import PAPER_FITS, PaperFits
+from plots.pictures.charts import Chart, Frame, Tile
+from plots.pictures.image_columns import fate_codes
+from plots.pictures.palette import Palette
+from plots.pictures.setting import Setting, Settings
+from plots.studies.against import sweep_caption, sweep_progress
+from plots.studies.axes import ENERGY, changes_at, spaced_values, swept_slice
+from plots.studies.escape_charts import ESCAPES, ESCAPES_BY_CROSSINGS, PROBABILITIES_BY_ENERGY, crossing_charts, escapes_chart
+from plots.studies.study import Changes, Click, Study, Subject
+
+ENERGIES = 9
+"""Number of maps."""
+
+# Number of pictures in a row.
+_COLUMNS = 3
+# Distance between the left edges of neighbouring pictures of side 1, and between their lower edges. Two lines of text are above
+# each picture.
+_STEPS = 1.08, 1.36
+# Columns and rows of each map.
+_RESOLUTION = (150, 150)
+# Digits of the numbers above the maps.
+_DIGITS = 3
+
+TILES = Frame(
+    "plates",
+    "Basins at nine energies",
+    ("", ""),
+    "The basins of escape at nine energies, in the same window of the plane, and a measure of each map. In the cases of Zotos "
+    "(2014) the energies are those of the maps of the paper. Click a map to open it.",
+    text="Click to open the map of @text",
+    aspect=0.76,
+    has_tiles=True,
+)
+
+BESIDE = Setting(
+    name="beside",
+    title="Measure of each map",
+    word="With",
+    choices={name: name for name in QUICK_CURVES},
+    default="basin_entropy",
+    help="Measure that is written above each map.",
+)
+"""The measure whose number is written above each map; of the shares, that of the bounded starts."""
+
+
+def _job(subject: Subject, axis: str) -> Job[Sweep]:
+    spec = SweepSpec(
+        subject.potential,
+        swept_slice(subject),
+        _energies(subject),
+        _RESOLUTION,
+        t_max=subject.t_max,
+        measures=("maps", *QUICK_CURVES),
+        section=subject.section,
+    )
+    return sweep_job(spec)
+
+
+def _energies(subject: Subject) -> tuple[float, ...]:
+    """Return the energies that the system's range marks if they are nine, otherwise evenly spaced energies."""
+    marked = subject.energies.marked
+    return marked if len(marked) == ENERGIES else spaced_values(subject, ENERGY, ENERGIES)
+
+
+def nine_energies_charts(found: Sweep, palette: Palette, settings: Settings) -> list[Chart]:
+    """Return the maps of a sweep over nine energies as tiles, and the charts of their escapes; empty before the first map."""
+    if not found.values.size:
+        return []
+    by_energy = {float(h): compute_statistics(found.dataset.isel(h=k)) for k, h in enumerate(found.values)}
+    return [_tiles_chart(found, palette, settings), escapes_chart(by_energy, _fits(found)), *crossing_charts(by_energy)]
+
+
+def _tiles_chart(found: Sweep, palette: Palette, settings: Settings) -> Chart:
+    measure = BESIDE.value_in(settings)
+    tiles = [
+        Tile(fate_codes(fate, found.outcomes), left, bottom, f"h = {h:g}\n{_measure_text(found, k, measure)}")
+        for k, (fate, h, (left, bottom)) in enumerate(zip(found["fate"], found.values, _corners(found), strict=True))
+    ]
+    right, top = (_COLUMNS - 1) * _STEPS[0] + 1.0, _STEPS[1]
+    return Chart(TILES, [], ((0.0, right), (top - _COLUMNS * top, top)), tiles, palette.fate_colours)
+
+
+def _corners(found: Sweep) -> list[tuple[float, float]]:
+    """Return the lower left corner of each map, which depends on the place of its energy among the requested ones."""
+    numbers = [found.dataset.attrs["requested"].index(h) for h in found.values.tolist()]
+    return [(number % _COLUMNS * _STEPS[0], -(number // _COLUMNS) * _STEPS[1]) for number in numbers]
+
+
+def _measure_text(found: Sweep, k: int, measure: str) -> str:
+    """Return what is written of the map of an index, below its energy; empty for a measure without a number there."""
+    if measure == "shares":
+        return f"{format_number(100.0 * found['share'][k, 0], _DIGITS)} % stay"
+    name, label = next(iter(MEASURES[measure].labels.items()))
+    value = float(found[name][k])
+    return f"{label} {format_number(value, _DIGITS)}" if np.isfinite(value) else ""
+
+
+def _fits(found: Sweep) -> PaperFits | None:
+    """Return the fits published for the starts of a sweep; None if there are none."""
+    request = found.dataset.attrs
+    is_of_paper = request["axes"] == Plane.X_PX.key and request["section"] == Section.Y_UP.text
+    return PAPER_FITS.get(request["potential"]) if is_of_paper else None
+
+
+def _changes(subject: Subject, axis: str, found: Sweep, click: Click) -> Changes:
+    """Return the changes that open the map of a click, or of an energy on the axis of energies; none for another click."""
+    if click.chart == ESCAPES.name:
+        return changes_at(subject, ENERGY, found.values, click.x)
+    if click.chart != TILES.name:
+        return {}
+    for h, (left, bottom) in zip(found.values.tolist(), _corners(found), strict=True):
+        if left <= click.x <= left + 1.0 and bottom <= click.y <= bottom + 1.0:
+            return {"energy": h, "plane": swept_slice(subject)}
+    return {}
+
+
+def _sentence(found: Sweep) -> str:
+    """Describe how many maps there are, and their common window."""
+    request = found.dataset.attrs
+    x_low, x_high, low, high = (format_number(edge, 4) for edge in request["window"])
+    maps = f"maps on {request['plane']}, {x_low} to {x_high} × {low} to {high}"
+    if found.complete:
+        return f"{found.values.size} {maps}. Click a map to open it."
+    return f"{found.values.size} of {request['count']} {maps}"
+
+
+NINE_ENERGIES = Study(
+    name="nine_energies",
+    title="Nine maps",
+    button="Compute nine maps",
+    hint=f"Small maps at {ENERGIES} energies, and how many starts escape, directly and after each number of crossings: a minute.",
+    job=_job,
+    function=compute_sweep,
+    progress=sweep_progress,
+    sentence=_sentence,
+    frames=(TILES, ESCAPES, ESCAPES_BY_CROSSINGS, PROBABILITIES_BY_ENERGY),
+    charts=nine_energies_charts,
+    changes=_changes,
+    files="nine_energies",
+    figure="Maps at nine energies",
+    caption=sweep_caption,
+    settings=(BESIDE,),
+)
+"""The maps of the paper as small multiples."""
