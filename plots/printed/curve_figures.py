@@ -30,6 +30,10 @@ _SQUARE = 1.02
 _LINES = {Shape.DASHED: (0, (4.0, 3.0)), **dict.fromkeys(ONLY_POINTS, "")}
 # Markers of shapes with points.
 _MARKERS = {Shape.JOINED_POINTS: "o", **dict.fromkeys(ONLY_POINTS, "o"), Shape.CROSSES: "x"}
+# Size of the texts of tiles, of which two lines fit between two rows.
+_TILE_TEXT = 6.0
+# Largest number of entries of a legend with one column; longer ones have several.
+_MOST_ENTRIES, _LEGEND_COLUMNS = 6, 3
 # Width of lines, and diameter of points, in points of typography.
 _WIDTHS, _WIDTH = {Shape.THICK: 3.0}, 1.5
 _SIZES, _SIZE = {Shape.DOTS: 0.9, Shape.RINGS: 4.5, Shape.CROSSES: 4.0}, 2.5
@@ -84,8 +88,9 @@ def draw_chart(axes: Axes, chart: Chart, style: FigureStyle = SCREEN, corner: Co
         axes.set_aspect("equal")
         return
     style_axes(axes, style, grid=True, labels=frame.labels)
-    if corner is not None and len(chart.legend()) > 1:
-        add_panel_legend(axes, corner, style)
+    entry_count = len(chart.legend())
+    if corner is not None and entry_count > 1:
+        add_panel_legend(axes, corner, style, columns=1 if entry_count <= _MOST_ENTRIES else _LEGEND_COLUMNS)
 
 
 def draw_series(axes: Axes, chart: Chart) -> list[Artist]:
@@ -104,16 +109,15 @@ def _draw_tile(axes: Axes, tile: Tile, colours: Sequence[str]) -> list[Artist]:
         rgba(colours)[tile.codes], extent=(left, left + tile.side, bottom, top), origin="lower", interpolation="nearest",
         aspect="auto",
     )  # fmt: skip
-    return [image, axes.text(left, top, tile.text, fontsize="small", verticalalignment="bottom")]
+    text = axes.text(left, top, _typeset(tile.text), fontsize=_TILE_TEXT, verticalalignment="bottom", linespacing=1.0)
+    return [image, text]
 
 
 def _draw_one(axes: Axes, series: Series) -> list[Artist]:
     if series.shape is Shape.BARS:
         left, right = series.bars or (series.x, series.x)
         return [*axes.bar(left, series.y, right - left, align="edge", color=series.colour)]
-    # Matplotlib typesets a subscript such as S_b between dollar signs.
-    label = re.sub(r"_(\w+)", r"$_{\1}$", series.label)
-    shape = series.shape
+    label, shape = _typeset(series.label), series.shape
     artists: list[Artist] = [*axes.plot(
         *series.curve, color=series.colour, linewidth=_WIDTHS.get(shape, _WIDTH), linestyle=_LINES.get(shape, "-"),
         marker=_MARKERS.get(shape, ""), markersize=_SIZES.get(shape, _SIZE), label=label,
@@ -122,3 +126,8 @@ def _draw_one(axes: Axes, series: Series) -> list[Artist]:
     if series.bars is not None:
         artists.append(axes.vlines(series.x, *series.bars, color=series.colour, alpha=0.6, linewidth=1.0))
     return artists
+
+
+def _typeset(text: str) -> str:
+    """Return a text in which Matplotlib typesets a subscript, such as that of S_b, which stands between dollar signs."""
+    return re.sub(r"_(\w+)", r"$_{\1}$", text)
