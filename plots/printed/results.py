@@ -41,6 +41,8 @@ _COMMON_OPTIONS = ("palette", "legend", "colorbar")
 _FIXED_PARAMETERS = 2
 # Labels of the axes in which each artist was drawn.
 _LABELS: WeakKeyDictionary[Artist, tuple[str, str]] = WeakKeyDictionary()
+# Limits that the results in axes gave to each axis, "x" or "y". If the caller sets others, those are kept.
+_FITTED: WeakKeyDictionary[Axes, dict[str, Limits]] = WeakKeyDictionary()
 
 
 def plot_result(
@@ -94,6 +96,7 @@ def _draw(view: View, axes: Axes, *, legend: bool, colorbar: bool) -> Drawing:
     # Matplotlib fits free limits to each artist, so they are set last. Those of a plane stay.
     for axis, axis_limits in limits.items():
         getattr(axes, f"set_{axis}lim")(axis_limits, auto=not view.is_plane)
+        _FITTED.setdefault(axes, {})[axis] = getattr(axes, f"get_{axis}lim")()
     _LABELS.update(dict.fromkeys(artists, view.labels))
     images = [artist for artist in artists if isinstance(artist, AxesImage | QuadMesh)]
     image = images[-1] if images else None
@@ -113,14 +116,26 @@ def _prepare(view: View, axes: Axes, *, is_first: bool) -> None:
 
 
 def _free_limits(view: View, axes: Axes, *, is_first: bool) -> dict[str, Limits]:
-    """Return the limits of the axes that nobody has set. Those of a chart contain those of earlier charts."""
-    free = {
-        axis: limits for axis, limits in zip("xy", view.limits or (), strict=False) if getattr(axes, f"get_autoscale{axis}_on")()
-    }
-    if is_first or view.is_plane:
-        return free
-    earlier = {axis: getattr(axes, f"get_{axis}lim")() for axis in free}
-    return {axis: (min(low, earlier[axis][0]), max(high, earlier[axis][1])) for axis, (low, high) in free.items()}
+    """Return the limits of the axes that nobody has set.
+
+    They contain those of earlier charts in these axes, and of the first results in axes that share them.
+    """
+    limits = {}
+    for axis, (low, high) in zip("xy", view.limits or (), strict=False):
+        earlier = getattr(axes, f"get_{axis}lim")()
+        is_free = getattr(axes, f"get_autoscale{axis}_on")()
+        is_joined = _is_fitted(axes, axis, earlier) if is_first else is_free and not view.is_plane
+        if is_joined:
+            limits[axis] = min(low, earlier[0]), max(high, earlier[1])
+        elif is_free:
+            limits[axis] = low, high
+    return limits
+
+
+def _is_fitted(axes: Axes, axis: str, limits: Limits) -> bool:
+    """Return whether the limits of an axis are those of results in axes that share it."""
+    shared = getattr(axes, f"get_shared_{axis}_axes")().get_siblings(axes)
+    return any(_FITTED.get(other, {}).get(axis) == limits for other in shared)
 
 
 def _add_legend(view: View, axes: Axes, artists: list[Artist]) -> Legend | None:

@@ -125,6 +125,27 @@ def test_the_first_result_sets_labels_and_limits_that_are_missing() -> None:
     assert alone("orbit").get_aspect() == 1.0
 
 
+@pytest.mark.parametrize("sharey", [True, "row", False])
+def test_panels_that_share_an_axis_show_the_largest_map(*, sharey: bool | str) -> None:
+    panels = Figure().subplots(1, 3, sharey=sharey)
+    windows = []
+    for axes, energy in zip(panels, (0.13, 0.3, 0.2), strict=True):
+        spec = MapSpec(POTENTIAL, Plane.X_PX, energy, (8, 8), t_max=10.0)
+        compute_map(spec).plot(axes)
+        windows.append(spec.find_window().ranges[1])
+    largest = min(low for low, _ in windows), max(high for _, high in windows)
+    for axes, own in zip(panels, windows, strict=True):
+        assert axes.get_ylim() == pytest.approx(largest if sharey else own)
+
+
+def test_limits_that_the_caller_sets_on_shared_axes_stay() -> None:
+    left, right = Figure().subplots(1, 2, sharey=True)
+    result_of("map").plot(left)
+    left.set_ylim(-0.1, 0.2)
+    result_of("map").plot(right)
+    assert right.get_ylim() == (-0.1, 0.2)
+
+
 def test_charts_in_the_same_axes_are_seen_whole() -> None:
     axes = new_axes()
     for energies in ((0.2, 0.25), (0.25, 0.3)):
