@@ -34,8 +34,8 @@ _LOADED = "module => performance.getEntriesByType('resource').some(entry => entr
 
 def test_the_player_is_loaded_on_request_and_the_well_drains(open_explorer: OpenExplorer) -> None:
     explorer = open_explorer(link=f"{QUICK}&watch=well,1000,1,-2")
-    # The engine in the browser is loaded after the first map.
-    explorer.page.wait_for_function(_LOADED, arg="main.js")
+    # The engine in the browser starts after the first map.
+    explorer.page.wait_for_function(_LOADED, arg="worker.js")
     assert not explorer.page.evaluate(_LOADED, "watch.js")
     explorer.pick("Watch")
     expect(explorer.page.get_by_role("button", name="Watch them leave")).to_be_enabled()

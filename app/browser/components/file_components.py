@@ -7,13 +7,13 @@ from pathlib import Path
 from typing import Any
 
 import param
-from panel.custom import JSComponent
 
+from app.browser.components.plain_component import PlainComponent
 from plots.browser.javascript import component_code
 
 
 # In the browser, Bokeh does not register classes whose name starts with an underscore.
-class FileSaver(JSComponent):
+class FileSaver(PlainComponent):
     """Sends files to the browser, which saves them in its download folder. The component has no size, but must be on the page."""
 
     _esm = component_code(Path(__file__).with_name("file_saver.js"))
@@ -26,7 +26,7 @@ class FileSaver(JSComponent):
         self._send_msg({"name": name, "content": content})
 
 
-class ImageCopier(JSComponent):
+class ImageCopier(PlainComponent):
     """A button that copies an image to the clipboard, which browsers allow only during the click.
 
     Parameters

@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import Any
 
 import param
-from panel.custom import JSComponent
 
+from app.browser.components.plain_component import PlainComponent
 from plots.browser.javascript import component_code
 
 
-class OrbitList(JSComponent):
+class OrbitList(PlainComponent):
     """Radio buttons in a line, in the colours of the orbits. The CSS variables --orbit-1, --orbit-2, … define these colours.
 
     Bokeh's radio buttons fail if the choice changes while their view is being built, for example when a click opens the tab.
@@ -42,7 +42,7 @@ class OrbitList(JSComponent):
                 self._on_choose(index)
 
 
-class OrbitPlayer(JSComponent):
+class OrbitPlayer(PlainComponent):
     """A button to play and pause, and a slider. Both change the time in steps, and the browser sends each step.
 
     Parameters

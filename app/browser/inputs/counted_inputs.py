@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import param
-from panel.custom import JSComponent
 
+from app.browser.components.plain_component import PlainComponent
 from plots.browser.javascript import component_code
 
 LONGEST_TYPED = 4000
@@ -22,7 +22,7 @@ def _code(name: str) -> str:
     return component_code(Path(__file__).with_name(f"{name}.js"))
 
 
-class CountedInput(JSComponent):
+class CountedInput(PlainComponent):
     """An input whose browser part uses `CountedValue` in counted_value.js.
 
     Bokeh's widgets would show each value from the server at once, even over a value that is being typed. While an earlier action
@@ -97,7 +97,7 @@ class NumberBox(CountedInput):
         return _finite_number(value)
 
 
-class EnergyBox(JSComponent):
+class EnergyBox(PlainComponent):
     """A box for the energy of the page's store."""
 
     label = param.String(default="Exact h", doc="text beside the box")
@@ -107,7 +107,7 @@ class EnergyBox(JSComponent):
     _esm = _code("number_box")
 
 
-class EnergySlider(JSComponent):
+class EnergySlider(PlainComponent):
     """A slider for the energy of the page's store. For an energy beyond an end of the slider, the thumb is at that end.
 
     The engine in the browser paints the shares of the outcomes at all energies of the slider behind the thumb.
@@ -149,7 +149,7 @@ class SliderParameter(NamedTuple):
     highest: float
 
 
-class ParameterSliders(JSComponent):
+class ParameterSliders(PlainComponent):
     """Sliders of parameters, each with a box for its number.
 
     A number is final when the slider is released, when the slider or the box loses focus, or when Enter is pressed in the box.

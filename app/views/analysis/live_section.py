@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 import param
-from panel.custom import JSComponent
 
+from app.browser.components.plain_component import PlainComponent
 from app.browser.module_files import LIVE_SECTION_ADDRESS
 from app.job_clients.latest_request import Locked
 from app.job_clients.shown_results import ShownResults
@@ -22,7 +22,7 @@ from plots.studies.section import CELLS, COLOURS, DENSITIES, RETURNS, SECTION_ST
 from plots.studies.study import Changes
 
 
-class LiveSection(JSComponent):
+class LiveSection(PlainComponent):
     """The module on the page, with the slice of the starts, and energy and window of the chart that the server has sent.
 
     The browser sends {state, energy} of the point that is clicked.

@@ -10,8 +10,8 @@ import numpy as np
 import panel as pn
 import param
 from bokeh.models import Range1d
-from panel.custom import JSComponent
 
+from app.browser.components.plain_component import PlainComponent
 from app.job_clients.latest_request import Locked
 from app.state.view_state import ViewState
 from engine import MapSpec, Window
@@ -19,7 +19,7 @@ from engine.maps.spec import finest_pixel
 from plots.browser.browser_system import WINDOW_EDGES, window_in_browser
 
 
-class ViewStore(JSComponent):
+class ViewStore(PlainComponent):
     """A component whose values all parts of the page in the browser share, see modules/view_store.js. `BrowserEngine` extends it.
 
     Both values are counted as those of `CountedInput`. The server also counts each window that is chosen elsewhere than in the

@@ -7,8 +7,8 @@ from dataclasses import asdict, astuple, replace
 from typing import Any
 
 import param
-from panel.custom import JSComponent
 
+from app.browser.components.plain_component import PlainComponent
 from app.browser.module_files import WATCH_ADDRESS
 from app.job_clients.latest_request import LatestRequest, Locked
 from app.job_clients.shown_results import ShownResults
@@ -50,7 +50,7 @@ td::before { content: ""; position: absolute; left: 0; top: 0.3em; width: 0.7em;
 """
 
 
-class EnsemblePlayer(JSComponent):
+class EnsemblePlayer(PlainComponent):
     """Controls, counters and a chart. The browser sends {where, count, seed, radius} for each choice of starts.
 
     Parameters

@@ -10,8 +10,8 @@ from types import MappingProxyType
 from typing import Any
 
 import param
-from panel.custom import JSComponent
 
+from app.browser.components.plain_component import PlainComponent
 from app.browser.module_files import TOUR_ADDRESS
 from app.job_clients.latest_request import Locked
 from app.state.navigation import WINDOW_MOVES
@@ -43,7 +43,7 @@ KEYS: Mapping[str, str] = MappingProxyType(
 _KEY_LABELS = {"ArrowLeft": "←", "ArrowRight": "→", "ArrowUp": "↑", "ArrowDown": "↓", "-": "−", "Escape": "Esc"}
 
 
-class BrowserEvents(JSComponent):
+class BrowserEvents(PlainComponent):
     """An invisible component that passes browser events to the view state or to callbacks, and sends commands to the browser.
 
     The browser sends {key}, {link, entry, steps}, {touch}, {narrow}, {enlarge} or {copied}. It receives

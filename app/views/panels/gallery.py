@@ -8,8 +8,8 @@ from typing import Any
 
 import panel as pn
 import param
-from panel.custom import JSComponent
 
+from app.browser.components.plain_component import PlainComponent
 from app.state.tour import TOUR_LINE, TOUR_TITLE
 from app.state.view_state import ViewState
 from plots.layers.table import TITLES
@@ -79,7 +79,7 @@ _TOUR_CARD = {
 
 
 # In the browser, Bokeh does not register classes whose name starts with an underscore.
-class GalleryCards(JSComponent):
+class GalleryCards(PlainComponent):
     """Shows cards in the browser, and sends the key of the chosen card."""
 
     cards = param.List(default=[], doc="data of each card, see `_card`")
