@@ -280,8 +280,9 @@ class MapsView:
         layers = [LAYERS[name] for name in LAYERS if name in self._computing]
         if any(layer.picture is not None and layer.picture.name == picture for layer in layers):
             return "computing …"
-        titles = [layer.title.lower() for layer in layers if layer.over_picture(picture) is not None]
-        return f"computing {', '.join(titles)} …" if titles else ""
+        # The titles of layers are too long for the line of a title.
+        names = [layer.name for layer in layers if layer.over_picture(picture) is not None]
+        return f"{', '.join(names)} …" if names else ""
 
     def _build(self, name: str) -> None:
         """Make a picture with its title and help text."""

@@ -27,8 +27,9 @@ _OTHERS = {1: ("two", "half"), 2: ("two", "half"), 3: ("three", "third"), 4: ("f
 # The same for more pictures, which have no legends.
 _MORE = ("many", "compact")
 _ARRANGEMENTS = {"enlarged", _MORE[0], *(arrangement for arrangement, _ in _OTHERS.values())}
-# Kinds of pictures with whole titles.
-_WITH_TITLE = ("picked", "equal", "half")
+# Number of characters above the frame, of the title and of what is being computed, by the kind of the picture. Pictures of other
+# kinds have short titles.
+_ROOM_FOR_TITLE = {"picked": 60, "equal": 60, "half": 22}
 
 
 class PictureGrid:
@@ -137,7 +138,7 @@ class PictureGrid:
 
     def _write_title(self, name: str) -> None:
         if name in self._kinds and name in self._texts:
-            self._texts[name].write_above(self._panes[name].object, short=self._kinds[name] not in _WITH_TITLE)
+            self._texts[name].write_above(self._panes[name].object, room=_ROOM_FOR_TITLE.get(self._kinds[name], 0))
 
     def _write_strips(self) -> None:
         kinds = {name: kind for name, kind in self._kinds.items() if name in self._texts}

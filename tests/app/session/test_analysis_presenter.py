@@ -139,7 +139,7 @@ def test_a_picture_says_that_its_layer_is_being_computed_until_it_is(begin: Call
     with session.changed:
         session.show(frame)
         # Only the two large pictures have room for the names of layers.
-        assert notes() == ["…", "computing pixels to trust …", ""]
+        assert notes() == ["…", "trust …", ""]
     session.wait_for(lambda: {*session.analyses} == {"origins", "trust"})
     assert notes() == ["", "", ""]
 

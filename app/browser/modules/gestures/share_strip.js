@@ -9,6 +9,9 @@ import {Shares} from "../../../../plots/browser/modules/workers/shares.js"
 /** Largest width of the column of an energy, in pixels of the page. */
 const WIDEST_COLUMN = 6
 
+/** Number of known energies from which columns are painted. Fewer would show the shares of one energy at all energies. */
+const FEWEST_COLUMNS = 5
+
 export class ShareStrip {
   /**
    * @param {import("../view_store.js").Rail} rail  of the slider
@@ -50,7 +53,7 @@ export class ShareStrip {
       this.#shares = newKey
         ? new Shares(
             place => this.#sceneAt(low + (high - low) * place),
-            place => this.#paint(place),
+            () => this.#paint(),
           )
         : null
       const time = isKnown ? RESTING_HORIZON * system.units.time : 0
@@ -69,22 +72,37 @@ export class ShareStrip {
   #resize() {
     const {clientWidth: width, clientHeight: height} = this.#canvas
     contextFor(this.#canvas, {width, height})?.clearRect(0, 0, width, height)
+    this.#paint()
     const shares = this.#shares
-    for (const place of shares?.counts.keys() ?? []) this.#paint(place)
     shares?.refine(this.#levels)
     this.#frames.setExtras(() => shares?.next() ?? null)
   }
 
-  /** Paint the column of an energy. @param {number} place */
-  #paint(place) {
-    const counts = this.#shares?.counts.get(place)
+  /** Paint the column of each known energy, which extends halfway to the next ones. */
+  #paint() {
     const context = this.#canvas.getContext("2d")
-    if (!counts || !context) return
-    // Columns that begin and end between two pixels of the screen would leave gaps.
-    const {width, height} = this.#canvas
-    const [left, right] = [-0.5, 0.5].map(side => Math.round((place + side / 2 ** this.#levels) * width))
-    const total = this.#stack.reduce((sum, [fate]) => sum + (counts.get(fate) ?? 0), 0)
+    const known = [...(this.#shares?.counts ?? [])].sort(([place], [other]) => place - other)
+    if (!context || known.length < FEWEST_COLUMNS) return
     context.setTransform(1, 0, 0, 1, 0, 0)
+    known.forEach(([place, counts], k) => {
+      const [left, right] = [known[k - 1]?.[0] ?? -place, known[k + 1]?.[0] ?? 2 - place].map(other => (place + other) / 2)
+      this.#paintColumn(context, left, right, counts)
+    })
+  }
+
+  /**
+   * Paint the stack of an energy between two places.
+   *
+   * @param {CanvasRenderingContext2D} context
+   * @param {number} from
+   * @param {number} to
+   * @param {import("../../../../plots/browser/modules/workers/shares.js").Counts} counts
+   */
+  #paintColumn(context, from, to, counts) {
+    const {width, height} = this.#canvas
+    // Columns that begin and end between two pixels of the screen would leave gaps.
+    const [left, right] = [Math.round(from * width), Math.round(to * width)]
+    const total = this.#stack.reduce((sum, [fate]) => sum + (counts.get(fate) ?? 0), 0)
     let sum = 0
     for (const [fate, colour] of this.#stack) {
       const top = Math.round((sum / total) * height)

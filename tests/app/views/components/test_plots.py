@@ -70,10 +70,10 @@ def test_another_title_is_written_into_the_same_model() -> None:
     plot = square_figure("basins", "Basins", "Help.")
     [title] = plot.elements
     texts = PictureTexts("Basins of another map", "Other", ("x", "px"), "channels 1 to 3")
-    texts.write_above(plot, short=False)
+    texts.write_above(plot, room=60)
     assert plot.elements == [title]
     assert "<h2>Basins of another map <" in title.html
-    texts.write_above(plot, short=True)
+    texts.write_above(plot, room=10)
     assert "<h2>Other <" in title.html
 
 
