@@ -84,7 +84,9 @@ class StatisticsView:
             f"<td class='quiet'>{format_share_range(*intervals[code])}</td></tr>"
             for name, colour, code in self._listed_fates(statistics)
         )
-        body += "".join(f"<tr><td>{name}</td><td>{value}</td></tr>" for name, value in escape_facts(statistics).items())
+        facts = escape_facts(statistics).items()
+        # The long names would widen the first column, so each extends over the second one.
+        body += "".join(f"<tr><td colspan=2>{name}</td><td>{value}</td></tr>" for name, value in facts)
         place = "the whole view" if self._state.box is None else "the box drawn on the maps"
         caption = f"Interior starts in {place}"
         head = "<tr><td></td><th scope=col>share</th><th scope=col>95 % interval</th></tr>"
