@@ -111,8 +111,8 @@ def file_choices(results: ShownResults, state: ViewState) -> dict[str, File]:
             make = partial(live_figure, LiveView(frame.spec, energies, live_starts, palette=state.colours), frame)
             choices[LIVE] = name(".html"), lambda: make().encode()
         choices[MAPS] = name(".nc"), partial(netcdf_bytes, frame, results.analyses)
-        study = results.calls.get(state.analysis)
-        choices[SCRIPT] = name(".py"), lambda: python_lines(frame.spec, system, states, study).encode()
+        script = partial(python_lines, frame.spec, system, states, results.calls.get(state.analysis))
+        choices[SCRIPT] = name(".py"), lambda: script().encode()
     orbits = [one.orbit for one in results.orbits if one.orbit is not None]
     if orbits:
         verdicts = [one.verdict for one in results.orbits if one.verdict is not None]
@@ -129,7 +129,7 @@ def _table_bytes(found: Result) -> bytes:
 
 
 def _table_label(study: Study[Any]) -> str:
-    return f"{study.files.capitalize()} (CSV)"
+    return f"{study.figure} (CSV)"
 
 
 def _file_name(results: ShownResults, state: ViewState, ending: str) -> str:

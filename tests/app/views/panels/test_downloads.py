@@ -89,15 +89,17 @@ def test_only_files_that_the_results_allow_can_be_saved(downloads_view: Download
     assert enabled() == {ORBITS, CROSSINGS}
     curves = compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.2, 0.3), (12, 12), t_max=10.0))
     results.param.update(orbits=(), studies={"energies": curves})
-    assert enabled() == {"Curves (CSV)"}
+    assert enabled() == {"Curves against energy (CSV)"}
 
 
 def test_the_script_contains_the_study_whose_tab_is_shown(results: ShownResults, escape_map: EscapeMap) -> None:
     results.calls = {"section": Job(compute_returns, (escape_map.spec,))}
+    results.studies = {"section": compute_returns(escape_map.spec, returns=2)}
     scripts = []
     for analysis in ("section", "energies", "orbit"):
         _, make = file_choices(results, ViewState(system=System("I"), energy=0.19, analysis=analysis))[SCRIPT]
         scripts.append(make().decode())
+        compile(scripts[-1], "script", "exec")
     assert ["study = compute_returns(" in script for script in scripts] == [True, False, False]
 
 
