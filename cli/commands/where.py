@@ -41,6 +41,7 @@ def run(
     energy: Annotated[float | None, typer.Option(help=ENERGY_HELP)] = None,
     tolerance: Annotated[float | None, DocumentedBy(find_where)] = None,
     most_maps: Annotated[int, DocumentedBy(find_where)] = 40,
+    last: Annotated[bool, DocumentedBy(find_where)] = False,
     plane: Slice,
     resolution: Annotated[tuple[int, int], DocumentedBy(SweepSpec)] = (112, 112),
     t_max: Annotated[float, DocumentedBy(SweepSpec)],
@@ -66,7 +67,13 @@ def run(
     with reserve_output(output):
         with place.run() as context:
             found = find_where(
-                spec, quantity, value, tolerance=tolerance, most_maps=most_maps, execution=context.start_stage("maps")
+                spec,
+                quantity,
+                value,
+                tolerance=tolerance,
+                most_maps=most_maps,
+                last=last,
+                execution=context.start_stage("maps"),
             )
         contents: dict[str, Content] = {"nc": dataset_bytes(found.to_xarray()), "csv": table_csv(found)} if paths else {}
         files = write_files({path: contents[ending] for ending, path in paths.items()})

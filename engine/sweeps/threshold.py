@@ -70,7 +70,7 @@ class Threshold(RecordedResult):
 
 
 @shows_progress("search")
-@checks_types(spec=SweepSpec, quantity=str, execution=Execution)
+@checks_types(spec=SweepSpec, quantity=str, last=bool, execution=Execution)
 def find_where(
     spec: SweepSpec,
     quantity: str,
@@ -78,14 +78,16 @@ def find_where(
     *,
     tolerance: float | None = None,
     most_maps: int = 40,
+    last: bool = False,
     execution: Execution = DEFAULT_EXECUTION,
 ) -> Threshold:
     """Find the energy, or the value of a parameter, at which a measure of the maps reaches a value.
 
-    Maps are computed at the values of the request. Between the first two neighbours whose measures are on opposite sides of the
-    wanted value, the interval is bisected. A map counts on a side only if the 95 % interval of its measure excludes the wanted
-    value; around maps that do not count, both parts are bisected. Thus the answer is not narrower than the statistical error of
-    the maps allows; a higher `SweepSpec.resolution` makes it narrower. Several crossings between two values are not detected.
+    Maps are computed at the values of the request. Between the first (or last) two neighbours whose measures are on opposite
+    sides of the wanted value, the interval is bisected. A map counts on a side only if the 95 % interval of its measure excludes
+    the wanted value; around maps that do not count, both parts are bisected. Thus the answer is not narrower than the statistical
+    error of the maps allows; a higher `SweepSpec.resolution` makes it narrower. Several crossings between two values are not
+    detected: a measure that rises and falls, such as the number of islands, needs more values in the request.
 
     Parameters
     ----------
@@ -99,6 +101,8 @@ def find_where(
         Width of the interval, above 0, at which the search ends; by default a thousandth of the range of the values.
     most_maps
         Largest number of maps, 2 to 1000.
+    last
+        Whether the last crossing is found, at the highest value; otherwise the first.
     execution
         How the computation runs.
 
@@ -131,11 +135,11 @@ def find_where(
     measure = _measure_of(spec, quantity)
     request = replace(spec, measures=(measure,), refine=0)
     points = _measure(request, None, quantity, execution.part(0, most))
-    while (middle := _next_value(points, wanted, width)) is not None and points.size < most:
+    while (middle := _next_value(points, wanted, width, last=last)) is not None and points.size < most:
         request = replace(request, values=(*points.values, middle))
         points = _measure(request, points.sweep, quantity, execution.part(points.size, most))
     execution.report(lambda: 1.0)
-    return _threshold(spec, quantity, wanted, points)
+    return _threshold(spec, quantity, wanted, points, last=last)
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,8 +160,8 @@ class _Points:
     def size(self) -> int:
         return self.measured.size
 
-    def bracket(self, wanted: float) -> tuple[int, int]:
-        """Return the indices of the first two maps on opposite sides of a value, with only undecided maps between them."""
+    def bracket(self, wanted: float, *, last: bool) -> tuple[int, int]:
+        """Return the indices of the first or last two maps on opposite sides of a value; maps between them are undecided."""
         sides = np.where(self.low > wanted, 1, np.where(self.high < wanted, -1, 0))
         decided = np.flatnonzero(sides)
         changes = np.flatnonzero(np.diff(sides[decided]))
@@ -167,7 +171,8 @@ class _Points:
                 f"value={wanted!r}: is not reached between two values of {self.sweep.name}, where the measure is {lowest:.4g} to "
                 f"{highest:.4g} with its 95 % intervals; must be between those of two maps"
             )
-        return int(decided[changes[0]]), int(decided[changes[0] + 1])
+        change = changes[-1 if last else 0]
+        return int(decided[change]), int(decided[change + 1])
 
 
 def _measure_of(spec: SweepSpec, quantity: str) -> str:
@@ -197,21 +202,21 @@ def _interval(columns: Mapping[str, np.ndarray], quantity: str) -> tuple[np.ndar
     return columns[quantity] - margin, columns[quantity] + margin
 
 
-def _next_value(points: _Points, wanted: float, width: float) -> float | None:
+def _next_value(points: _Points, wanted: float, width: float, *, last: bool) -> float | None:
     """Return the middle of the widest gap between the ends of the bracket and the maps that are not decided; None at the end."""
-    begin, end = points.bracket(wanted)
+    begin, end = points.bracket(wanted, last=last)
     values = points.values
     gaps = [(begin, begin + 1), (end - 1, end)]
-    first, last = max(gaps, key=lambda gap: values[gap[1]] - values[gap[0]])
-    if values[last] - values[first] <= width:
+    low, high = (values[index] for index in max(gaps, key=lambda gap: values[gap[1]] - values[gap[0]]))
+    if high - low <= width:
         return None
-    middle = 0.5 * (values[first] + values[last])
+    middle = 0.5 * (low + high)
     # Neighbouring floating-point numbers have no middle.
-    return middle if values[first] < middle < values[last] else None
+    return middle if low < middle < high else None
 
 
-def _threshold(spec: SweepSpec, quantity: str, wanted: float, points: _Points) -> Threshold:
-    begin, end = points.bracket(wanted)
+def _threshold(spec: SweepSpec, quantity: str, wanted: float, points: _Points, *, last: bool) -> Threshold:
+    begin, end = points.bracket(wanted, last=last)
     low, high = points.values[begin], points.values[end]
     share = (wanted - points.measured[begin]) / (points.measured[end] - points.measured[begin])
     columns, rows = spec.resolution

@@ -35,6 +35,15 @@ def test_a_parameter_is_found_at_an_energy_and_the_answer_is_a_sentence(run: Run
     assert find_where(spec, "share_bounded", 0.2).describe() in out
 
 
+def test_the_last_crossing_is_that_of_the_engine(run: Run) -> None:
+    islands = ("--quantity", "islands", "--value", 0.5, "--resolution", 101, "--t-max", 1000, "--tolerance", 0.01)
+    code, out, _ = run("where", "I", *islands, "--low", 0.24, "--high", 0.33, "--count", 5, "--last")
+    spec = SweepSpec(CASES["I"], Plane.X_PX, np.linspace(0.24, 0.33, 5), (101, 101), t_max=1e3)
+    assert code == 0
+    assert find_where(spec, "islands", 0.5, tolerance=0.01, last=True).describe() in out
+    assert find_where(spec, "islands", 0.5, tolerance=0.01).describe() not in out
+
+
 def test_a_value_that_is_not_reached_is_an_invalid_request(run: Run) -> None:
     code, _, err = run("where", "I", *SEARCH, "--low", 0.2, "--high", 0.3)
     assert code == 2

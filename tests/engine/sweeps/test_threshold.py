@@ -52,6 +52,14 @@ def test_a_letter_is_found_at_one_energy() -> None:
     assert 0.8 < found.low < found.high < 1.2
 
 
+def test_the_first_and_the_last_crossing_are_found() -> None:
+    # The island in the middle is gone at the resonance 1:3 near h = 0.262, and stands again from there to 0.31.
+    spec = replace(SPEC, values=(0.24, 0.262, 0.29, 0.33), resolution=(101, 101), t_max=1e3)
+    first, last = (find_where(spec, "islands", 0.5, tolerance=2e-3, last=last) for last in (False, True))
+    assert 0.24 < first.low < first.high <= 0.262
+    assert 0.29 <= last.low < last.high < 0.33
+
+
 def test_progress_ends_at_1() -> None:
     shares: list[float] = []
     find_where(SPEC, "share_bounded", 0.1, most_maps=4, execution=Execution(on_progress=shares.append))
