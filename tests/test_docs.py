@@ -133,7 +133,8 @@ def test_every_code_cell_of_the_tutorial_has_text_before_it() -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["README.md", "docs/api.md", "docs/slices.md", "docs/start.md", "docs/sweeps.md", *EXAMPLE_FILES]
+    "name",
+    ["README.md", "docs/api.md", "docs/slices.md", "docs/start.md", "docs/sweeps.md", "docs/thresholds.md", *EXAMPLE_FILES],
 )
 def test_document_for_users_recommends_public_names_only(name: str) -> None:
     assert not re.search(r"from engine\b", (ROOT / name).read_text(encoding="utf-8"))
