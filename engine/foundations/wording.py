@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import textwrap
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from enum import Enum, IntEnum
@@ -26,6 +27,11 @@ def format_count(count: int, singular: str, plural: str = "") -> str:
 def format_whole(value: float) -> str:
     """Return a number rounded to an integer, with spaces between groups of three digits, such as "100 000"."""
     return f"{round(value):,}".replace(",", " ")
+
+
+def format_duration(seconds: float) -> str:
+    """Return a duration as whole seconds, rounded up, or from two minutes on as whole minutes."""
+    return f"{math.ceil(seconds)} s" if seconds < 120.0 else f"{round(seconds / 60.0)} min"
 
 
 def format_time(t: float, digits: int = 6) -> str:

@@ -28,6 +28,8 @@ _COLUMNS = 3
 # Distance between the left edges of neighbouring pictures of side 1, and between their lower edges. Two lines of text are above
 # each picture.
 _STEPS = 1.08, 1.36
+# Margin beside and below the pictures.
+_MARGIN = 0.03
 # Columns and rows of each map.
 _RESOLUTION = (150, 150)
 # Digits of the numbers above the maps.
@@ -47,7 +49,7 @@ TILES = Frame(
 BESIDE = Setting(
     name="beside",
     title="Measure of each map",
-    word="With",
+    word="Number:",
     choices={name: name for name in QUICK_CURVES},
     default="basin_entropy",
     help="Measure that is written above each map.",
@@ -89,7 +91,7 @@ def _tiles_chart(found: Sweep, palette: Palette, settings: Settings) -> Chart:
         for k, (fate, h, (left, bottom)) in enumerate(zip(found["fate"], found.values, _corners(found), strict=True))
     ]
     right, top = (_COLUMNS - 1) * _STEPS[0] + 1.0, _STEPS[1]
-    return Chart(TILES, [], ((0.0, right), (top - _COLUMNS * top, top)), tiles, palette.fate_colours)
+    return Chart(TILES, [], ((-_MARGIN, right + _MARGIN), (top - _COLUMNS * top - _MARGIN, top)), tiles, palette.fate_colours)
 
 
 def _corners(found: Sweep) -> list[tuple[float, float]]:
@@ -102,9 +104,8 @@ def _measure_text(found: Sweep, k: int, measure: str) -> str:
     """Return what is written of the map of an index, below its energy; empty for a measure without a number there."""
     if measure == "shares":
         return f"{format_number(100.0 * found['share'][k, 0], _DIGITS)} % stay"
-    name, label = next(iter(MEASURES[measure].labels.items()))
-    value = float(found[name][k])
-    return f"{label} {format_number(value, _DIGITS)}" if np.isfinite(value) else ""
+    value = float(found[next(iter(MEASURES[measure].labels))][k])
+    return format_number(value, _DIGITS) if np.isfinite(value) else ""
 
 
 def _fits(found: Sweep) -> PaperFits | None:
@@ -122,7 +123,7 @@ def _changes(subject: Subject, axis: str, found: Sweep, click: Click) -> Changes
         return {}
     for h, (left, bottom) in zip(found.values.tolist(), _corners(found), strict=True):
         if left <= click.x <= left + 1.0 and bottom <= click.y <= bottom + 1.0:
-            return {"energy": h, "plane": swept_slice(subject)}
+            return {"energy": h, "plane": swept_slice(subject), "window": None}
     return {}
 
 

@@ -153,6 +153,18 @@ def test_the_orbit_under_the_cursor_is_drawn(explorer: ExplorerPage) -> None:
     expect(card).to_be_hidden()
 
 
+def test_the_orbit_of_a_resting_cursor_is_drawn_again_after_the_wheel(explorer: ExplorerPage) -> None:
+    explorer.start_engine()
+    explorer.hover("basins", 0.3, 0.1)
+    card = explorer.page.locator(".orbit-card")
+    expect(card).to_be_visible()
+    explorer.page.evaluate("document.addEventListener('pointermove', () => { window.moves = (window.moves ?? 0) + 1 }, true)")
+    explorer.page.mouse.wheel(0, -240)
+    expect(card).to_be_hidden()
+    expect(card).to_be_visible()
+    assert explorer.page.evaluate("moves") == 1
+
+
 def test_an_energy_typed_right_after_choosing_a_case_is_used_and_shown(explorer: ExplorerPage) -> None:
     explorer.pick("III")
     explorer.type_number("Exact h", "1.1")

@@ -71,6 +71,10 @@ def test_the_tour_goes_forward_and_back_beside_what_each_step_is_about(
         explorer.press(label)
     expect(tour(explorer, 1)).to_be_visible()
     expect(explorer.button("Back")).to_be_disabled()
+    for _ in range(1, last):
+        explorer.press("Next")
+    explorer.press("Done")
+    expect(explorer.page.locator(".tour")).to_have_count(0)
 
 
 def test_frames_surround_the_pictures_of_a_step_and_follow_them(explorer: ExplorerPage) -> None:

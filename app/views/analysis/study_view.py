@@ -20,7 +20,7 @@ from app.views.components.setting_choice import setting_choice
 from app.views.components.texts import TextPane, plain_symbol
 from app.views.components.widgets import FULL_HEIGHT, button, flex_row
 from engine import Result, System
-from engine.foundations.wording import format_whole
+from engine.foundations.wording import format_duration
 from engine.systems.parameters import symbol_of
 from plots.studies.axes import ENERGY, value_on
 from plots.studies.study import Click, Study
@@ -137,7 +137,7 @@ class StudyView:
         if self._study.is_complete(found):
             return sentence
         seconds = time.monotonic() - self._start_time
-        return f"{sentence} …{f' about {format_whole(seconds * (1.0 - share) / share)} s left' if share else ''}"
+        return f"{sentence} …{f' about {format_duration(seconds * (1.0 - share) / share)} left' if share else ''}"
 
     def say(self, sentence: str) -> None:
         """Show why there is no result."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Callable
 from functools import partial
@@ -15,7 +14,7 @@ from app.state.view_state import ViewState
 from app.views.components.texts import TextPane
 from app.views.components.widgets import button, keep_place
 from engine import EscapeMap, Evidence, Fate, MapSpec
-from engine.foundations.wording import format_number, format_share, format_whole
+from engine.foundations.wording import format_duration, format_number, format_share, format_whole
 from engine.slices.axes import highest_energy
 from plots.layers.table import LAYERS
 from plots.pictures.palette import Palette
@@ -104,7 +103,7 @@ class ProgressView:
         if frame.undecided >= undecided_at_begin:
             return ""
         seconds_left = (now - begin_time) * frame.undecided / (undecided_at_begin - frame.undecided)
-        return f", about {math.ceil(seconds_left)} s left"
+        return f", about {format_duration(seconds_left)} left"
 
     def _set(self, sentence: str, *, running: bool, button_label: str | None = None) -> None:
         """Show a sentence, the bar while the map is `running`, and the button if it has a label.

@@ -7,25 +7,30 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from engine import MapSpec, Plane, Window
+from engine import Fate, MapSpec, Plane, Window
 from plots.pictures.orbit_curves import OrbitCurves
 
 # Largest number of samples that are drawn. A longer path would fill the picture.
-_MOST_SAMPLES = 3000
+_MOST_SAMPLES = 5000
 # Largest number of points of the drawn line.
-_MOST_POINTS = 600
+_MOST_POINTS = 1000
 # Width and height of the picture, in pixels.
 _SIDE = 160
 
 
 def path_picture(curves: OrbitCurves, colour: str) -> str:
-    """Return HTML of the path in (x, y) in its well, with a dot at the start."""
-    x, y = (values[:_MOST_SAMPLES] for values in curves.path)
-    step = max(1, math.ceil(x.size / _MOST_POINTS))
-    path = _pixels(curves.window, x[::step], y[::step])
-    if not path:
+    """Return HTML of the path in (x, y) in its well, with a dot at the start.
+
+    Of a long path that leaves, the end is drawn; of other long paths, the beginning.
+    """
+    x, y = curves.path
+    if not x.size:
         return ""
-    start_x, start_y = path[0].split(",")
+    part = slice(-_MOST_SAMPLES, None) if curves.orbit.fate > Fate.BOUNDED else slice(_MOST_SAMPLES)
+    step = max(1, math.ceil(x[part].size / _MOST_POINTS))
+    path = _pixels(curves.window, x[part][::step], y[part][::step])
+    [start] = _pixels(curves.window, x[:1], y[:1])
+    start_x, start_y = start.split(",")
     walls = "".join(_line(_pixels(curves.window, *piece.T), "currentColor") for piece in _limiting_curve(curves))
     return (
         f"<svg class='path' viewBox='0 0 {_SIDE} {_SIDE}' width='{_SIDE}' height='{_SIDE}' aria-hidden='true'>"

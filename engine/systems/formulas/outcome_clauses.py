@@ -98,7 +98,10 @@ def split_clauses(text: str) -> Clauses:
         elif (exits_match := _EXITS.match(clause)) and not exits:
             exits = [name.strip() for name in exits_match["names"].split(",")]
         elif value := _VALUE.match(clause):
-            raise FormulaError(position, f"the value of {value['letter']} is a parameter of the formula and no part of it")
+            raise FormulaError(
+                position,
+                f"the value of {value['letter']} is no part of the formula: delete it, and set the parameter {value['letter']}",
+            )
         else:
             allowed = ", ".join(kind.syntax.format(kind.word) for kind in end_kinds())
             others = "one well (x, y), one masses (m, m), and once exits NAME, NAME"

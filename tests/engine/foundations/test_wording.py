@@ -7,12 +7,20 @@ import pytest
 from engine.foundations.wording import (
     format_count,
     format_decimals,
+    format_duration,
     format_number,
     format_share,
     format_share_range,
     format_time,
     format_whole,
 )
+
+
+@pytest.mark.parametrize(
+    ("seconds", "text"), [(0.2, "1 s"), (41.0, "41 s"), (119.5, "120 s"), (121.0, "2 min"), (1241.0, "21 min")]
+)
+def test_durations_are_whole_seconds_or_minutes(seconds: float, text: str) -> None:
+    assert format_duration(seconds) == text
 
 
 @pytest.mark.parametrize(("value", "text"), [(999.0, "999"), (1e3, "1 000"), (123456.7, "123 457"), (1e6, "1 000 000")])

@@ -72,7 +72,7 @@ def test_a_click_opens_the_map_under_it(found: Sweep, number: int) -> None:
     tile = NINE_ENERGIES.charts(found, PAPER, NO_SETTINGS)[0].tiles[number]
     about = subject("I")
     click = Click(TILES.name, tile.left + 0.9, tile.bottom + 0.1)
-    assert NINE_ENERGIES.changes(about, "", found, click) == {"energy": MARKED[number], "plane": Plane.X_PX}
+    assert NINE_ENERGIES.changes(about, "", found, click) == {"energy": MARKED[number], "plane": Plane.X_PX, "window": None}
     assert NINE_ENERGIES.changes(about, "", found, click._replace(y=tile.bottom - 0.1)) == {}
 
 

@@ -16,6 +16,8 @@ import {mapPictures, wellPicture} from "../painting/pictures.js"
 const LONGEST_TIME = 200
 /** Time for which a finger must rest to show orbits instead of moving the picture, in ms. */
 const PRESS_MS = 350
+/** Time after the last turn of a wheel in which the maps get their new places, in ms. */
+const WHEEL_REST_MS = 300
 /** Largest movement of a resting finger, in pixels. */
 const PRESS_PIXELS = 8
 /** Distance from a click within which the card stays hidden, in pixels. */
@@ -56,6 +58,7 @@ export class Card {
       document.addEventListener(name, event => this.#isShowing && event.preventDefault(), {capture: true, passive: false})
     }
     document.addEventListener("scroll", () => this.#hide(), {capture: true, passive: true})
+    document.addEventListener("wheel", event => this.#wheel(event), {capture: true, passive: true})
   }
 
   #startLine
@@ -73,6 +76,8 @@ export class Card {
   #isShowing = false
   /** Where the mouse was last pressed, until it moves away. @type {{x: number, y: number} | null} */
   #clickPoint = null
+  /** The next report of the place of a mouse that has turned its wheel. @type {ReturnType<typeof setTimeout> | undefined} */
+  #report = undefined
 
   /**
    * @param {import("../../../../plots/browser/modules/engine/system.js").System} system
@@ -108,8 +113,24 @@ export class Card {
     this.#isShowing = false
   }
 
+  /**
+   * Hide the card while the maps are enlarged under a resting mouse. Then report its place again, for the card and for the texts
+   * of Bokeh, which has another start under it.
+   *
+   * @param {WheelEvent} event
+   */
+  #wheel(event) {
+    this.#hide()
+    clearTimeout(this.#report)
+    const [target] = event.composedPath()
+    const {clientX, clientY} = event
+    const options = {bubbles: true, composed: true, pointerType: "mouse", clientX, clientY}
+    this.#report = setTimeout(() => target?.dispatchEvent(new PointerEvent("pointermove", options)), WHEEL_REST_MS)
+  }
+
   /** Show the orbit under the mouse, or under a finger that has rested. @param {PointerEvent} event */
   #move(event) {
+    clearTimeout(this.#report)
     if (event.pointerType === "touch") {
       const finger = this.#finger
       // Bokeh would move the picture.

@@ -79,7 +79,7 @@ class Tour {
     this.#text.ariaLive = "polite"
     this.#box.append(this.#title, this.#text, buttons)
     this.#back.onclick = () => this.#show(this.#index - 1)
-    this.#next.onclick = () => this.#show(this.#index + 1)
+    this.#next.onclick = () => (this.#isLast ? this.end() : this.#show(this.#index + 1))
     this.#close.onclick = () => this.end()
     document.addEventListener("keydown", this.#endAtEscape, true)
     document.body.append(this.#box)
@@ -104,6 +104,11 @@ class Tour {
   /** @type {HTMLElement[]} */
   #frames = []
 
+  /** Whether the step is the last one. */
+  get #isLast() {
+    return this.#index === this.#steps.length - 1
+  }
+
   /** @param {number} index of the step */
   #show(index) {
     const {title, text} = this.#steps[index]
@@ -112,10 +117,9 @@ class Tour {
     this.#text.textContent = text
     this.#count.textContent = `${index + 1} of ${this.#steps.length}`
     this.#back.disabled = index === 0
-    this.#next.disabled = index === this.#steps.length - 1
+    this.#next.textContent = this.#isLast ? "Done" : "Next"
     // A disabled button would lose the focus.
-    if (this.#next.disabled) this.#close.focus()
-    else if (this.#back.disabled) this.#next.focus()
+    if (this.#back.disabled) this.#next.focus()
     // All parts are at the top of the page.
     window.scrollTo(0, 0)
     this.#placed = ""

@@ -8,8 +8,24 @@ import numpy as np
 import pytest
 
 from app.views.orbits.path_picture import path_picture
-from engine import CASES, MapSpec, Plane, integrate_orbit
+from engine import CASES, Fate, MapSpec, Plane, integrate_orbit
 from plots.pictures.orbit_curves import compute_orbit_curves
+
+
+def test_the_end_of_a_long_path_that_leaves_is_drawn() -> None:
+    # This start near a basin boundary leaves after many turns.
+    x, px = -0.12, 0.23
+    py = np.sqrt(2.0 * (0.3 - CASES["III"].value(x, 0.0)) - px**2)
+    orbit = integrate_orbit(CASES["III"], (x, 0.0, px, float(py)), t_max=1000.0)
+    assert orbit.fate > Fate.BOUNDED
+    assert orbit.escape_time > 150.0
+    curves = compute_orbit_curves(CASES["III"], orbit)
+    picture = path_picture(curves, "#123456")
+    last = re.findall(r"<polyline points='([^']*)' fill='none' stroke='#123456'", picture)[0].split()[-1]
+    side = float(re.findall(r"width='(\d+)'", picture)[0])
+    x, y = (curve[-1] for curve in curves.path)
+    expected = (x - curves.window.x_low, curves.window.ordinate_high - y)
+    assert [float(place) * curves.window.width / side for place in last.split(",")] == pytest.approx(expected, abs=0.1)
 
 
 def test_the_path_begins_at_the_start_inside_the_limiting_curve() -> None:
