@@ -100,7 +100,7 @@ def phone(open_for_all: OpenExplorer) -> ExplorerPage:
 
 
 def test_the_page_opens_with_few_models_and_elements(wide: ExplorerPage) -> None:
-    assert wide.page.evaluate("() => [...Bokeh.documents[0].all_models].length") <= 250
+    assert wide.page.evaluate("() => [...Bokeh.documents[0].all_models].length") <= 210
     assert wide.page.evaluate(_ELEMENTS) <= 1280
 
 

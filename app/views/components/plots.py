@@ -233,7 +233,7 @@ SourcedGlyphs = Sequence[tuple[ColumnDataSource, Glyph]]
 
 
 class LaterGlyphs:
-    """Glyphs that are made and added to figures when they are first shown. All figures share them.
+    """Glyphs that are made and added to figures when they are first shown. All figures share their renderers.
 
     Parameters
     ----------
@@ -245,27 +245,28 @@ class LaterGlyphs:
 
     def __init__(self, make: Callable[[], SourcedGlyphs], level: str = "glyph") -> None:
         self._make, self._level = make, level
-        self._glyphs: SourcedGlyphs = ()
+        self._renderers: list[GlyphRenderer] = []
         self._waiting_plots: list[figure] = []
 
     def add_figure(self, plot: figure) -> None:
         """Add the glyphs to a figure, at once if other figures have them, otherwise when `draw` is called."""
-        if self._glyphs:
+        if self._renderers:
             self._add(plot)
         else:
             self._waiting_plots.append(plot)
 
     def draw(self) -> None:
         """Add the glyphs to the figures that lack them, and to later figures."""
-        self._glyphs = self._glyphs or self._make()
+        self._renderers = self._renderers or [
+            GlyphRenderer(data_source=source, glyph=glyph, level=self._level) for source, glyph in self._make()
+        ]
         plots, self._waiting_plots = self._waiting_plots, []
         with changing_models(plots):
             for plot in plots:
                 self._add(plot)
 
     def _add(self, plot: figure) -> None:
-        for source, glyph in self._glyphs:
-            plot.add_glyph(source, glyph, level=self._level)
+        plot.renderers = [*plot.renderers, *self._renderers]
 
 
 def with_gaps(lines: Sequence[np.ndarray]) -> np.ndarray:

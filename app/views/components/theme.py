@@ -6,7 +6,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from bokeh.core.property.vectorization import Value
+from bokeh.core.property.vectorization import Field, Value
 from bokeh.document import Document
 from bokeh.models import CustomJSTransform, InlineStyleSheet
 from panel.theme.base import Design, Inherit, Theme
@@ -18,8 +18,9 @@ from plots.texts.page_colours import page_colours
 THEME_KEY = "escape-explorer-theme"
 """Key of the chosen theme, "light" or "dark", in the browser's local storage."""
 
-# JavaScript of a transform. On a dark page, it replaces `x`, the colour on a light page.
-_THEME_COLOUR_CODE = "return document.documentElement.dataset.theme === 'dark' ? dark : x"
+# JavaScript of a transform. On a dark page, it replaces `x`, a colour on a light page, or each of the colours `xs`.
+_THEME_COLOUR_CODE = "return document.documentElement.dataset.theme === 'dark' ? dark[x] : x"
+_THEME_COLOURS_CODE = "return document.documentElement.dataset.theme === 'dark' ? xs.map(x => dark[x]) : xs"
 
 _STYLESHEET = Path(__file__).parents[2] / "static" / "theme.css"
 
@@ -36,9 +37,18 @@ def theme_colour(name: str) -> str:
 
 
 def theme_line(name: str) -> Value:
-    """Return a colour of `LineColours` for the lines of a glyph. A script of page.html applies each new theme."""
-    colours = CustomJSTransform(args={"dark": getattr(DARK, name)}, func=_THEME_COLOUR_CODE)
-    return Value(getattr(LIGHT, name), transform=colours)
+    """Return a colour of `LineColours` for the lines or texts of a glyph. A script of page.html applies each new theme."""
+    return Value(getattr(LIGHT, name), transform=_theme_colours(name))
+
+
+def theme_lines(column: str, *names: str) -> Field:
+    """Return what `theme_line` does, for lines that have one of several colours, given for a light page in a column."""
+    return Field(column, transform=_theme_colours(*names))
+
+
+def _theme_colours(*names: str) -> CustomJSTransform:
+    dark = {getattr(LIGHT, name): getattr(DARK, name) for name in names}
+    return CustomJSTransform(args={"dark": dark}, func=_THEME_COLOUR_CODE, v_func=_THEME_COLOURS_CODE)
 
 
 class PlainTheme(Theme):

@@ -44,7 +44,7 @@ class ComparedMap:
     def draw(self, plot: figure, mapper: LinearColorMapper) -> None:
         """Add the map and its curve to a figure."""
         image = plot.add_glyph(self.source, Image(image="fate", dw="dw", dh="dh", color_mapper=mapper))
-        self._outlines.draw(plot, full=False)
+        self._outlines.draw(plot)
         self.hover.renderers = [image]
 
     def show(self, frame: EscapeMap, title: str) -> None:

@@ -12,14 +12,14 @@ from bokeh.plotting import figure
 
 from app.state.view_state import ViewState
 from app.views.components.plots import LaterGlyphs, SourcedGlyphs, with_gaps
-from app.views.components.theme import theme_colour, theme_line
+from app.views.components.theme import theme_colour, theme_line, theme_lines
 from engine import LyapunovOrbit, MapSpec, Potential, find_lyapunov_orbits
 from engine.slices.limiting_curves import trace_equipotentials, trace_zero_velocity_curve
 from engine.systems.outcomes import Centre
 from engine.systems.review.energy_ranges import depth_levels
 from engine.systems.review.potential_review import critical_energies, review_potential
 from plots.browser.browser_system import EXIT_NUMBER_DISTANCE
-from plots.pictures.palette import LIGHT, MOST_CHANNELS, Entry
+from plots.pictures.palette import LIGHT, Entry
 
 # Number of maps whose curves are cached.
 _CACHED_MAPS = 64
@@ -76,29 +76,30 @@ class MapCurves:
     ----------
     state
         View state, whose palette has the colours of the exits.
+    full
+        Whether there are also equipotentials, numbers of exits, bodies and equilibria.
     """
 
-    def __init__(self, state: ViewState) -> None:
-        self._state = state
+    def __init__(self, state: ViewState, *, full: bool = False) -> None:
+        self._state, self._full = state, full
         self._limit_source = ColumnDataSource({"xs": [], "ys": []}, name="zero_velocity_curve")
-        self._level_source = ColumnDataSource({"xs": [], "ys": []}, name="equipotentials")
-        self._critical_source = ColumnDataSource({"xs": [], "ys": []}, name="critical_equipotential")
+        self._level_source = ColumnDataSource({"xs": [], "ys": [], "colour": [], "width": []}, name="equipotentials")
         self._exit_source = ColumnDataSource({"xs": [], "ys": [], "colour": []}, name="lyapunov_orbits")
-        self._label_source = ColumnDataSource({"x": [], "y": [], "text": [], "colour": []}, name="channel_numbers")
+        self._label_source = ColumnDataSource({"x": [], "y": [], "text": []}, name="channel_numbers")
         self._mark_source = ColumnDataSource({"x": [], "y": [], "marker": []}, name="marked_places")
-        self._exit_lines, self._exit_numbers = LaterGlyphs(self._make_exit_lines), LaterGlyphs(self._make_exit_numbers)
-        self._marks = LaterGlyphs(self._make_marks)
+        self._lines, self._exit_lines = LaterGlyphs(self._make_lines), LaterGlyphs(self._make_exit_lines)
+        self._exit_numbers, self._marks = LaterGlyphs(self._make_exit_numbers), LaterGlyphs(self._make_marks)
+        self._lines.draw()
 
-    def draw(self, plot: figure, *, full: bool) -> None:
-        """Add the curves to a figure. Only a `full` figure gets equipotentials, exit numbers, bodies and equilibria."""
-        if full:
-            _draw_lines(plot, self._level_source, "equipotential", 1.0)
-            _draw_lines(plot, self._critical_source, "critical_equipotential", 1.5)
-        _draw_lines(plot, self._limit_source, "limiting_curve", 2.0 if full else 1.0)
-        self._exit_lines.add_figure(plot)
-        if full:
-            self._exit_numbers.add_figure(plot)
-            self._marks.add_figure(plot)
+    def draw(self, plot: figure) -> None:
+        """Add the curves to a figure."""
+        for glyphs in (self._lines, self._exit_lines, *((self._exit_numbers, self._marks) if self._full else ())):
+            glyphs.add_figure(plot)
+
+    def _make_lines(self) -> SourcedGlyphs:
+        limit = MultiLine(line_color=theme_line("limiting_curve"), line_width=2.0 if self._full else 1.0)
+        levels = MultiLine(line_color=theme_lines("colour", "equipotential", "critical_equipotential"), line_width="width")
+        return [*([(self._level_source, levels)] if self._full else []), (self._limit_source, limit)]
 
     def _make_exit_lines(self) -> SourcedGlyphs:
         styles = ({"line_color": LIGHT.halo, "line_width": 5}, {"line_color": "colour", "line_width": 3})
@@ -106,7 +107,7 @@ class MapCurves:
 
     def _make_exit_numbers(self) -> SourcedGlyphs:
         font = {"text_align": "center", "text_baseline": "middle", "text_font_size": "16px", "text_font_style": "bold"}
-        return [(self._label_source, Text(text_color="colour", **font))]
+        return [(self._label_source, Text(text_color=theme_line("text"), **font))]
 
     def _make_marks(self) -> SourcedGlyphs:
         style = {"line_color": theme_line("limiting_curve"), "fill_color": theme_line("limiting_curve")}
@@ -115,14 +116,16 @@ class MapCurves:
     def show(self, spec: MapSpec, *, exits: bool = True) -> None:
         """Draw the curves of a map. Without `exits`, nothing is integrated."""
         curves = trace_curves(spec)
-        self._limit_source.data = _columns_with_gaps(curves.limit)
+        self._limit_source.data = _line_columns([with_gaps(curves.limit)])
         h = spec.common_energy
         orbits = find_lyapunov_orbits(spec.potential, h) if exits and spec.plane.shows_positions and h is not None else ()
         # Without orbits before and now, nothing needs to be sent.
         if orbits or self._exit_source.data["xs"]:
             self._show_exits(orbits)
-        self._critical_source.data = _columns_with_gaps(curves.critical)
-        self._level_source.data = _columns_with_gaps(curves.levels)
+        if self._full:
+            levels = _line_columns([with_gaps(curves.levels), with_gaps(curves.critical)])
+            colours = [LIGHT.equipotential, LIGHT.critical_equipotential]
+            self._level_source.data = {**levels, "colour": colours, "width": [1.0, 1.5]}
 
     def show_marks(self, potential: Potential) -> None:
         """Mark the bodies with dots and the equilibria with crosses."""
@@ -136,18 +139,14 @@ class MapCurves:
         if orbits:
             self._exit_lines.draw()
             self._exit_numbers.draw()
-        palette = self._state.colours
-        colours = [palette.channels[orbit.channel - 1] for orbit in orbits]
+        colours = [self._state.colours.channels[orbit.channel - 1] for orbit in orbits]
         self._exit_source.data = {**_line_columns([orbit.half_path for orbit in orbits]), "colour": colours}
         # An orbit goes along the exit and back, so its middle is after a quarter of the period.
         middles = [np.array([orbit.x, orbit.y])[:, orbit.x.size // 4] for orbit in orbits]
-        # Always send `MOST_CHANNELS` texts, some without a position: Bokeh fails if texts with colours of their own become fewer.
-        missing = MOST_CHANNELS - len(orbits)
         self._label_source.data = {
-            "x": [*(EXIT_NUMBER_DISTANCE * x for x, _ in middles), *[np.nan] * missing],
-            "y": [*(EXIT_NUMBER_DISTANCE * y for _, y in middles), *[np.nan] * missing],
-            "text": [*(orbit.name for orbit in orbits), *[""] * missing],
-            "colour": [*colours, *[palette.bounded] * missing],
+            "x": [EXIT_NUMBER_DISTANCE * x for x, _ in middles],
+            "y": [EXIT_NUMBER_DISTANCE * y for _, y in middles],
+            "text": [orbit.name for orbit in orbits],
         }
 
     def entries(self, spec: MapSpec) -> list[Entry]:
@@ -162,15 +161,6 @@ class MapCurves:
         return entries
 
 
-def _draw_lines(plot: figure, source: ColumnDataSource, colour: str, width: float) -> None:
-    """Draw lines in a colour of `LineColours`."""
-    plot.add_glyph(source, MultiLine(line_color=theme_line(colour), line_width=width))
-
-
-def _columns_with_gaps(lines: Sequence[np.ndarray]) -> dict[str, list[np.ndarray]]:
-    """Return the columns of lines of the same style."""
-    return _line_columns([with_gaps(lines)])
-
-
 def _line_columns(lines: list[np.ndarray]) -> dict[str, list[np.ndarray]]:
+    """Return the columns of lines, each of one style."""
     return {"xs": [line[:, 0] for line in lines], "ys": [line[:, 1] for line in lines]}

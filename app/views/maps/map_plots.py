@@ -311,7 +311,7 @@ class MapsView:
             image = plot.add_glyph(self.source, Image(image="escape_time", dw="dw", dh="dh", color_mapper=self._time_mapper))
         # The last image, which is in front, gets the hover text.
         self._hover.renderers = [*self._hover.renderers, image]
-        self._outlines.draw(plot, full=False)
+        self._outlines.draw(plot)
         self.overlays.draw(plot, name)
         self.marks.draw(plot, sections=name == "basins")
 

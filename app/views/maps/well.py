@@ -68,7 +68,7 @@ class WellView:
         # Density images of long paths.
         self._shades = ColumnDataSource({name: [] for name in ("image", "x", "y", "dw", "dh", "alpha")}, name="shades")
         self._points = ColumnDataSource({"x": [], "y": [], "slot": []}, name="points")
-        self._outlines = MapCurves(state)
+        self._outlines = MapCurves(state, full=True)
         self._spec: MapSpec | None = None
         # A potential without exits that is drawn in place of the map's.
         self._sketch: MapSpec | None = None
@@ -79,7 +79,7 @@ class WellView:
         self._outline_key: tuple[MapSpec, Palette] | None = None
         self.plot = map_figure("well", TITLE, *self._ranges)
         self._relief = Relief(self.plot)
-        self._outlines.draw(self.plot, full=True)
+        self._outlines.draw(self.plot)
         self._orbit_glyphs = LaterGlyphs(self._make_orbits)
         self._orbit_glyphs.add_figure(self.plot)
         self.pane = FigurePane(self.plot)

@@ -39,14 +39,8 @@ export class Outlines {
   /** Show exits with their numbers. @param {Exit[]} exits */
   #showExits(exits) {
     this.#exits.show({data: {...sourceOf(exits), colour: exits.map(({colour}) => colour)}})
-    // Bokeh fails if the number of texts with colours of their own falls, so keep it, with empty texts.
-    const labels = this.#labels.server.data ?? {text: [], colour: []}
-    const fill = (/** @type {any[]} */ values, /** @type {any} */ padding) =>
-      Array.from(labels.text, (_, k) => (k < values.length ? values[k] : padding))
     const [x, y] = [0, 1].map(axis => exits.map(({label}) => label[axis]))
-    const text = exits.map(({channel}) => String(channel))
-    const colour = exits.map(exit => exit.colour)
-    this.#labels.show({data: {x: fill(x, NaN), y: fill(y, NaN), text: fill(text, ""), colour: fill(colour, labels.colour[0])}})
+    this.#labels.show({data: {x, y, text: exits.map(({channel}) => String(channel))}})
   }
 }
 
