@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable
-from functools import partial
+from functools import cached_property, partial
 from typing import Any
 
 import panel as pn
@@ -26,6 +26,7 @@ from app.state.help_texts import HELP_TEXTS, title_with_help
 from app.state.navigation import WINDOW_MOVES
 from app.state.permalink import preset_view
 from app.state.view import Analysis
+from app.state.watched_starts import WATCH_KEY
 from app.views.analysis.live_section import LiveSection
 from app.views.analysis.statistics import StatisticsView
 from app.views.components.collapsible_section import Drawers, Stack
@@ -140,9 +141,20 @@ class Explorer:
             # The process that reviews a formula starts while the visitor types.
             process_state().limited.start()
 
+    @cached_property
+    def _player(self) -> EnsemblePlayer:
+        return EnsemblePlayer(self.state, self.results, self._client, self._locked)
+
     def _build_watch(self) -> list[pn.viewable.Viewable]:
         title = TextPane(title_with_help("Many orbits at once", "watch", HELP_TEXTS["watch"]), margin=(0, 10))
-        return [title, EnsemblePlayer(self.state, self.results, self._client, self._locked)]
+        return [title, self._player]
+
+    def _watch(self) -> None:
+        """Show the player of many orbits, and play or pause it."""
+        # On a phone, the drawer covers the player.
+        self.drawers.show(None)
+        self.state.analysis = Analysis.WATCH
+        self._player.press()
 
     def close(self, *_: Any) -> None:
         """Cancel all requests at the end of the session."""
@@ -187,6 +199,7 @@ class Explorer:
             "b": self.browser.go_back,
             "f": self.browser.go_forward,
             "p": self.engine.play,
+            WATCH_KEY: self._watch,
             "Enter": self.maps.add_middle,
             "Escape": self._escape,
             "?": lambda: self.drawers.toggle("help"),

@@ -55,6 +55,9 @@ def places_for(potential: Potential) -> dict[StartsFrom, str]:
     return {where: words for where, words in PLACES.items() if where not in missing_places}
 
 
+WATCH_KEY = "w"
+"""Key of the page that plays or pauses the orbits."""
+
 COUNTS = (1000, 5000, 20000)
 """Possible numbers of orbits."""
 

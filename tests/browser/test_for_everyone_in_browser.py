@@ -13,10 +13,10 @@ from app.views.panels.browser_events import KEYS
 from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 
-# Whether all zero-velocity curves are light: red, the highest byte, is above 200.
+# Whether all zero-velocity curves, and the numbers of the exits, are light: red, the highest byte, is above 200.
 LIGHT_LINES = """() => [...Bokeh.index.all_views()]
-    .filter(view => view.model.data_source?.name == 'zero_velocity_curve')
-    .every(view => view.glyph.line_color.value >>> 24 > 200)"""
+    .filter(view => ['zero_velocity_curve', 'channel_numbers'].includes(view.model.data_source?.name))
+    .every(({glyph}) => (glyph.line_color ?? glyph.text_color).value >>> 24 > 200)"""
 CROSSHAIR_COLOURS = """() => [...new Set([...Bokeh.index.all_views()]
     .filter(view => view.model.type == 'Span')
     .map(view => view.visuals.line.get_line_color()))]"""

@@ -6,13 +6,15 @@ import re
 from collections.abc import Callable
 
 import pytest
-from playwright.sync_api import expect
+from playwright.sync_api import FloatRect, expect
 
 from engine import CASES, Plane, classify_orbits, sample_starts
 from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 
 OpenExplorer = Callable[..., ExplorerPage]
+LAUNCH = "Watch 1 000 leave"
+PAUSE = "Pause"
 # Digits are grouped by thin spaces.
 _INSIDE = re.compile(r"inside: (\d+(?:\s\d{3})*) ")
 
@@ -105,3 +107,73 @@ def test_the_orbits_stay_over_the_well_when_the_page_changes_its_size(watched: E
     watched.page.wait_for_function(_OVER_THE_WELL)
     watched.page.set_viewport_size({"width": 1100, "height": 650})
     watched.page.wait_for_function(_OVER_THE_WELL)
+
+
+def test_one_press_beside_the_basins_plays_the_orbits_and_the_key_pauses_them(open_explorer: OpenExplorer) -> None:
+    explorer = open_explorer(link=f"{QUICK}&watch=well,1000,1,-2")
+    explorer.press(LAUNCH)
+    expect(explorer.radio("Watch")).to_be_checked()
+    expect(explorer.page.get_by_role("cell", name=re.compile(r"inside: [1-9]\d\d "))).to_be_visible()
+    expect(explorer.page.get_by_role("button", name=PAUSE)).to_be_focused()
+    expect(explorer.button(LAUNCH)).to_have_count(0)
+    explorer.page.keyboard.press("w")
+    expect(explorer.page.get_by_role("button", name="Watch them leave")).to_be_visible()
+
+
+def is_within(box: FloatRect | None, top: float, bottom: float) -> bool:
+    return box is not None and box["y"] >= top and box["y"] + box["height"] <= bottom
+
+
+@pytest.mark.parametrize(("width", "height"), [(390, 844), (420, 860)])
+def test_on_a_phone_the_picture_and_a_line_of_the_player_are_seen_together(
+    open_explorer: OpenExplorer, width: int, height: int
+) -> None:
+    explorer = open_explorer(width, height, f"{QUICK}&analysis=watch&watch=well,1000,1,-2", touch=True)
+    page = explorer.page
+    play = page.get_by_role("button", name="Watch them leave")
+    expect(play).to_be_enabled()
+    play.tap()
+    page.wait_for_function("() => scrollY === 0")
+    pause, close = page.get_by_role("button", name=PAUSE), explorer.button("Close the player")
+    controls = [pause, page.get_by_label("Time of the orbits"), page.locator(".watched > output"), close]
+    picture = page.locator(".bk-Figure.well.picked").bounding_box()
+    assert is_within(picture, 0, height)
+    for control in controls:
+        expect(control).to_be_in_viewport(ratio=1)
+        assert is_within(control.bounding_box(), picture["y"] + picture["height"], height)
+    page.wait_for_function(_OVER_THE_WELL)
+    close.tap()
+    expect(close).to_be_hidden()
+    expect(explorer.radio("Basins")).to_be_checked()
+    expect(explorer.button(LAUNCH)).to_be_visible()
+
+
+# Shares of pixels in the colours of text and page, at the numbers of the exits on the canvas over the well.
+_NUMBER_PIXELS = """() => {
+    const view = [...Bokeh.index.all_views()].find(view => view.model.name == 'well')
+    const all = root => [...root.querySelectorAll('*')].flatMap(node => [node, ...(node.shadowRoot ? all(node.shadowRoot) : [])])
+    const {left, top} = view.canvas_view.el.getBoundingClientRect(), {bbox} = view.frame
+    const canvas = all(document).find(node => node.tagName == 'CANVAS' && node.style.position == 'fixed'
+        && Math.abs(node.getBoundingClientRect().left - left - bbox.left) < 1)
+    const {data} = view.model.renderers.find(each => each.data_source.name == 'channel_numbers').data_source
+    const pixels = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data, style = getComputedStyle(canvas)
+    const colours = ['--ui-ink', '--ui-page'].map(name => style.getPropertyValue(name).match(/\\d+/g).join())
+    return [...data.x].map((x, k) => {
+        const [column, row] = [view.frame.x_scale.compute(x) - bbox.left, view.frame.y_scale.compute(data.y[k]) - bbox.top]
+        const place = i => Math.round(column) + i % 10 - 5 + canvas.width * (Math.round(row) + Math.floor(i / 10) - 8)
+        const near = Array.from({length: 160}, (_, i) => [...pixels.subarray(4 * place(i), 4 * place(i) + 3)].join())
+        return colours.map(colour => near.filter(each => each == colour).length / 160)
+    })
+}"""
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_the_numbers_of_the_exits_are_readable_over_the_orbits(open_explorer: OpenExplorer, theme: str) -> None:
+    link = f"{QUICK.replace('case=I', 'case=III').replace('h=0.19', 'h=0.47')}&analysis=watch&watch=well,20000,1,-2"
+    explorer = open_explorer(link=link, theme=theme)
+    expect(explorer.page.get_by_role("button", name="Watch them leave")).to_be_enabled()
+    move_time_to(explorer, 0.02)
+    explorer.page.wait_for_function(_OVER_THE_WELL)
+    shares = explorer.page.evaluate(_NUMBER_PIXELS)
+    assert len(shares) == 4
+    assert all(ink > 0.1 and page > 0.2 for ink, page in shares), shares

@@ -126,8 +126,8 @@ class PictureTexts:
     note: str = ""
     under_way: str = ""
 
-    def write_above(self, plot: figure, *, room: int) -> None:
-        """Write above the frame of a picture: the title, the name of the ordinate, and what is being computed.
+    def write_above(self, plot: figure, *, room: int, button: str = "") -> None:
+        """Write above the frame: the title, the name of the ordinate, what is being computed, and the HTML of a button.
 
         The title is short if `room`, the number of characters that fit into the line, is too small.
         """
@@ -135,7 +135,7 @@ class PictureTexts:
         is_short = len(self.title) + len(self.under_way) > room
         title, under_way = (self.short_title, "…" if self.under_way else "") if is_short else (self.title, self.under_way)
         html = (
-            f"{title_with_help(title, plot.name, HELP_TEXTS[plot.name], under_way)}"
+            f"{title_with_help(title, plot.name, HELP_TEXTS[plot.name], under_way)}{button}"
             f"<button type='button' class='enlarge' data-picture='{plot.name}' aria-label='{enlarge}' title='{enlarge}'></button>"
             f"<i class='axis-name ordinate'>{_axis_name(self.axes[1])} ↑</i>"
         )

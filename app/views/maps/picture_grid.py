@@ -7,12 +7,16 @@ from collections.abc import Sequence
 import panel as pn
 from bokeh.plotting import figure
 
+from app.state.view import Analysis
 from app.state.view_state import ViewState
+from app.state.watched_starts import WATCH_KEY
 from app.views.components.plots import FigurePane, PictureTexts, set_borders
 from app.views.components.texts import TextPane
 from app.views.components.widgets import FULL_HEIGHT, SegmentedControl
 from app.views.maps.well import SHORT_TITLE as WELL_TITLE
+from engine.foundations.wording import format_whole
 from plots.layers.table import LAYERS_BY_PICTURE, PICTURES
+from plots.texts.typeset import typeset
 
 SHORT_TITLES = {"well": WELL_TITLE} | {name: picture.short_title for name, picture in PICTURES.items() if name != "curves"}
 """Short titles of all pictures, in order."""
@@ -30,6 +34,8 @@ _ARRANGEMENTS = {"enlarged", _MORE[0], *(arrangement for arrangement, _ in _OTHE
 # Number of characters above the frame, of the title and of what is being computed, by the kind of the picture. Pictures of other
 # kinds have short titles.
 _ROOM_FOR_TITLE = {"picked": 60, "equal": 60, "half": 22}
+# The pictures that show many orbits.
+_WITH_ORBITS = ("well", FIRST_PICTURE)
 
 
 class PictureGrid:
@@ -60,6 +66,7 @@ class PictureGrid:
         self.picker = SegmentedControl(label="Map", css_classes=["segmented", "map-picker"])
         self.picker.param.watch(lambda event: self._choose(event.new), "value")
         state.param.watch(lambda *events: self._place(), ["focus", "narrow"])
+        state.param.watch(lambda event: self._follow_analysis(), "analysis")
 
     def layout(self) -> pn.viewable.Viewable:
         """Return the grid."""
@@ -98,11 +105,18 @@ class PictureGrid:
             with pn.io.hold():
                 self._state.focus = name
 
+    def _follow_analysis(self) -> None:
+        self._place()
+        for name in self._panes:
+            self._write_title(name)
+
     @property
     def _picked_picture(self) -> str:
-        """The enlarged picture. On a page with a single picture, else that of the last layer that shows something."""
+        """The enlarged picture. On a page with a single picture, else the well if orbits leave it, or that of the last layer."""
         if self._is_enlarged:
             return self._state.focus
+        if self._state.narrow and self._state.analysis == Analysis.WATCH:
+            return "well"
         layers = [name for name in self._panes if name in LAYERS_BY_PICTURE and name not in self._empty_pictures]
         return [FIRST_PICTURE, *(layers if self._is_single or self._state.narrow else [])][-1]
 
@@ -138,7 +152,18 @@ class PictureGrid:
 
     def _write_title(self, name: str) -> None:
         if name in self._kinds and name in self._texts:
-            self._texts[name].write_above(self._panes[name].object, room=_ROOM_FOR_TITLE.get(self._kinds[name], 0))
+            kind = self._kinds[name]
+            button = self._watch_button() if kind == "picked" and name in _WITH_ORBITS else ""
+            self._texts[name].write_above(self._panes[name].object, room=_ROOM_FOR_TITLE.get(kind, 0), button=button)
+
+    def _watch_button(self) -> str:
+        """Return the HTML of the button that plays many orbits of one energy; empty on other slices, or beside their player."""
+        state = self._state
+        if state.analysis == Analysis.WATCH or state.plane.energy_axis is not None or state.plane.parameter is not None:
+            return ""
+        leave = typeset(f" {format_whole(state.watched.count)} leave")
+        attributes = f"type='button' class='watch' data-key='{WATCH_KEY}' title='Watch{leave}' aria-label='Watch{leave}'"
+        return f"<button {attributes}>▶ Watch<span>{leave}</span></button>"
 
     def _write_strips(self) -> None:
         kinds = {name: kind for name, kind in self._kinds.items() if name in self._texts}

@@ -35,6 +35,15 @@ _STYLE = """
 .row { display: flex; flex-wrap: wrap; gap: 6px; align-items: center; margin: 6px 0 }
 [hidden] { display: none !important }
 button.play { min-width: 11.5rem; font-weight: 600 }
+.close { display: none }
+/* Where the results are below the pictures, this line stays in the window. */
+@media (max-width: 74.99em) {
+  :host { padding-bottom: 3.5rem }
+  .line.watched { position: fixed; z-index: 80; inset: auto 0 0; flex-wrap: nowrap; margin: 0; padding: 6px 10px;
+    border-top: 1px solid var(--ui-edge); background: var(--ui-surface); box-shadow: var(--ui-shadow-l) }
+  .line.watched > .play { min-width: 6rem }
+  .line.watched > .close { display: block; flex: none; width: var(--ui-control); padding: 0 }
+}
 select.bk-input { appearance: none; padding-right: 28px; border: 1px solid var(--ui-edge); border-radius: var(--ui-radius);
   background-color: var(--ui-surface); background-repeat: no-repeat; color: inherit; font: inherit }
 label { display: inline-flex; align-items: center; gap: 6px; color: inherit; font-size: inherit }
@@ -51,7 +60,7 @@ td::before { content: ""; position: absolute; left: 0; top: 0.3em; width: 0.7em;
 
 
 class EnsemblePlayer(PlainComponent):
-    """Controls, counters and a chart. The browser sends {where, count, seed, radius} for each choice of starts.
+    """Controls, counters and a chart. The browser sends {where, count, seed, radius} for each choice of starts, and {closed}.
 
     Parameters
     ----------
@@ -74,6 +83,7 @@ class EnsemblePlayer(PlainComponent):
     radius = param.Number()
     point = param.List(default=[], doc="abscissa and ordinate of the chosen start; empty without one")
     box = param.List(default=[], doc="the four edges of the box; empty without one")
+    presses = param.Integer(default=0, doc="number of presses, by which the player plays or pauses")
     rate = param.Number(default=0.0, doc="decay rate of mixed motion; 0 if it is not known")
 
     _esm = LOADED_MODULE
@@ -82,10 +92,15 @@ class EnsemblePlayer(PlainComponent):
         super().__init__(sizing_mode="stretch_width", margin=(0, 10), stylesheets=[_STYLE])
         self._state = state
         self._choose = locked(lambda starts: state.param.update(watched=starts))
+        self._close = locked(lambda: state.param.update(analysis=Analysis.ORBIT))
         self._flux_request = LatestRequest(jobs, self._show_flux, lambda sentence: None, locked)
         state.follow(lambda *values: self._show_choice(), "system", "watched", "starts", "chosen", "box")
         results.param.watch(lambda event: self._request_rate() if results.whole_map else None, "frame")
         state.follow(lambda *values: self._request_rate(), "system", "plane", "energy", "analysis")
+
+    def press(self) -> None:
+        """Play, or pause. A player that is not on the page yet plays as soon as it is."""
+        self.presses += 1
 
     def _show_choice(self) -> None:
         watched, start, box = self._state.watched, self._state.chosen_start, self._state.box
@@ -102,6 +117,8 @@ class EnsemblePlayer(PlainComponent):
             case {"where": str(where), "count": int(count), "seed": int(seed), "radius": int() | float() as radius}:
                 with suppress(ValueError):
                     self._choose(WatchedStarts(where, count, seed, float(radius)))  # type: ignore[arg-type]
+            case {"closed": True}:
+                self._close()
 
     def _request_rate(self) -> None:
         """Request the decay rate of mixed motion while the analysis is open, once the kernels are compiled."""

@@ -161,12 +161,15 @@ export function render({model, el}) {
     model.send_msg({narrow: true})
   }
   for (const react of [sendIfNarrow, layOutRootsWithoutBoxes]) window.addEventListener("resize", react)
-  // A button of a picture sends the name of the picture.
-  const enlarge = (/** @type {Event} */ event) => {
-    const button = event.composedPath().find(node => node instanceof HTMLElement && node.matches("button[data-picture]"))
-    if (button instanceof HTMLElement) model.send_msg({enlarge: button.dataset.picture})
+  // A button of a picture sends the name of the picture, or the key that does the same.
+  const press = (/** @type {Event} */ event) => {
+    const button = event.composedPath().find(node => node instanceof HTMLButtonElement)
+    if (!(button instanceof HTMLButtonElement)) return
+    const {picture, key} = button.dataset
+    if (picture !== undefined) model.send_msg({enlarge: picture})
+    if (key !== undefined) model.send_msg({key})
   }
-  document.addEventListener("click", enlarge)
+  document.addEventListener("click", press)
   // The browser would scroll the page when two fingers move the same way on a map.
   const preventScroll = (/** @type {TouchEvent} */ event) => {
     if (event.touches.length > 1 && comesFrom(event, ".map")) event.preventDefault()
@@ -174,7 +177,7 @@ export function render({model, el}) {
   document.addEventListener("touchstart", preventScroll, {passive: false})
   model.on("lifecycle:remove", () => {
     document.removeEventListener("touchstart", preventScroll)
-    document.removeEventListener("click", enlarge)
+    document.removeEventListener("click", press)
     window.removeEventListener("popstate", sendEntry)
     for (const react of [sendIfNarrow, layOutRootsWithoutBoxes]) window.removeEventListener("resize", react)
     document.removeEventListener("keydown", sendKey)

@@ -18,6 +18,7 @@ from app.state.navigation import WINDOW_MOVES
 from app.state.tour import TOUR
 from app.state.view import PICTURES
 from app.state.view_state import ViewState
+from app.state.watched_starts import WATCH_KEY
 from plots.layers import table
 
 _TITLES = {"well": "the well"} | {name: picture.title for name, picture in table.PICTURES.items()}
@@ -31,6 +32,7 @@ KEYS: Mapping[str, str] = MappingProxyType(
         "b": "go back",
         "f": "go forward",
         "p": "play or stop the animation of the energy",
+        WATCH_KEY: "watch many orbits leave, or pause",
         "Enter": "add the orbit that starts in the middle of the maps",
         "Escape": "close the drawer, stop the animation, show all pictures, or stop the computation",
         "?": "open or close the help",

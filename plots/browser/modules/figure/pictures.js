@@ -3,7 +3,7 @@
 
 import {exitLines, LimitingCurves} from "../engine/curves.js"
 import {showsPositions, windowAt} from "../engine/starts.js"
-import {contextFor, strokeLine} from "../painting/canvas.js"
+import {contextFor, placeIn, strokeLine} from "../painting/canvas.js"
 import {pixelColumns} from "../painting/columns.js"
 import {describeOutcome, drawOrbit, drawWell, writeText} from "../painting/orbit_drawing.js"
 import {PixelImage} from "../painting/pixel_image.js"
@@ -212,16 +212,6 @@ export class WellPicture {
     return text
   }
 }
-
-/**
- * Return the place of a point in a frame, in pixels from its upper left corner.
- *
- * @type {(box: {width: number, height: number}, window: import("../engine/starts.js").Window, point: [number, number]) => [number, number]}
- */
-const placeIn = (box, {xLow, xHigh, ordinateLow, ordinateHigh}, [x, ordinate]) => [
-  ((x - xLow) / (xHigh - xLow)) * box.width,
-  ((ordinateHigh - ordinate) / (ordinateHigh - ordinateLow)) * box.height,
-]
 
 /**
  * Mark the start of a chosen orbit with its number.

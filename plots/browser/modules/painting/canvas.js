@@ -34,6 +34,16 @@ export function cover(canvas, box) {
 }
 
 /**
+ * Return the place of a point of a window in a box that the window fills, in pixels from the upper left corner.
+ *
+ * @type {(box: {width: number, height: number}, window: import("../engine/starts.js").Window, point: [number, number]) => [number, number]}
+ */
+export const placeIn = (box, {xLow, xHigh, ordinateLow, ordinateHigh}, [x, ordinate]) => [
+  ((x - xLow) / (xHigh - xLow)) * box.width,
+  ((ordinateHigh - ordinate) / (ordinateHigh - ordinateLow)) * box.height,
+]
+
+/**
  * Draw a line, with coordinates in a window that fills the box.
  *
  * @param {CanvasRenderingContext2D} context
@@ -43,11 +53,10 @@ export function cover(canvas, box) {
  * @param {string} colour
  * @param {number} width  in pixels
  */
-export function strokeLine(context, {xLow, xHigh, ordinateLow, ordinateHigh}, box, {xs, ys}, colour, width) {
-  const [scaleX, scaleY] = [box.width / (xHigh - xLow), box.height / (ordinateHigh - ordinateLow)]
+export function strokeLine(context, window, box, {xs, ys}, colour, width) {
   context.strokeStyle = colour
   context.lineWidth = width
   context.beginPath()
-  for (let i = 0; i < xs.length; i++) context.lineTo((xs[i] - xLow) * scaleX, (ordinateHigh - ys[i]) * scaleY)
+  for (let i = 0; i < xs.length; i++) context.lineTo(...placeIn(box, window, [xs[i], ys[i]]))
   context.stroke()
 }

@@ -3,7 +3,7 @@
 
 import {exitLines} from "../engine/curves.js"
 import {number} from "../numbers.js"
-import {strokeLine} from "./canvas.js"
+import {placeIn, strokeLine} from "./canvas.js"
 
 /** Radius of the point that marks the start, in pixels. */
 const START_RADIUS = 3.5
@@ -51,8 +51,7 @@ export function drawOrbit(context, box, {window, colours, ink}, path, units) {
   strokeLine(context, window, box, {xs, ys}, path.channel > 0 ? colours[path.channel - 1] : ink, 1.5)
   context.fillStyle = ink
   context.beginPath()
-  const [scaleX, scaleY] = [box.width / (window.xHigh - window.xLow), box.height / (window.ordinateHigh - window.ordinateLow)]
-  const [left, top] = [(xs[0] - window.xLow) * scaleX, (window.ordinateHigh - ys[0]) * scaleY]
+  const [left, top] = placeIn(box, window, [xs[0], ys[0]])
   context.arc(left, top, START_RADIUS, 0, 2 * Math.PI)
   context.fill()
   return [left, top]

@@ -6,11 +6,13 @@ from typing import Any
 
 import pytest
 
-from app.state.view import PICTURES, View
+from app.state.view import PICTURES, Analysis, View
 from app.state.view_state import ViewState
-from app.views.components.plots import FigurePane
+from app.state.watched_starts import WATCH_KEY, WatchedStarts
+from app.views.components.plots import FigurePane, PictureTexts
 from app.views.maps.map_plots import PLAIN_PICTURES
 from app.views.maps.picture_grid import SHORT_TITLES, PictureGrid
+from engine import Coordinate, ParameterAxis, Plane, Slice, System
 from plots.layers.table import LAYERS_BY_PICTURE
 from tests.app.map_actions import make_maps
 
@@ -99,3 +101,40 @@ def test_the_picture_of_a_layer_that_shows_nothing_is_not_picked() -> None:
     assert named(pictures, "picked") == ["basins"]
     pictures.mark_empty("characters", empty=False)
     assert named(pictures, "picked") == ["characters"]
+
+
+def launchers(of: PictureGrid) -> list[str]:
+    """Return the pictures with a button that plays many orbits."""
+    for name in of.shown:
+        of.write(name, PictureTexts(name, name, ("x", "y"), ""))
+    return [pane.object.name for pane in panes(of) if f"data-key='{WATCH_KEY}'" in pane.object.elements[0].html]
+
+
+def test_the_picked_picture_has_a_button_that_plays_orbits_until_their_player_is_shown() -> None:
+    state = ViewState(watched=WatchedStarts(count=20000))
+    pictures = make_maps(state).grid
+    assert launchers(pictures) == ["basins"]
+    [basins] = [pane.object for pane in panes(pictures) if pane.object.name == "basins"]
+    assert "Watch 20\N{NARROW NO-BREAK SPACE}000 leave" in basins.elements[0].html
+    state.analysis = Analysis.WATCH
+    assert "Watch" not in basins.elements[0].html
+    state.param.update(analysis=Analysis.ORBIT, focus="well")
+    assert launchers(pictures) == ["well"]
+    state.focus = "times"
+    assert launchers(pictures) == []
+
+
+@pytest.mark.parametrize("several", [Plane.X_H, Slice(Coordinate.X, ParameterAxis("epsilon", 0.5, 2.0, System("III")))])
+def test_a_slice_of_several_energies_or_systems_has_no_button_that_plays_orbits(several: Slice) -> None:
+    assert launchers(grid(system=System("III"), plane=several)) == []
+
+
+def test_a_narrow_page_shows_the_well_while_orbits_leave_it_unless_another_picture_is_chosen() -> None:
+    state = ViewState(narrow=True)
+    pictures = make_maps(state).grid
+    state.analysis = Analysis.WATCH
+    assert named(pictures, "picked") == ["well"]
+    state.focus = "basins"
+    assert named(pictures, "picked") == ["basins"]
+    state.param.update(focus="", analysis=Analysis.ORBIT)
+    assert named(pictures, "picked") == ["basins"]

@@ -75,6 +75,20 @@ def test_choices_of_the_browser_change_the_state_and_other_messages_nothing(sess
     assert session.state.watched == WatchedStarts(StartsFrom.VIEW, 1000, 4, -3.0)
 
 
+def test_the_player_is_closed_from_the_browser(session: Session) -> None:
+    send(session.player, {"closed": False})
+    assert session.state.analysis == Analysis.WATCH
+    send(session.player, {"closed": True})
+    assert session.state.analysis == Analysis.ORBIT
+
+
+def test_each_press_changes_the_player(session: Session) -> None:
+    before = session.player.presses
+    session.player.press()
+    session.player.press()
+    assert session.player.presses == before + 2
+
+
 def test_the_player_gets_the_rate_of_mixed_motion_where_starts_share_energy_and_parameters(session: Session) -> None:
     prepare_for_maps(CASES["III"])
     expected = compute_flux(CASES["III"], 0.45).decay_rate
