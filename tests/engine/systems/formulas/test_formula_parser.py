@@ -78,7 +78,7 @@ def test_operator_precedence(text: str, terms: tuple[tuple[int, int, float], ...
         ("x + sinh(x)", 4, "'sinh' is not understood; write (exp(u) − exp(−u))/2 for sinh(u)"),
         ("0,5x + y", 1, "',' is not understood; write decimals with a point, as in 0.5"),
         ("x\\y", 1, "'\\' is not understood; allowed are"),
-        ("a x² + y²; a=1.2", 10, "the value of a is a parameter of the formula and no part of it"),
+        ("a x² + y²; a=1.2", 10, "the value of a is no part of the formula: delete it, and set the parameter a"),
         ("1/r + x²; centre (0, 0)", 23, "the radius is missing in 'centre (0, 0)'"),
         ("½r² − x²y cos(3t)", 15, "'t' is not understood"),
         ("x + sin x", 8, "its argument in brackets"),
