@@ -17,11 +17,12 @@ import typer
 
 from cli.layer_options import LayerOptions, read_layers, read_study_settings
 from cli.option_marks import DocumentedBy
-from engine import MEASURES, POTENTIALS, Plane, Potential, Section, Slice, System, read_section, review_potential
+from engine import MEASURES, POTENTIALS, ParameterAxis, Plane, Potential, Section, Slice, System, read_section, review_potential
 from engine.foundations.validation import checked_count
 from engine.slices.axes import Energy
 from engine.slices.slice_text import AXIS_NAMES, read_slice
 from engine.slices.window import GivenWindow
+from engine.sweeps.axes import EnergyAxis, SweepAxis
 from engine.sweeps.spec import MOST_VALUES
 from engine.systems.system import TYPED
 from plots.pictures.palette import DEFAULT_PALETTE, PALETTES, Palette, find_palette
@@ -234,6 +235,12 @@ def space_values(
     if not (low < high or (low == high and count == 1)):
         raise ValueError(f"low={low}, high={high}: low must be below high")
     return tuple(np.linspace(low, high, checked_count("count", count, 1, MOST_VALUES)).tolist())
+
+
+def swept_axis(name: str, low: float, high: float, system: System) -> SweepAxis:
+    """Return the axis of a sweep with a name: h, jacobi, or a parameter of the system, with its range."""
+    energies = {axis.key: axis for axis in EnergyAxis}
+    return energies[name] if name in energies else ParameterAxis(name, low, high, system)
 
 
 READERS: Mapping[Any, Callable[..., Any]] = {

@@ -18,7 +18,7 @@ programs of this repository, and may change with any version.
 - measures: `MEASURES`, `Measure`; of basins and statistics `compute_basin_entropy`, `compute_wada_test`,
   `compute_uncertainty_exponent`, `compute_statistics`, `compute_islands`, `compute_chaotic_share`, `compute_exit_matching`,
   `fit_decay_laws`
-- sweeps over energies or a parameter: `SweepSpec`, `compute_sweep`, `plan_sweep`, `find_where`
+- sweeps over energies and parameters: `SweepSpec`, `compute_sweep`, `plan_sweep`, `find_where`
 - files and execution: `Result`, `open_result`, `Execution`
 """
 

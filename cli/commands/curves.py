@@ -18,22 +18,25 @@ from typing import Annotated
 
 import typer
 
-from cli.arguments import Case, Slow, check_measures, file_name_part, space_values
+from cli.arguments import Case, Slow, check_measures, file_name_part, space_values, swept_axis
 from cli.commands.study import study_content
 from cli.execution import THREADS_ONLY, Place
 from cli.option_marks import DocumentedBy
 from cli.options import with_options
 from cli.output_files import Stem, name_files, reserve_output, write_files
 from cli.printing import AsJson, Table, list_rows, print_result
-from engine import ParameterAxis, Potential, Section, Slice, SweepSpec, System, compute_sweep
+from engine import Potential, Section, Slice, SweepSpec, System, compute_sweep
 from engine.measures.table import CURVES, QUICK_CURVES
 from engine.results import Sweep
+from engine.sweeps.axes import EnergyAxis
 from engine.systems.parameters import WELL_PARAMETERS
 from plots.printed.figure_style import FigureFormat, FigureStyle
 from plots.studies.against import AGAINST
 from plots.texts.exports import stem_of
 
-AGAINST_HELP = f"h, or a parameter: {', '.join(WELL_PARAMETERS)} or a letter of the formula."
+AGAINST_HELP = (
+    f"{', '.join(axis.key for axis in EnergyAxis)}, or a parameter: {', '.join(WELL_PARAMETERS)} or a letter of the formula."
+)
 ENERGY_HELP = "h of all maps along a parameter."
 MEASURE_HELP = f"{', '.join(CURVES)}; all by default. Can be repeated."
 
@@ -72,7 +75,7 @@ def run(
         resolution,
         t_max=t_max,
         measures=check_measures(measure, CURVES) or (CURVES if exponent else QUICK_CURVES),
-        along=None if against == "h" else ParameterAxis(against, low, high, system),
+        along=swept_axis(against, low, high, system),
         energy=energy,
         refine=refine,
         section=section,

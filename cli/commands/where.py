@@ -16,14 +16,14 @@ from typing import Annotated
 
 import typer
 
-from cli.arguments import space_values
+from cli.arguments import space_values, swept_axis
 from cli.commands.curves import AGAINST_HELP, ENERGY_HELP
 from cli.execution import THREADS_ONLY, Place
 from cli.option_marks import DocumentedBy
 from cli.options import with_options
 from cli.output_files import Content, Stem, name_files, reserve_output, write_files
 from cli.printing import AsJson, Table, list_rows, print_result
-from engine import ParameterAxis, Potential, Section, Slice, SweepSpec, System, find_where
+from engine import Potential, Section, Slice, SweepSpec, System, find_where
 from plots.texts.exports import dataset_bytes, table_csv
 
 
@@ -51,7 +51,6 @@ def run(
     as_json: AsJson = False,
 ) -> None:
     """Find the place, and write and print the measures of all maps."""
-    along = None if against == "h" else ParameterAxis(against, low, high, system)
     spec = SweepSpec(
         potential,
         plane,
@@ -59,7 +58,7 @@ def run(
         resolution,
         t_max=t_max,
         measures=("shares",),
-        along=along,
+        along=swept_axis(against, low, high, system),
         energy=energy,
         section=section,
     )

@@ -274,8 +274,8 @@ def read_spec(dataset: xr.Dataset) -> MapSpec:
     attributes = dataset.attrs
     if attributes.get("along"):
         raise ValueError(
-            f"dataset: is a map of a sweep along {attributes['axis']}, with the fate numbers of the whole sweep; must be a map "
-            "of compute_map, or of a sweep over energies"
+            f"dataset: is a map of a sweep along {attributes['axis']}, whose energy, potential or fate numbers are those of the "
+            "sweep; must be a map of compute_map, or of a sweep over h"
         )
     try:
         system_fields = json.loads(attributes["system"])

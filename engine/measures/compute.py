@@ -43,7 +43,7 @@ def compute_point(
 
     Returns
     -------
-    The dataset of the measures. Its first dimension, of size 1, has the name of the varied quantity.
+    The dataset of the measures. Its first dimensions, of size 1, have the names of the axes of the sweep.
 
     Raises
     ------
@@ -61,8 +61,8 @@ def compute_point(
     variables: dict[str, Any] = {}
     for name in point.measures:
         variables |= MEASURES[name].variables(point, MEASURES[name].compute(measured))
-    value = ((), point.value, {"long_name": point.name, "units": "1"})
-    return xr.Dataset(variables, {point.name: value}).expand_dims(point.name)
+    values = {name: ((), value, {"long_name": name, "units": "1"}) for name, value in point.place}
+    return xr.Dataset(variables, values).expand_dims([name for name, _ in point.place])
 
 
 def measure_job(spec: MapSpec, name: str, box: Window | None = None) -> Job[Any]:

@@ -93,8 +93,8 @@ class SweepPoint:
     ----------
     map_spec
         The map to measure.
-    name, value
-        The name of the energy or of the parameter, and its value.
+    place
+        The name of each axis of the sweep, such as "h" or "epsilon", and the value on this axis.
     measures
         Names of `MEASURES`.
     numbers
@@ -104,8 +104,7 @@ class SweepPoint:
     """
 
     map_spec: MapSpec
-    name: str
-    value: float
+    place: tuple[tuple[str, float], ...]
     measures: tuple[str, ...]
     numbers: tuple[int, ...]
     outcomes: tuple[Outcome, ...]

@@ -237,10 +237,14 @@ class ParameterAxis(_SystemAxis):
         if low < lowest or high > highest:
             raise ValueError(f"parameter {self.key} from {low:g} to {high:g}: must be between {lowest:g} and {highest:g}")
 
+    def system_at(self, value: float) -> System:
+        """Return the system at a value of the parameter."""
+        is_zero = abs(value) < _ROUNDING * (self.high - self.low)
+        return self.system.with_parameter(self.key, 0.0 if is_zero else value)
+
     def potential(self, value: float) -> Potential:
         """Return the potential at a value of the parameter; raise ValueError if the system has none there."""
-        is_zero = abs(value) < _ROUNDING * (self.high - self.low)
-        return self.system.with_parameter(self.key, 0.0 if is_zero else value).potential
+        return self.system_at(value).potential
 
     def at(self, value: float) -> HeldParameter:
         """Return the parameter held at one value, as an axis of a row or column of a map."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import time
 from concurrent.futures import CancelledError
 from dataclasses import dataclass, replace
@@ -97,7 +98,7 @@ def plan_sweep(spec: SweepSpec, *, cores: int | None = None, execution: Executio
     workers = cores or execution.workers
     prepare_for_maps(spec.potential)
     prepare_for_evidence(spec.potential)
-    places = [(value, energy) for value in spec.values for energy in spec.energies_at(value)]
+    places = list(itertools.product(*spec.axis_values))
     indices = np.unique(((np.arange(_MAX_PLANNED_VALUES) + 0.5) * len(places) / _MAX_PLANNED_VALUES).astype(int))
     seconds = [_predict_seconds(spec.point(*places[index]).map_spec, execution) for index in indices]
     pixel_bytes = sum(np.dtype(dtype).itemsize for name, (dtype, _) in PIXEL_ARRAYS.items() if name != "started")

@@ -16,6 +16,7 @@ import numpy as np
 from engine.foundations.extras import require_package
 from engine.foundations.output_lock import hold_lock, output_named_in_errors
 from engine.slices.sections.section_text import FORMER_ATTRIBUTES
+from engine.sweeps.axes import axis_names
 from engine.sweeps.stored_values import absent_values, count_complete, has_axis
 
 if TYPE_CHECKING:
@@ -67,6 +68,8 @@ class SweepStore:
 
     def __init__(self, path: Path, attributes: Mapping[str, Any]) -> None:
         self._path, self._attributes = path, dict(attributes)
+        # Name of the dimension along which values are appended.
+        self._axis = axis_names(attributes)[0]
         # Number of values on the disk.
         self._finished = 0
         if path.exists() and any(path.iterdir()):
@@ -77,19 +80,18 @@ class SweepStore:
         # This import is slow.
         import xarray as xr
 
-        axis = self._attributes["axis"]
         if not self._finished:
-            return xr.Dataset(coords={axis: np.zeros(0)}, attrs=self._attributes)
+            return without_values(self._attributes)
         dataset: xr.Dataset = xr.open_zarr(self._path, chunks=None, **_OPTIONS)
-        values = dataset[axis].values
-        return dataset if np.all(np.diff(values) > 0.0) else dataset.sortby(axis)
+        values = dataset[self._axis].values
+        return dataset if np.all(np.diff(values) > 0.0) else dataset.sortby(self._axis)
 
     def append(self, point: xr.Dataset) -> None:
         """Add a value. It counts only after its arrays are on the disk, in case of a power failure or a full disk."""
         import zarr
 
         first: dict[str, Any] = {"mode": "w", "encoding": absent_values(point)}
-        mode = {"append_dim": self._attributes["axis"]} if self._finished else first
+        mode = {"append_dim": self._axis} if self._finished else first
         with output_named_in_errors(self._path):
             point.assign_attrs(self._attributes | {_COUNT_ATTRIBUTE: self._finished}).to_zarr(
                 self._path, **mode, **_WRITING_OPTIONS
@@ -113,7 +115,6 @@ class SweepStore:
 
         if not (self._path / _METADATA_FILE).exists():
             raise ValueError(f"store={self._path}: holds other files; must be new, empty, or the store of this request")
-        axis = self._attributes["axis"]
         with _damage_named(self._path):
             group = zarr.open_group(self._path, mode="r+", use_consolidated=False)
             arrays = dict(group.arrays())
@@ -121,7 +122,7 @@ class SweepStore:
             is_whole = set(zarr.open_group(self._path, mode="r").array_keys()) <= set(arrays)
             finished = int(group.attrs.get(_COUNT_ATTRIBUTE, 0))  # type: ignore[arg-type]
         check_same_sweep(f"store={self._path}", group.attrs, self._attributes)
-        self._finished = count_complete(self._path, arrays, axis, finished) if is_whole else 0
+        self._finished = count_complete(self._path, arrays, self._axis, finished) if is_whole else 0
         if self._finished == self._attributes["count"]:
             return
         # If the store is not writable, this fails before anything is computed.
@@ -134,8 +135,16 @@ class SweepStore:
             self._set_finished(group, self._finished)
         # Arrays may contain values that do not count.
         for array in arrays.values():
-            if has_axis(array, axis) and array.shape[0] > self._finished:
+            if has_axis(array, self._axis) and array.shape[0] > self._finished:
                 array.resize((self._finished, *array.shape[1:]))
+
+
+def without_values(attributes: Mapping[str, Any]) -> xr.Dataset:
+    """Return the dataset of a request before its first value."""
+    # This import is slow.
+    import xarray as xr
+
+    return xr.Dataset(coords={name: np.zeros(0) for name in axis_names(attributes)}, attrs=attributes)
 
 
 def check_same_sweep(label: str, found: Mapping[str, Any], wanted: Mapping[str, Any], *, ignored: Sequence[str] = ()) -> None:

@@ -1,7 +1,8 @@
-"""Sweeps: maps at many energies, or values of a parameter, measured one after the other into one labelled dataset."""
+"""Sweeps: maps at many values of the energy or of parameters, measured one after the other into one labelled dataset."""
 
 from __future__ import annotations
 
+import itertools
 import os
 import re
 from collections.abc import Callable, Mapping, Sequence
@@ -16,10 +17,12 @@ from engine.exits.lyapunov_orbits import find_lyapunov_orbits
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.result import Result
 from engine.foundations.validation import checks_types
+from engine.foundations.wording import format_count
 from engine.measures.compute import compute_point
 from engine.measures.measured_map import SweepPoint
+from engine.sweeps.axes import AXIS_SEPARATOR, axis_names
 from engine.sweeps.spec import VALUE_ATTRIBUTES, SweepSpec
-from engine.sweeps.store import SweepStore, check_same_sweep, open_store
+from engine.sweeps.store import SweepStore, check_same_sweep, open_store, without_values
 from engine.systems.outcomes import Outcome, read_outcomes
 
 if TYPE_CHECKING:
@@ -33,31 +36,35 @@ class Sweep(Result):
     Attributes
     ----------
     dataset
-        The measures along the first dimension, which has the name "h" or that of the parameter. Along a parameter at several
-        energies, the second dimension is "h". Shares also have the dimension "outcome", 0 for bounded orbits, and maps have the
-        dimensions of their axes. The attributes are the request.
+        The measures along the axes of the sweep, whose names are "h", "jacobi" or those of the parameters. Shares also have the
+        dimension "outcome", 0 for bounded orbits, and maps have the dimensions of their axes. The attributes are the request.
     """
 
     dataset: xr.Dataset = field(repr=False)
 
     @property
+    def axes(self) -> tuple[str, ...]:
+        """The names of the axes of the sweep, one or two: "h", "jacobi", or the name of a parameter."""
+        return axis_names(self.dataset.attrs)
+
+    @property
+    def symbols(self) -> tuple[str, ...]:
+        """The symbols of the axes."""
+        return tuple(str(self.dataset.attrs["symbol"]).split(AXIS_SEPARATOR))
+
+    @property
     def name(self) -> str:
-        """The name of the energy, "h", or of the parameter."""
-        return str(self.dataset.attrs["axis"])
+        """The name of the first axis."""
+        return self.axes[0]
 
     @property
     def symbol(self) -> str:
-        """The symbol of the energy or of the parameter."""
-        return str(self.dataset.attrs["symbol"])
-
-    @property
-    def axes(self) -> tuple[str, ...]:
-        """The names of the axes of the sweep, one or two: `name`, and "h" along a parameter at several energies."""
-        return (self.name, "h") if self.name != "h" and "h" in self.dataset.dims else (self.name,)
+        """The symbol of the first axis."""
+        return self.symbols[0]
 
     @property
     def values(self) -> np.ndarray:
-        """(n,) energies h, or values of the parameter."""
+        """(n,) values on the first axis."""
         return np.asarray(self.dataset[self.name].values)
 
     @property
@@ -85,7 +92,7 @@ class Sweep(Result):
         return self[name] - error, self[name] + error
 
     def columns(self) -> Mapping[str, np.ndarray]:
-        """Return all numbers by name, the energy or parameter first, and for two axes a row for each map.
+        """Return all numbers by name, the axes first, with a row for each map.
 
         A share has a column for each outcome, such as ``share_bounded`` and ``share_exit_1``.
         """
@@ -107,8 +114,11 @@ class Sweep(Result):
     def describe(self) -> str:
         """Return the number of measured values, in a sentence."""
         attributes = self.dataset.attrs
-        energies = f", each at {self.dataset.sizes['h']} energies," if len(self.axes) > 1 else ""
-        return f"{self.values.size} of {attributes['count']} values of {self.symbol}{energies} on {attributes['plane']}."
+        further = "".join(
+            f", each at {format_count(self.dataset.sizes.get(axis, 0), 'value')} of {symbol},"
+            for axis, symbol in zip(self.axes[1:], self.symbols[1:], strict=True)
+        )
+        return f"{self.values.size} of {attributes['count']} values of {self.symbol}{further} on {attributes['plane']}."
 
 
 def share_names(outcomes: Sequence[Outcome]) -> list[str]:
@@ -136,8 +146,8 @@ def compute_sweep(
 ) -> Sweep:
     """Compute the maps of a sweep one after the other, each on all workers, and their measures.
 
-    Along a parameter at several energies, the maps of all energies at a value of the parameter are measured together. In memory,
-    values are measured from coarse to fine, so that curves take shape early; in a store, in ascending order.
+    Along a pair of axes, all maps at a value on the first axis are measured together. In memory, values are measured from coarse
+    to fine, so that curves take shape early; in a store, in ascending order.
 
     Parameters
     ----------
@@ -145,14 +155,15 @@ def compute_sweep(
         The request.
     store
         Folder of a Zarr group (format 3): new, empty, or of an earlier call with the same request, which is resumed. Each value
-        is on the disk before the next value is computed, and only the map of one value is in memory. None for a sweep in memory.
+        on the first axis is on the disk before the next is computed, and only the maps of one value are in memory. None for a
+        sweep in memory.
     earlier
         A sweep in memory whose values are not measured again: the last sweep that `on_frame` received in an interrupted call, or
         the sweep of a file (`open_result`). Its request must be the same except for `values` and `refine`.
     on_frame
-        Called in this thread after each value with the values so far.
+        Called in this thread after each value on the first axis with the values so far.
     measure
-        Replaces the function that measures one value, for example to use a cache.
+        Replaces the function that measures one map, for example to use a cache.
     execution
         How the computation runs.
 
@@ -181,15 +192,16 @@ def compute_sweep(
     1  0.5         0.399  0.494
     2  0.6         0.441  0.314
     """
-    if spec.along is None:
-        for energy in (spec.values[0], spec.values[-1]):
+    if not spec.parameters:
+        for energy in spec.energy_range:
             # Undefined exits are an error before anything is computed.
             find_lyapunov_orbits(spec.potential, energy)
     measure_all = partial(_measure_all, spec, on_frame=on_frame, measure=measure, execution=execution)
+    values = spec.axis_values[0]
     if store is None:
-        return measure_all(_MemoryStorage(spec, earlier), _coarse_to_fine(list(spec.values)))
+        return measure_all(_MemoryStorage(spec, earlier), _coarse_to_fine(values))
     with open_store(Path(store), spec.attributes()) as sweep_store:
-        return measure_all(sweep_store, list(spec.values))
+        return measure_all(sweep_store, values)
 
 
 def _measure_all(
@@ -217,19 +229,23 @@ def _measure_all(
 def _measure_value(
     spec: SweepSpec, value: float, measure: Callable[[SweepPoint], xr.Dataset] | None, execution: Execution
 ) -> xr.Dataset:
-    """Return the measures of all maps at a value, with the second dimension "h" if the request has several energies."""
+    """Return the measures of all maps at a value on the first axis."""
+    places, measured = [(value, *others) for others in itertools.product(*spec.axis_values[1:])], []
+    for number, place in enumerate(places):
+        point, part = spec.point(*place), execution.part(number, len(places))
+        measured.append(measure(point) if measure is not None else compute_point(point, execution=part))
+    return _join(measured, spec.axes[-1].key)
+
+
+def _join(parts: Sequence[xr.Dataset], axis: str) -> xr.Dataset:
+    """Return measures at different values on an axis in one dataset."""
     # This import is slow.
     import xarray as xr
 
-    energies, measured = spec.energies_at(value), []
-    for number, energy in enumerate(energies):
-        point, part = spec.point(value, energy), execution.part(number, len(energies))
-        measured.append(measure(point) if measure is not None else compute_point(point, execution=part))
-    if not isinstance(spec.energy, tuple):
-        return measured[0]
-    h = xr.Variable("h", list(energies), {"long_name": "h", "units": "1"})
-    row: xr.Dataset = xr.concat([one.expand_dims("h", axis=1) for one in measured], h, combine_attrs="override")
-    return row
+    joined: xr.Dataset = xr.concat(
+        parts, axis, data_vars="all", coords="minimal", compat="override", join="override", combine_attrs="override"
+    )
+    return joined
 
 
 class _MemoryStorage:
@@ -243,24 +259,18 @@ class _MemoryStorage:
         self._points.append(point)
 
     def read(self) -> xr.Dataset:
-        # This import is slow.
-        import xarray as xr
-
         if not self._points:
-            return xr.Dataset(coords={self._name: np.zeros(0)}, attrs=self._attributes)
-        joined: xr.Dataset = xr.concat(
-            self._points, self._name, data_vars="all", coords="minimal", compat="override", join="override",
-            combine_attrs="override",
-        )  # fmt: skip
-        return joined.sortby(self._name).assign_attrs(self._attributes)
+            return without_values(self._attributes)
+        return _join(self._points, self._name).sortby(self._name).assign_attrs(self._attributes)
 
 
 def _known_points(spec: SweepSpec, earlier: Sweep, attributes: Mapping[str, object]) -> list[xr.Dataset]:
     """Return the points of an earlier sweep at the values of the request, and at other values up to the number to refine."""
     check_same_sweep("earlier", earlier.dataset.attrs, attributes, ignored=VALUE_ATTRIBUTES)
     earlier_values = earlier.values.tolist()
-    other_values = [value for value in earlier_values if value not in spec.values]
-    used_values = {*spec.values, *other_values[: spec.count - len(spec.values)]}
+    given_values = spec.axis_values[0]
+    other_values = [value for value in earlier_values if value not in given_values]
+    used_values = {*given_values, *other_values[: spec.count - len(given_values)]}
     return [earlier.dataset.isel({spec.name: [k]}) for k, value in enumerate(earlier_values) if value in used_values]
 
 

@@ -36,10 +36,11 @@ def _compute_sweep(
     find_result: Callable[[Job[Any]], Any],
 ) -> Sweep:
     """Compute a sweep. The job manager passes the keyword arguments; `find_result` returns the results of other jobs."""
-    members = members_job(spec.along)
-    if members is not None:
-        # The potentials of a typed formula must be found with limited resources before they are used in this process.
-        find_result(members)
+    for axis in spec.searched_axes:
+        members = members_job(axis)
+        if members is not None:
+            # The potentials of a typed formula must be found with limited resources before they are used in this process.
+            find_result(members)
 
     def measure(point: SweepPoint) -> xr.Dataset:
         return find_result(Job(_measure_point, (point, map_job(point.map_spec))))

@@ -127,10 +127,8 @@ def find_where(
     """
     wanted = checked_number("value", value)
     most = checked_count("most_maps", most_maps, 2, _MOST_MAPS)
-    if len(spec.values) < 2 or isinstance(spec.energy, tuple):
-        raise ValueError(
-            f"spec: has {len(spec.values)} values of {spec.name}; must have two or more, and one energy along a parameter"
-        )
+    if len(spec.axes) > 1 or len(spec.values) < 2:
+        raise ValueError(f"spec: has {spec.count} values of {spec.name}; must have two or more, on one axis")
     width = _TOLERANCE * (spec.values[-1] - spec.values[0]) if tolerance is None else checked_t_max(tolerance, name="tolerance")
     measure = _measure_of(spec, quantity)
     request = replace(spec, measures=(measure,), refine=0)

@@ -194,9 +194,10 @@ def _plate_view(result: Sweep, measure: str | None, outcome: int, cmap: Any, nor
         values, title = values[..., outcome], f"Share: {labels[outcome]}"
 
     def draw(axes: Axes) -> list[Artist]:
-        return [axes.pcolormesh(result.values, result["h"], values.T, shading="nearest", cmap=cmap, norm=norm)]
+        return [axes.pcolormesh(*map(result.__getitem__, result.axes), values.T, shading="nearest", cmap=cmap, norm=norm)]
 
-    return View((result.symbol, "h"), draw, title=title, is_plane=True, has_scale=True)
+    x_symbol, y_symbol = result.symbols
+    return View((x_symbol, y_symbol), draw, title=title, is_plane=True, has_scale=True)
 
 
 def _check_scale(cmap: Any, norm: Any, *, has_scale: bool) -> None:

@@ -47,7 +47,7 @@ def sweep_progress(curves: Sweep) -> float:
 def _sentence(curves: Sweep) -> str:
     """Describe how many values have been measured, and where."""
     request = curves.dataset.attrs
-    energy = f" at h = {format_number(request['energy'], 6)}" if request["along"] else ""
+    energy = f" at h = {format_number(request['energy'], 6)}" if "energy" in request else ""
     values = f"values of {curves.symbol} on {request['plane']}{energy}"
     if curves.complete:
         return f"{request['count']} {values}. Click a curve to open the map there."

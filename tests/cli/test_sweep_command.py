@@ -13,7 +13,7 @@ import xarray as xr
 
 import engine
 from cli.main import INTERRUPTED
-from engine import CASES, Execution, Plane, SweepSpec
+from engine import CASES, Execution, ParameterAxis, Plane, SweepSpec
 from engine.results import Sweep
 from tests.cli.conftest import Run
 
@@ -44,6 +44,39 @@ def test_a_store_can_hold_measures_alone(run: Run, tmp_path: Path) -> None:
     run(*SWEEP, "--measure", "shares", "--measure", "islands", "--store", tmp_path / "store.zarr")
     wanted = engine.compute_sweep(replace(SPEC, measures=("shares", "islands"))).dataset
     xr.testing.assert_equal(load(tmp_path / "store.zarr"), wanted)
+
+
+PLATE = ("sweep", "I", "--axis", "omega_1=0.9:1.1:2", "--axis", "epsilon=0.8:1.2:3", "--energy", 0.2, "--measure", "shares")
+
+
+def test_a_store_can_have_two_axes(run: Run, tmp_path: Path) -> None:
+    code, out, _ = run(*PLATE, "--resolution", "9x7", "--t-max", 50, "--json", "--store", tmp_path / "store.zarr")
+    assert (code, json.loads(out)["dimensions"]) == (0, {"omega_1": 2, "epsilon": 3, "outcome": 3})
+    axes = ParameterAxis("omega_1", 0.9, 1.1, CASES["I"]), ParameterAxis("epsilon", 0.8, 1.2, CASES["I"])
+    spec = replace(SPEC, values=((0.9, 1.1), np.linspace(0.8, 1.2, 3)), along=axes, energy=0.2, measures=("shares",))
+    xr.testing.assert_equal(load(tmp_path / "store.zarr"), engine.compute_sweep(spec).dataset)
+
+
+def test_one_axis_of_jacobi_constants(run: Run, tmp_path: Path) -> None:
+    arguments = ("--axis", "jacobi=4.1:4.3:2", "--measure", "shares", "--resolution", "9x7", "--t-max", 20)
+    assert run("sweep", "Hill", *arguments, "--store", tmp_path / "store.zarr")[0] == 0
+    assert load(tmp_path / "store.zarr")["jacobi"].values.tolist() == [4.1, 4.3]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("--axis", "epsilon=0.8:1.2"), "axis='epsilon=0.8:1.2': must be NAME=LOW:HIGH:COUNT"),
+        (("--axis", "epsilon=0.8:1.2:3", "--low", 0.1), "axis: must be given without --low"),
+        (("--axis", "epsilon=0.8:1.2:3", "--energy", 0.1, "--energy", 0.2), "axis: must be given without --low"),
+        (("--axis", "width=0.8:1.2:3", "--energy", 0.2), "parameter 'width': must be a parameter of the system"),
+        (("--axis", "h=0.2:0.1:3",), "low=0.2, high=0.1: low must be below high"),
+    ],
+)  # fmt: skip
+def test_wrong_axes_are_refused(run: Run, tmp_path: Path, arguments: tuple[object, ...], message: str) -> None:
+    code, _, err = run("sweep", "I", *arguments, "--store", tmp_path / "store.zarr")
+    assert code == 2
+    assert message in " ".join(err.split())
 
 
 def test_interrupted_sweep_is_resumed(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

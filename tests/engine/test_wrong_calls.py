@@ -210,7 +210,7 @@ WRONG_CALLS = (
     ('SweepSpec(III, Plane.X_PX, (0.3,), measures="shares", refine=2.5)', "refine=2.5: must be an integer from 0 to 1000"),
     (
         'SweepSpec(III, Plane.X_PX, (0.3,), along="epsilon", energy=0.2)',
-        "along='epsilon': must be a ParameterAxis or None",
+        "along='epsilon': must be one of h, jacobi, a ParameterAxis, or a pair of these",
     ),
     ("SweepSpec(III, Plane.X_PX, range(10_001))", "values=range(0, 10001): must be 1 to 10000 different numbers"),
     (
@@ -218,7 +218,10 @@ WRONG_CALLS = (
         "measures=('shares', 'colour'): must be one or more of",
     ),
     ('SweepSpec(III, Plane.X_PX, (0.3,), measures="islands", refine=2)', "refine=2: must be 0 without the measure 'shares'"),
-    ("SweepSpec(III, Plane.X_PX, (0.3,), energy=0.2)", "energy=0.2: must be given along a parameter, and None along the energy"),
+    (
+        "SweepSpec(III, Plane.X_PX, (0.3,), energy=0.2)",
+        "energy=0.2: must be given along parameters alone, and None along the energy",
+    ),
     ("SweepSpec(III, Plane.X_PX, (0.8,), along=EPSILON, energy=0.2)", "plane=(x, ε): its parameter belongs to another system"),
     (
         'SweepSpec(CASES["I"], Slice(C.X, EPSILON), (0.8,), along=EPSILON, energy=0.2)',

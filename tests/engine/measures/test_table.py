@@ -50,7 +50,7 @@ def test_the_example_of_the_guide_is_measured_like_any_other(
     assert 0.0 < found.low < found.share < found.high < 1.0
     assert example.sentence is not None
     assert example.sentence(found).endswith("of the starts are on a boundary.")
-    point = SweepPoint(sea.spec, "h", 0.13, (example.name,), (0, 1, 2), sea.outcomes)
+    point = SweepPoint(sea.spec, (("h", 0.13),), (example.name,), (0, 1, 2), sea.outcomes)
     dataset = compute_point(point, escape_map=sea)
     assert dataset["boundary_share"].dims == ("h",)
     assert (dataset["boundary_share_low"], dataset["boundary_share_high"]) == (found.low, found.high)

@@ -162,8 +162,9 @@ def step_at(edge: float) -> Callable[[SweepPoint], xr.Dataset]:
     """Return a measure whose share falls from 1 to 0 at an energy."""
 
     def measure(point: SweepPoint) -> xr.Dataset:
-        share = float(point.value < edge)
-        return xr.Dataset({"share": (("h", "outcome"), [[share, 1.0 - share, 0.0, 0.0]])}, {"h": [point.value]})
+        ((name, value),) = point.place
+        share = float(value < edge)
+        return xr.Dataset({"share": ((name, "outcome"), [[share, 1.0 - share, 0.0, 0.0]])}, {name: [value]})
 
     return measure
 
@@ -184,10 +185,10 @@ def test_further_values_close_in_on_the_steepest_place() -> None:
 def test_interrupted_sweeps_continue_where_they_stopped(done: int, edge: float) -> None:
     frames: list[Sweep] = []
     whole = compute_sweep(STEP, on_frame=frames.append, measure=step_at(edge))
-    measured: list[float] = []
+    measured: list[SweepPoint] = []
 
     def measure(point: SweepPoint) -> xr.Dataset:
-        measured.append(point.value)
+        measured.append(point)
         return step_at(edge)(point)
 
     again = compute_sweep(STEP, earlier=frames[done - 1] if done else None, measure=measure)

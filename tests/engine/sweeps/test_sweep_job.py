@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -37,3 +38,19 @@ def test_a_sweep_along_a_parameter_of_a_typed_formula_first_finds_the_potentials
     assert inbox.done.wait(SECONDS)
     assert [str(error) for error in inbox.errors] == (["beyond its limits"] if limited else [])
     assert bool(inbox.results) is not limited
+
+
+def test_a_sweep_along_two_letters_finds_the_potentials_of_each_line_within_limits() -> None:
+    system, inbox, calls = System(TYPED, "½(x² + y²) − a x²y + b y³/3"), Inbox(), []
+
+    def run_limited(call: Callable[[], Any], cancel: threading.Event) -> Any:
+        calls.append(call)
+        return call()
+
+    axes = [ParameterAxis(name, 0.8, 1.2, system) for name in ("a", "b")]
+    spec = replace(sweep_along(system, "a"), values=((0.9, 1.1), (1.0, 1.2)), along=axes)
+    Jobs(run_limited=run_limited).request(sweep_job(spec), inbox.result, inbox.error)
+    assert inbox.done.wait(SECONDS)
+    assert inbox.results[0].axes == ("a", "b")
+    # Along b, and along a at each of the two values of b.
+    assert len(calls) == 3
