@@ -17,12 +17,24 @@ import typer
 
 from cli.layer_options import LayerOptions, read_layers, read_study_settings
 from cli.option_marks import DocumentedBy
-from engine import MEASURES, POTENTIALS, ParameterAxis, Plane, Potential, Section, Slice, System, read_section, review_potential
+from engine import (
+    MEASURES,
+    POTENTIALS,
+    EnergyAxis,
+    ParameterAxis,
+    Plane,
+    Potential,
+    Section,
+    Slice,
+    System,
+    read_section,
+    review_potential,
+)
 from engine.foundations.validation import checked_count
 from engine.slices.axes import Energy
 from engine.slices.slice_text import AXIS_NAMES, read_slice
 from engine.slices.window import GivenWindow
-from engine.sweeps.axes import EnergyAxis, SweepAxis
+from engine.sweeps.axes import SweepAxis
 from engine.sweeps.spec import MOST_VALUES
 from engine.systems.system import TYPED
 from plots.pictures.palette import DEFAULT_PALETTE, PALETTES, Palette, find_palette

@@ -18,7 +18,7 @@ programs of this repository, and may change with any version.
 - measures: `MEASURES`, `Measure`; of basins and statistics `compute_basin_entropy`, `compute_wada_test`,
   `compute_uncertainty_exponent`, `compute_statistics`, `compute_islands`, `compute_chaotic_share`, `compute_exit_matching`,
   `fit_decay_laws`
-- sweeps over energies and parameters: `SweepSpec`, `compute_sweep`, `plan_sweep`, `find_where`
+- sweeps over energies and parameters: `SweepSpec`, `EnergyAxis`, `compute_sweep`, `plan_sweep`, `find_where`
 - files and execution: `Result`, `open_result`, `Execution`
 """
 
@@ -76,6 +76,7 @@ from engine.slices.sections.section import Section as Section
 from engine.slices.sections.section_text import read_section as read_section
 from engine.slices.slice import Slice as Slice
 from engine.slices.window import Window as Window
+from engine.sweeps.axes import EnergyAxis as EnergyAxis
 from engine.sweeps.plan import plan_sweep as plan_sweep
 from engine.sweeps.spec import SweepSpec as SweepSpec
 from engine.sweeps.stored_returns import store_returns as store_returns
