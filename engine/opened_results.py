@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, get_type_hints, overload
 
 from engine.foundations.extras import require_package
+from engine.foundations.plug_ins import import_plug_ins
 from engine.foundations.result import RecordedResult, Result
 from engine.foundations.stored_fields import plain_attributes, read_field, with_present_names
 from engine.foundations.validation import checks_types
@@ -119,7 +120,11 @@ def _open_netcdf(path: str | os.PathLike[str]) -> xr.Dataset:
 
 def _read(path: str | os.PathLike[str], dataset: xr.Dataset) -> Any:
     """Return the result of a dataset; a ValueError names the path."""
-    kind = Result.kinds().get(str(dataset.attrs.get("result")))
+    name = str(dataset.attrs.get("result"))
+    if name not in Result.kinds():
+        # Other packages may define the class.
+        import_plug_ins()
+    kind = Result.kinds().get(name)
     if kind is None:
         content = dataset.attrs.get("result", "no result")
         raise ValueError(f"path={os.fspath(path)}: holds {content}; must hold a result of this library. xarray opens it")

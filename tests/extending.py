@@ -17,7 +17,12 @@ def example_colours(key: str) -> list[tuple[str, ...]]:
 
 def run_example(heading: str, given: Mapping[str, Any]) -> dict[str, Any]:
     """Return the given names and the names that the Python code under a heading defines."""
-    section = _TEXT.split(f"\n## {heading}\n")[1].split("\n## ")[0]
     names = dict(given)
-    exec("\n".join(re.findall(r"^```python\n(.*?)^```$", section, re.MULTILINE | re.DOTALL)), names)
+    exec(example_text(heading), names)
     return names
+
+
+def example_text(heading: str, language: str = "python") -> str:
+    """Return the code in a language under a heading."""
+    section = _TEXT.split(f"\n## {heading}\n")[1].split("\n## ")[0]
+    return "\n".join(re.findall(rf"^```{language}\n(.*?)^```$", section, re.MULTILINE | re.DOTALL))

@@ -25,10 +25,9 @@ from cli.option_marks import DocumentedBy
 from cli.options import with_options
 from cli.output_files import Stem, name_files, reserve_output, write_files
 from cli.printing import AsJson, Table, list_rows, print_result
-from engine import Potential, Section, Slice, SweepSpec, System, compute_sweep
-from engine.measures.table import CURVES, QUICK_CURVES
+from engine import EnergyAxis, Potential, Section, Slice, SweepSpec, System, compute_sweep
+from engine.measures.table import curve_names
 from engine.results import Sweep
-from engine.sweeps.axes import EnergyAxis
 from engine.systems.parameters import WELL_PARAMETERS
 from plots.printed.figure_style import FigureFormat, FigureStyle
 from plots.studies.against import AGAINST
@@ -38,7 +37,7 @@ AGAINST_HELP = (
     f"{', '.join(axis.key for axis in EnergyAxis)}, or a parameter: {', '.join(WELL_PARAMETERS)} or a letter of the formula."
 )
 ENERGY_HELP = "h of all maps along a parameter."
-MEASURE_HELP = f"{', '.join(CURVES)}; all by default. Can be repeated."
+MEASURE_HELP = f"{', '.join(curve_names())}; all by default. Can be repeated."
 
 # Names of the columns that are only in files and JSON, not in the printed table.
 _ERROR_BAR = re.compile(r"_(low|high)(_|$)|_error$")
@@ -74,7 +73,7 @@ def run(
         space_values(low, high, count),
         resolution,
         t_max=t_max,
-        measures=check_measures(measure, CURVES) or (CURVES if exponent else QUICK_CURVES),
+        measures=check_measures(measure, curve_names()) or curve_names(slow=exponent),
         along=swept_axis(against, low, high, system),
         energy=energy,
         refine=refine,

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from operator import attrgetter, methodcaller
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
+from engine.foundations.plug_ins import Entries, Group
 from engine.foundations.wording import describe_codes
 from engine.maps.result import EscapeMap
 from engine.measures.basins.basin_entropy import compute_basin_entropy
@@ -252,11 +252,19 @@ _ENTRIES = (
     Measure("maps", "Maps", "the arrays of the maps", lambda measured: measured.escape_map, other_variables=_map_variables),
 )  # fmt: skip
 
-MEASURES: Mapping[str, Measure[Any]] = MappingProxyType({measure.name: measure for measure in _ENTRIES})
-"""The measures by name."""
 
-CURVES = tuple(name for name, measure in MEASURES.items() if measure.curve != NO_CURVE)
-"""Names of all measures that are drawn as curves against the energy or a parameter."""
+def _names_of(measure: Measure[Any]) -> list[str]:
+    """Return the name of a measure and those of its numbers."""
+    return [measure.name, *(quantity.name for quantity in measure.quantities)]
 
-QUICK_CURVES = tuple(name for name in CURVES if not MEASURES[name].slow)
-"""Names of the measures in `CURVES` that take little time in addition to the map."""
+
+MEASURES: Mapping[str, Measure[Any]] = Entries(Group.MEASURES, Measure, _ENTRIES, names=_names_of)
+"""The measures by name, with those of other packages."""
+
+
+def curve_names(*, slow: bool = True) -> tuple[str, ...]:
+    """Return the names of the measures that are drawn as curves against the energy or a parameter.
+
+    Without `slow`, only those that take little time in addition to the map.
+    """
+    return tuple(name for name, measure in MEASURES.items() if measure.curve != NO_CURVE and (slow or not measure.slow))

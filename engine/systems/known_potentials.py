@@ -19,7 +19,5 @@ def _make_potential(name: str) -> Potential:
 CASES: Mapping[str, Potential] = ByName("case", PAPER_ENERGIES, _make_potential)
 """The three cases of Zotos (2014): V = (x² + y²)/2 + V1 with V1 = −x y², −x (x²/3 − y²) and −x² y²."""
 
-POTENTIALS: Mapping[str, Potential] = ByName(
-    "potential", CATALOGUE, _make_potential, {name: entry.title for name, entry in CATALOGUE.items()}
-)
-"""All potentials included in the engine, by name: ``POTENTIALS["HH"]``. The three cases of Zotos (2014) come first."""
+POTENTIALS: Mapping[str, Potential] = ByName("potential", CATALOGUE, _make_potential, lambda name: CATALOGUE[name].title)
+"""All potentials of the catalogue, by name: ``POTENTIALS["HH"]``. The three cases of Zotos (2014) come first."""

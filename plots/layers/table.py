@@ -7,6 +7,7 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
+from engine.foundations.plug_ins import Entries, Group
 from plots.layers.descriptors import DESCRIPTORS
 from plots.layers.escapes import BASINS, COMPARED, CROSSINGS, CURVES, DIFFERENCES, TIMES
 from plots.layers.layer import Layer
@@ -18,26 +19,27 @@ from plots.layers.regularity import REGULARITY
 from plots.layers.trust import TRUST
 from plots.pictures.palette import Entry
 
+_LAYERS: tuple[Layer[Any], ...] = (REGULARITY, TRUST, PERIODIC_ORBITS, MANIFOLDS, ORIGINS, DESCRIPTORS)
+# The pictures of a map before and after those of the layers.
+_FIRST_PICTURES, _LAST_PICTURES = (CURVES, BASINS, TIMES, CROSSINGS), (COMPARED, DIFFERENCES)
 
-def _by_name[Named: (Layer[Any], Picture)](*entries: Named) -> Mapping[str, Named]:
-    return MappingProxyType({entry.name: entry for entry in entries})
+
+def _names_of(layer: Layer[Any]) -> set[str]:
+    """Return the names of a layer and of its picture."""
+    return {layer.name, *([] if layer.picture is None else [layer.picture.name])}
 
 
-LAYERS: Mapping[str, Layer[Any]] = _by_name(REGULARITY, TRUST, PERIODIC_ORBITS, MANIFOLDS, ORIGINS, DESCRIPTORS)
-"""The layers by name, in the order of their switches."""
+LAYERS: Mapping[str, Layer[Any]] = Entries(
+    Group.LAYERS, Layer, _LAYERS, names=_names_of, reserved=[picture.name for picture in (*_FIRST_PICTURES, *_LAST_PICTURES)]
+)
+"""The layers by name, in the order of their switches, with those of other packages."""
 
 LAYERS_BY_PICTURE = MappingProxyType({layer.picture.name: layer for layer in LAYERS.values() if layer.picture is not None})
 """The layers that have a picture, by the name of the picture."""
 
-PICTURES = _by_name(
-    CURVES,
-    BASINS,
-    TIMES,
-    CROSSINGS,
-    *(layer.picture for layer in LAYERS.values() if layer.picture is not None),
-    COMPARED,
-    DIFFERENCES,
-)
+_PICTURES = (*_FIRST_PICTURES, *(layer.picture for layer in LAYERS.values() if layer.picture is not None), *_LAST_PICTURES)
+
+PICTURES: Mapping[str, Picture] = MappingProxyType({picture.name: picture for picture in _PICTURES})
 """The pictures by name."""
 
 TITLES = MappingProxyType({name: picture.title for name, picture in PICTURES.items() if not picture.compares})

@@ -5,7 +5,7 @@ from __future__ import annotations
 from engine import SweepSpec, compute_sweep
 from engine.foundations.wording import format_number
 from engine.jobs.job import Job
-from engine.measures.table import CURVES
+from engine.measures.table import curve_names
 from engine.results import Sweep
 from engine.sweeps.sweep_job import sweep_job
 from plots.studies.axes import changes_at, energy_and_parameters, parameter_axis, spaced_values, swept_slice
@@ -30,7 +30,7 @@ def _job(subject: Subject, axis: str) -> Job[Sweep]:
         spaced_values(subject, axis, SWEPT_VALUES),
         _RESOLUTION,
         t_max=subject.t_max,
-        measures=CURVES,
+        measures=curve_names(),
         along=along,
         energy=None if along is None else subject.energy,
         refine=REFINED_VALUES,

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from types import MappingProxyType
 from typing import Any
 
+from engine.foundations.plug_ins import Entries, Group
 from plots.studies.against import AGAINST
 from plots.studies.family import FAMILY_STUDY
 from plots.studies.nine_energies import NINE_ENERGIES
@@ -15,8 +15,8 @@ from plots.studies.study import Study
 
 _ENTRIES: tuple[Study[Any], ...] = (SECTION_STUDY, PERIODIC_STUDY, NINE_ENERGIES, AGAINST, FAMILY_STUDY)
 
-STUDIES: Mapping[str, Study[Any]] = MappingProxyType({study.name: study for study in _ENTRIES})
-"""The studies by name, in the order of their tabs."""
+STUDIES: Mapping[str, Study[Any]] = Entries(Group.STUDIES, Study, _ENTRIES)
+"""The studies by name, in the order of their tabs, with those of other packages."""
 
 
 def studies_by_tab() -> dict[str, list[str]]:

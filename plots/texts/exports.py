@@ -134,8 +134,11 @@ def python_lines(spec: MapSpec, system: System, starts: Sequence[Sequence[float]
     ]
     words = re.findall(r"\w+", "\n".join(lines))
     names = sorted({*words}.intersection(public_names))
-    imports = ["from matplotlib import pyplot", "", f"from escape_explorer import {', '.join(names)}", ""]
-    return "\n".join([*imports, *lines]) + "\n"
+    imports = ["from matplotlib import pyplot", "", f"from escape_explorer import {', '.join(names)}"]
+    if study is not None and study.function.__name__ not in public_names:
+        # The study of another package.
+        imports.append(f"from {study.function.__module__} import {study.function.__name__}")
+    return "\n".join([*imports, "", *lines]) + "\n"
 
 
 def _orbit_lines(starts: Sequence[Sequence[float]]) -> list[str]:

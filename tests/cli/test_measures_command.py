@@ -31,13 +31,13 @@ from engine import (
     fit_decay_laws,
 )
 from engine.measures.basins.starts import exit_labels
-from engine.measures.table import QUICK_CURVES
+from engine.measures.table import curve_names
 from tests.cli.conftest import Run
 
 MAP = ("II", "--energy", 0.2, "--resolution", 25, "--t-max", 100)
 SPEC = MapSpec(CASES["II"], Plane.X_PX, 0.2, (25, 25), t_max=100.0)
 SWEEP = ("I", "--low", 0.12, "--high", 0.2, "--count", 3, "--resolution", 15, "--t-max", 50, "--no-exponent")
-SWEEP_SPEC = SweepSpec(CASES["I"], Plane.X_PX, np.linspace(0.12, 0.2, 3), (15, 15), t_max=50.0, measures=QUICK_CURVES)
+SWEEP_SPEC = SweepSpec(CASES["I"], Plane.X_PX, np.linspace(0.12, 0.2, 3), (15, 15), t_max=50.0, measures=curve_names(slow=False))
 
 
 def test_lyapunov_json_and_csv_equal_the_engine_result(run: Run, tmp_path: Path) -> None:

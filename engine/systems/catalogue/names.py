@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import unicodedata
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 
 from engine.foundations.validation import short_repr
 
@@ -27,17 +27,18 @@ class ByName[Value](Mapping[str, Value]):
     kind
         The word for a value in errors, such as "potential".
     names
-        The names.
+        The names, also those that are added later.
     make
         Function that returns the value of a name. It is called at each look-up.
-    titles
-        Titles by name. For an unknown name that resembles a title, the error suggests the name with this title.
+    title_of
+        Function that returns the title of a name. For an unknown name that resembles a title, the error suggests the name with
+        this title. By default titles are the names.
     """
 
     def __init__(
-        self, kind: str, names: Iterable[str], make: Callable[[str], Value], titles: Mapping[str, str] | None = None
+        self, kind: str, names: Collection[str], make: Callable[[str], Value], title_of: Callable[[str], str] = str
     ) -> None:
-        self._kind, self._names, self._make, self._titles = kind, tuple(names), make, dict(titles or {})
+        self._kind, self._names, self._make, self._title_of = kind, names, make, title_of
 
     def __getitem__(self, name: str) -> Value:
         """Return the value of a name; for an unknown name, raise an `UnknownNameError` that suggests similar names."""
@@ -63,7 +64,7 @@ class ByName[Value](Mapping[str, Value]):
     def _find_similar(self, name: str) -> list[str]:
         """Return up to three names with similar spelling, the most similar first."""
         # Names by the plain spelling of the name and of its title.
-        spellings = {_plain_spelling(text): known for known in self._names for text in (known, self._titles.get(known, known))}
+        spellings = {_plain_spelling(text): known for known in self._names for text in (known, self._title_of(known))}
         matches = difflib.get_close_matches(_plain_spelling(name), spellings, n=3, cutoff=_SMALLEST_SIMILARITY)
         return list(dict.fromkeys(spellings[match] for match in matches))
 

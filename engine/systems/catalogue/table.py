@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from engine.foundations.plug_ins import Entries, Group
 from engine.systems.catalogue.entry import CatalogueEntry, EnergyRange
 from engine.systems.catalogue.names import ByName
 from engine.systems.catalogue.rotating_systems import ROTATING_ENTRIES
+from engine.systems.formulas.formula_parser import make_potential
+from engine.systems.parameters import WELL_PARAMETERS
 
 PAPER_ENERGIES = {
     "I": EnergyRange(low=0.1, high=0.5, marked=(0.13, 0.15, 0.17, 0.19, 0.21, 0.23, 0.25, 0.27, 0.30), first=0.19),
@@ -71,9 +74,16 @@ _ENTRIES = (
     ),
 )
 
-_ENTRIES_BY_NAME = {entry.name: entry for entry in (*_ENTRIES, *ROTATING_ENTRIES)}
+
+def _check_formula(entry: CatalogueEntry) -> None:
+    """Raise ValueError if the formula of an entry cannot be parsed."""
+    letters = {name: value for name, value in entry.parameters.items() if name not in WELL_PARAMETERS}
+    make_potential(entry.formula, entry.name, letters)
+
+
+_ENTRIES_BY_NAME = Entries(Group.SYSTEMS, CatalogueEntry, (*_ENTRIES, *ROTATING_ENTRIES), check=_check_formula)
 
 CATALOGUE: Mapping[str, CatalogueEntry] = ByName(
-    "potential", _ENTRIES_BY_NAME, _ENTRIES_BY_NAME.__getitem__, {name: entry.title for name, entry in _ENTRIES_BY_NAME.items()}
+    "potential", _ENTRIES_BY_NAME, _ENTRIES_BY_NAME.__getitem__, lambda name: _ENTRIES_BY_NAME[name].title
 )
-"""The potentials included in the engine with their descriptions, by name. The three cases of Zotos (2014) come first."""
+"""The potentials with their descriptions, by name: the three cases of Zotos (2014), others, and those of other packages."""

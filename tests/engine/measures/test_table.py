@@ -24,7 +24,7 @@ from engine import (
 )
 from engine.measures.compute import compute_point, measure_map
 from engine.measures.measured_map import MeasuredMap, SweepPoint
-from engine.measures.table import CURVES
+from engine.measures.table import curve_names
 from tests.extending import run_example
 
 ROOT = Path(__file__).parents[3]
@@ -91,8 +91,8 @@ def test_the_exponent_of_a_map_over_energies_is_measured_where_an_exit_opens_amo
 
 def test_curves_have_the_numbers_of_the_table(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("engine.measures.table.WORK", 1e7)
-    sweep = compute_sweep(SweepSpec(CASES["II"], Plane.X_PX, (0.2,), (30, 30), t_max=100.0, measures=CURVES))
-    wanted = {quantity.name for name in CURVES for quantity in MEASURES[name].quantities}
+    sweep = compute_sweep(SweepSpec(CASES["II"], Plane.X_PX, (0.2,), (30, 30), t_max=100.0, measures=curve_names()))
+    wanted = {quantity.name for name in curve_names() for quantity in MEASURES[name].quantities}
     assert wanted <= set(sweep.to_pandas().columns)
     assert sweep["mixed_decay_rate"][0] == compute_flux(CASES["II"], 0.2).decay_rate
 

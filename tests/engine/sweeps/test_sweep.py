@@ -26,12 +26,12 @@ from engine import (
 )
 from engine.measures.compute import compute_point
 from engine.measures.measured_map import SweepPoint
-from engine.measures.table import QUICK_CURVES
+from engine.measures.table import curve_names
 from engine.results import Sweep
 from engine.slices.default_window import default_window
 from tests.engine.slices.test_parameter_family import THIRD_EXIT
 
-SPEC = SweepSpec(CASES["II"], Plane.X_PX, (0.3, 0.1, 0.2, 0.25, 0.2), (40, 40), t_max=500.0, measures=QUICK_CURVES)
+SPEC = SweepSpec(CASES["II"], Plane.X_PX, (0.3, 0.1, 0.2, 0.25, 0.2), (40, 40), t_max=500.0, measures=curve_names(slow=False))
 
 
 @pytest.fixture(scope="module")

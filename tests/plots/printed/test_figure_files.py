@@ -19,7 +19,7 @@ from engine import (
     compute_sweep,
     integrate_orbit,
 )
-from engine.measures.table import CURVES
+from engine.measures.table import curve_names
 from plots.pictures.orbit_curves import compute_orbit_curves
 from plots.pictures.palette import PAPER
 from plots.pictures.setting import NO_SETTINGS
@@ -44,7 +44,7 @@ def draw_orbits(format: FigureFormat, style: FigureStyle) -> bytes:
 
 
 def draw_curves(format: FigureFormat, style: FigureStyle) -> bytes:
-    sweep = compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.2, 0.3), (12, 12), t_max=100.0, measures=CURVES))
+    sweep = compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.2, 0.3), (12, 12), t_max=100.0, measures=curve_names()))
     return study_figure_bytes(AGAINST, sweep, NO_SETTINGS, format, style)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from io import BytesIO
 from typing import Any
@@ -19,6 +19,7 @@ from engine import (
     Orbit,
     ParameterAxis,
     Plane,
+    Potential,
     Result,
     SweepSpec,
     System,
@@ -183,6 +184,17 @@ def test_the_script_reproduces_the_study(
     for name, values in made["study"].columns().items():
         np.testing.assert_array_equal(values, expected[name])
     pyplot.close("all")
+
+
+def study_of_another_package(potential: Potential, energies: Sequence[float]) -> Result:
+    raise NotImplementedError
+
+
+def test_the_script_imports_the_study_of_another_package_from_there() -> None:
+    study = Job(study_of_another_package, (CASES["II"], (0.18, 0.2)))
+    lines = python_lines(SPECS["another section"], System("II"), study=study).splitlines()
+    assert f"from {__name__} import study_of_another_package" in lines
+    assert "study = study_of_another_package(potential, (0.18, 0.2))" in lines
 
 
 @pytest.mark.parametrize(

@@ -9,14 +9,14 @@ from app.state.view_state import ViewState
 from app.views.analysis.study_view import StudyView
 from app.views.components.plots import FigurePane
 from engine import CASES, Plane, SweepSpec, compute_sweep
-from engine.measures.table import CURVES
+from engine.measures.table import curve_names
 from engine.results import Sweep
 from plots.studies.against import AGAINST
 
 
 def curves(*energies: float) -> Sweep:
     """Return a sweep with all measures. The only exponent in it is invented, because measuring exponents takes seconds."""
-    quick = tuple(name for name in CURVES if name != "uncertainty_exponent")
+    quick = tuple(name for name in curve_names() if name != "uncertainty_exponent")
     found = compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, energies, (20, 20), t_max=100.0, measures=quick)).dataset
     missing = np.full(len(energies) - 1, np.nan)
     exponent = {"exponent": 0.5, "exponent_low": 0.45, "exponent_high": 0.56}
