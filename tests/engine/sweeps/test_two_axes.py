@@ -106,6 +106,12 @@ def test_energies_from_jacobi_constants_make_one_axis() -> None:
     np.testing.assert_array_equal(found["x"], wanted["x"])
 
 
+def test_a_sweep_in_a_rotating_frame_is_continued_at_other_energies() -> None:
+    spec = SweepSpec(POTENTIALS["Hill"], Plane.X_PX, (-2.1, -2.0), (16, 12), t_max=20.0, measures=("shares",))
+    more = replace(spec, values=(-2.1, -2.0, -1.9))
+    xr.testing.assert_identical(compute_sweep(more, earlier=compute_sweep(spec)).dataset, compute_sweep(more).dataset)
+
+
 @pytest.mark.parametrize("first", ["b", "omega_1"])
 def test_exits_keep_their_numbers_along_both_parameters(first: str) -> None:
     values = {"b": (-0.5, 0.1), "omega_1": (1.05,)}
@@ -156,6 +162,15 @@ def test_an_interrupted_store_is_resumed(plate: SweepSpec, tmp_path: Path) -> No
     assert finished == list(range(2, len(plate.axis_values[0]) + 1))
     xr.testing.assert_identical(resumed.dataset.load(), compute_sweep(plate, tmp_path / "whole.zarr").dataset.load())
     xr.testing.assert_equal(resumed.dataset, compute_sweep(plate).dataset)
+
+
+def test_a_dask_cluster_computes_the_same_store(tmp_path: Path) -> None:
+    distributed = pytest.importorskip("distributed")
+    options = {"protocol": "tcp", "host": "127.0.0.1", "dashboard_address": "127.0.0.1:0", "processes": False}
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, **options) as cluster, distributed.Client(cluster) as client:
+        spread = compute_sweep(BY_PARAMETERS, tmp_path / "cluster.zarr", execution=Execution(client.get_executor()))
+    alone = compute_sweep(BY_PARAMETERS, tmp_path / "alone.zarr")
+    xr.testing.assert_identical(spread.dataset.load(), alone.dataset.load())
 
 
 def test_values_are_refined_where_shares_change_most_on_the_second_axis(whole: Sweep) -> None:
