@@ -7,7 +7,7 @@ import numpy as np
 from engine import MEASURES, Plane, Section, SweepSpec, compute_statistics, compute_sweep
 from engine.foundations.wording import format_number
 from engine.jobs.job import Job
-from engine.measures.table import QUICK_CURVES
+from engine.measures.table import curve_names
 from engine.results import Sweep
 from engine.sweeps.sweep_job import sweep_job
 from engine.systems.catalogue.published_fits import PAPER_FITS, PaperFits
@@ -50,7 +50,7 @@ BESIDE = Setting(
     name="beside",
     title="Measure of each map",
     word="Number:",
-    choices={name: name for name in QUICK_CURVES},
+    choices={name: name for name in curve_names(slow=False)},
     default="basin_entropy",
     help="Measure that is written above each map.",
 )
@@ -64,7 +64,7 @@ def _job(subject: Subject, axis: str) -> Job[Sweep]:
         _energies(subject),
         _RESOLUTION,
         t_max=subject.t_max,
-        measures=("maps", *QUICK_CURVES),
+        measures=("maps", *curve_names(slow=False)),
         section=subject.section,
     )
     return sweep_job(spec)
