@@ -6,7 +6,7 @@ import inspect
 import re
 import sys
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from concurrent.futures import CancelledError
 from importlib import import_module, metadata
 from pathlib import Path
@@ -42,6 +42,7 @@ COMMANDS = (
     "sweep",
     "reproduce",
     "potential",
+    "versions",
     "serve",
 )
 """Names of the modules in `commands`. A module is imported when its command runs."""
@@ -52,7 +53,8 @@ class _Command(TyperCommand):
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Parse the words. Those that begin with one minus are first moved behind ``--``, where all words are arguments."""
-        value_counts = {name: _count_values(option) for option in self.params for name in option.opts}
+        options = self.get_params(ctx)
+        value_counts = {name: _count_values(option) for option in options for name in (*option.opts, *option.secondary_opts)}
         words = deque(args)
         other_words: list[str] = []
         minus_words: list[str] = []
@@ -61,11 +63,18 @@ class _Command(TyperCommand):
             if re.match("-[^-]", word):
                 minus_words.append(word)
                 continue
+            self._check_option(word.partition("=")[0], value_counts)
             other_words.append(word)
             # The values of an option may also begin with a minus.
             other_words.extend(words.popleft() for _ in range(min(value_counts.get(word, 0), len(words))))
         # `words` is empty or begins with "--".
         return super().parse_args(ctx, [*other_words, "--", *minus_words, *list(words)[1:]])
+
+    def _check_option(self, word: str, known: Iterable[str]) -> None:
+        """Raise ValueError for an unknown option. Typer would list similar names, but the wanted name may be another word."""
+        names = [name for name in known if name.startswith("--")]
+        if word.startswith("--") and word not in names:
+            raise ValueError(f"{word}: {self.name} has no such option; its options are {', '.join(names)}")
 
     def get_params(self, ctx: Any) -> list[Any]:
         """Return the parameters in the form that the help shows."""

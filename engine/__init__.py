@@ -19,7 +19,7 @@ programs of this repository, and may change with any version.
   `compute_uncertainty_exponent`, `compute_statistics`, `compute_islands`, `compute_chaotic_share`, `compute_exit_matching`,
   `fit_decay_laws`
 - sweeps over energies and parameters: `SweepSpec`, `EnergyAxis`, `compute_sweep`, `plan_sweep`, `find_where`
-- files and execution: `Result`, `open_result`, `Execution`
+- files, execution and reports of errors: `Result`, `open_result`, `Execution`, `show_versions`
 """
 
 import types
@@ -31,6 +31,7 @@ from engine.exits.lyapunov_orbits import UndefinedExitsError as UndefinedExitsEr
 from engine.exits.lyapunov_orbits import find_lyapunov_orbits as find_lyapunov_orbits
 from engine.foundations.execution import Execution as Execution
 from engine.foundations.result import Result as Result
+from engine.foundations.versions import show_versions as show_versions
 from engine.maps.analyses.descriptors import TimeDirection as TimeDirection
 from engine.maps.analyses.descriptors import compute_lagrangian_descriptor as compute_lagrangian_descriptor
 from engine.maps.analyses.regularity import compute_regularity as compute_regularity

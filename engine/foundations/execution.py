@@ -29,6 +29,8 @@ _BAR_DELAY = 1.0
 _BAR_FORMAT = "{desc}: {percentage:3.0f}% |{bar}| {elapsed}<{remaining}"
 # Set while a progress bar is shown, so that nested calls show no bar.
 _bar_is_shown = threading.Event()
+# Environment variable that disables progress bars: that of tqdm, which reads it only when it is first imported.
+_NO_BARS = "TQDM_DISABLE"
 
 
 def count_cores() -> int:
@@ -99,7 +101,8 @@ class Execution:
     cancel
         Setting this event ends the computation within about 0.2 s; None for a computation that cannot be cancelled.
     on_progress
-        Called in the calling thread with the share done, 0 to 1; None for a progress bar in a terminal or a notebook.
+        Called in the calling thread with the share done, 0 to 1; None for a progress bar in a terminal or a notebook,
+        unless the environment variable TQDM_DISABLE is 1.
     """
 
     executor: Executor | None = None
@@ -239,8 +242,8 @@ def _arguments_by_name(signature: inspect.Signature, args: Any, kwargs: Any) -> 
 
 
 def _is_interactive() -> bool:
-    """Return whether this call runs in the main thread of a terminal or a notebook."""
-    if threading.current_thread() is not threading.main_thread():
+    """Return whether this call runs in the main thread of a terminal or a notebook whose user wants bars."""
+    if threading.current_thread() is not threading.main_thread() or os.environ.get(_NO_BARS, "0") not in ("", "0"):
         return False
     return "ipykernel" in sys.modules or (sys.stderr is not None and sys.stderr.isatty())
 

@@ -29,6 +29,7 @@ COMMANDS = (
     "study",
     "sweep",
     "potential",
+    "versions",
     "reproduce",
     "serve",
 )
@@ -94,6 +95,20 @@ def test_invalid_request_prints_one_line_and_writes_nothing(
     assert (code, out, list(tmp_path.iterdir())) == (INVALID_REQUEST, "", [])
     assert err.startswith("escape-explorer: ")
     assert err.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("words", "wanted"),
+    [
+        (("curves", "I", "--energies", 0.3, 0.5), ("--energies: curves has no such option", "--low, --high, --count")),
+        (("orbit", "I", "--x=0.1"), ("--x: orbit has no such option", "--start, --state")),
+        (("map", "I", "--no-evidences"), ("--no-evidences: map has no such option", "--no-evidence,", "--help")),
+    ],
+)
+def test_an_unknown_option_is_answered_by_all_options(words: tuple[object, ...], wanted: tuple[str, ...], run: Run) -> None:
+    code, _, err = run(*words)
+    assert code == INVALID_REQUEST
+    assert [part for part in wanted if part not in err] == []
 
 
 def test_control_characters_in_a_message_are_escaped(run: Run) -> None:

@@ -73,6 +73,14 @@ def test_a_bar_is_shown_in_a_terminal_unless_progress_has_a_listener() -> None:
     assert long_call() is None
 
 
+@pytest.mark.parametrize(("value", "is_shown"), [("1", False), ("true", False), ("0", True), ("", True)])
+def test_the_environment_switches_bars_off_at_any_time(value: str, is_shown: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    with redirect_stderr(Terminal()):
+        assert callable(long_call())
+        monkeypatch.setenv("TQDM_DISABLE", value)
+        assert callable(long_call()) is is_shown
+
+
 def test_progress_rises_to_one_and_changes_no_result() -> None:
     shares: list[float] = []
     found = compute_map(SPEC, on_progress=shares.append)
