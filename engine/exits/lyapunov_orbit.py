@@ -55,6 +55,7 @@ class LyapunovOrbit(ClosedOrbit):
     others: tuple[int, ...] = ()
     potential: Potential = field(kw_only=True, repr=False)
 
+    array_dimensions: ClassVar = {"curve": ("column",), "velocity": ("component",)}
     inner_names: ClassVar = ClosedOrbit.inner_names | {"mirrored", "restored", "symmetrized"}
 
     @property

@@ -68,7 +68,18 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
 
     inner_names: ClassVar[frozenset[str]] = frozenset(
         {
-            *("chart", "codes", "columns", "fate_labels", "held_as", "in_well_units", "inner_names", "kinds", "made_by"),
+            *(
+                "array_dimensions",
+                "chart",
+                "codes",
+                "columns",
+                "fate_labels",
+                "held_as",
+                "in_well_units",
+                "inner_names",
+                "kinds",
+                "made_by",
+            ),
             *("numbers", "read_parts", "row_dimension", "shown_numbers"),
         }
     )
@@ -82,6 +93,9 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
 
     row_dimension: ClassVar[str] = ""
     """Name of the dimension of the columns in files; empty if the first column has distinct values and is the coordinate."""
+
+    array_dimensions: ClassVar[Mapping[str, tuple[str, ...]]] = {}
+    """Names of the dimensions in files of each array that is no column."""
 
     held_as: ClassVar[dict[str, str]] = {}
     """{field: name in files} of fields that the class stores itself; if a field is stored in parts, the name of one part."""
@@ -207,10 +221,8 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
             return xr.Dataset(variables, attrs=attributes)
         dimension = self.row_dimension or next(iter(columns))
         column_variables = {name: (dimension, values, self._meaning(name, values)) for name, values in columns.items()}
-        # Arrays of other shapes have their own dimensions.
         array_variables = {
-            name: ([f"{name}_entry_{axis}" for axis in range(values.ndim)], values, self._meaning(name, values))
-            for name, values in arrays.items()
+            name: (self.array_dimensions[name], values, self._meaning(name, values)) for name, values in arrays.items()
         }
         return xr.Dataset(column_variables | array_variables, attrs=attributes | scalars)
 

@@ -53,6 +53,7 @@ class OrbitReturns(SectionResult):
     outcomes: tuple[Outcome, ...] = ()
     codes: ClassVar = {"fate": Fate}
     row_dimension: ClassVar = "orbit"
+    array_dimensions: ClassVar = {"states": ("return", "orbit", "coordinate"), "time": ("return", "orbit")}
 
     def points(self) -> list[np.ndarray]:
         """Return the returns of each orbit that returns, (m, 2), in the order of the orbits and of time, see `Section.axes`."""

@@ -6,6 +6,7 @@ import errno
 import functools
 import inspect
 import os
+import re
 from collections.abc import Callable
 from dataclasses import fields, replace
 from pathlib import Path
@@ -172,6 +173,32 @@ def test_a_result_read_from_a_file_is_equal_and_can_be_written_again(name: str, 
     found = open_result(to_netcdf(wanted, tmp_path))
     assert_equal(found, wanted)
     assert found.identical(wanted)
+
+
+FORMER_DIMENSIONS = {
+    "statistics": {"escape": "escape_times_entry_0"},
+    "Lyapunov orbit": {"column": "curve_entry_0", "component": "velocity_entry_0"},
+}
+
+
+@pytest.mark.parametrize("name", FORMER_DIMENSIONS)
+def test_files_with_former_names_of_dimensions_are_read(name: str, tmp_path: Path) -> None:
+    dataset = computed(name).to_xarray()
+    dataset.rename_dims(FORMER_DIMENSIONS[name]).to_netcdf(tmp_path / "former.nc", engine="h5netcdf")
+    assert open_result(tmp_path / "former.nc").identical(computed(name))
+
+
+@pytest.mark.parametrize("name", RESULTS)
+def test_dimensions_in_files_are_named_after_what_they_count(name: str) -> None:
+    sizes = computed(name).to_xarray().sizes
+    assert [str(dimension) for dimension in sizes if re.search(r"\d|entry|dim", str(dimension))] == []
+
+
+def test_returns_in_files_have_the_dimensions_of_the_arrays() -> None:
+    returns = computed("returns of orbits").to_xarray()
+    assert returns["states"].dims == ("return", "orbit", "coordinate")
+    assert returns["time"].dims == ("return", "orbit")
+    assert returns["fate"].dims == ("orbit",)
 
 
 def test_results_that_differ_in_a_number_or_in_their_class_are_not_identical() -> None:

@@ -58,6 +58,7 @@ class EscapeStatistics(OrbitResult):
     escape_times: np.ndarray = field(repr=False)
     t_max: float = float("inf")
     outcomes: tuple[Outcome, ...] = field(default=(), repr=False)
+    array_dimensions: ClassVar = {"escape_times": ("escape",)}
     held_as: ClassVar = OrbitResult.held_as | {"crossing_counts": "escapes"}
 
     @property

@@ -37,6 +37,7 @@ class ExitMatching(OrbitResult):
     outcomes: tuple[Outcome, ...] = ()
     codes: ClassVar = {"exit": Fate}
     row_dimension: ClassVar = "pair"
+    array_dimensions: ClassVar = {"entrances": ("entered",), "ends": ("ended",), "counts": ("entered", "ended")}
 
     @property
     def shares(self) -> np.ndarray:
