@@ -42,7 +42,7 @@ class System:
     Raises
     ------
     ValueError
-        If the catalogue has no entry `case`, or an argument has a wrong type.
+        If the catalogue has no entry `case`, the entry lacks a parameter, or an argument has a wrong type.
     """
 
     case: str
@@ -53,13 +53,19 @@ class System:
         check_type("case", self.case, str)
         check_type("formula", self.formula, str)
         check_type("parameters", self.parameters, Mapping)
-        # The property raises the error for an unknown case.
-        _ = self.entry
+        self._check_names()
         # Titles and links must not depend on the order in which parameters were chosen.
         positions = {name: position for position, name in enumerate(WELL_PARAMETERS)}
         sorted_names = sorted(self.parameters, key=lambda name: (positions.get(name, len(positions)), name))
         changed = {name: self.parameters[name] for name in sorted_names if self.parameters[name] != self.default_of(name)}
         object.__setattr__(self, "parameters", changed)
+
+    def _check_names(self) -> None:
+        """Raise ValueError for an unknown case, or a parameter that an entry of the catalogue lacks."""
+        legal = self.entry.adjustable
+        if self.case != TYPED and (unknown := [name for name in self.parameters if name not in legal]):
+            names = ", ".join(legal) or "none"
+            raise ValueError(f"parameters: {reprlib.repr(unknown[0])} is not a parameter of {self.case}; it has {names}")
 
     def __hash__(self) -> int:
         return hash((self.case, self.formula, tuple(self.parameters.items())))
@@ -164,9 +170,6 @@ class System:
 @lru_cache(maxsize=64)
 def _make_potential(system: System) -> Potential:
     entry = system.entry
-    if system.case != TYPED and (unknown := [name for name in system.parameters if name not in entry.adjustable]):
-        legal = ", ".join(entry.adjustable) or "none"
-        raise ValueError(f"parameters: {reprlib.repr(unknown[0])} is not a parameter of {system.case}; it has {legal}")
     values = {**entry.parameters, **system.parameters}
     letters = {name: value for name, value in values.items() if name not in WELL_PARAMETERS}
     well_values = {name: value for name, value in values.items() if name in WELL_PARAMETERS and name != ROTATION}

@@ -29,17 +29,17 @@ def write_system(system: System) -> dict[str, str]:
 
 
 def system_of(parts: Mapping[str, Any]) -> tuple[System, list[str]]:
-    """Return the system in a link, not reviewed yet, and a message if the link has letters that the formula does not have."""
+    """Return the system in a link, not reviewed yet, and a message if the link has parameters that the system does not have."""
     case = parts.get(_CASE, TYPED if _FORMULA in parts else FIRST_MAP_VIEW.system.case)
     formula = parts.get(_FORMULA, "")
-    letter_values = parts.get(_LETTERS, {})
-    letters = [name for name in System(case, formula).parameter_names if name not in WELL_PARAMETERS]
-    used_values = {name: value for name, value in letter_values.items() if name in letters}
-    system = System(case, formula, {**{name: parts[name] for name in WELL_PARAMETERS if name in parts}, **used_values})
-    if len(used_values) == len(letter_values):
+    values = {**{name: parts[name] for name in WELL_PARAMETERS if name in parts}, **parts.get(_LETTERS, {})}
+    legal = System(case, formula).parameter_names
+    used_values = {name: value for name, value in values.items() if name in legal}
+    system = System(case, formula, used_values)
+    if used_values == values:
         return system, []
-    legal = f"letters of the formula: {', '.join(letters)}" if letters else "a formula with letters"
-    return system, [f"Ignored the values of letters that the formula does not have: choose {legal}."]
+    advice = f"choose {', '.join(legal)}" if legal else "leave them out"
+    return system, [f"Ignored the values of parameters that the system does not have: {advice}."]
 
 
 def _write_letters(values: Mapping[str, float]) -> str:

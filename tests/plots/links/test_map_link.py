@@ -38,7 +38,9 @@ def test_along_an_axis_h_the_map_has_the_energies_of_the_system() -> None:
         ("t_max=5", "t_max=5: choose 100"),
         ("resolution=113", "choose 112, 224, 450 or 900"),
         ("orbits=1,2,3", "choose up to 5 starts"),
-        ("V=x²&letters=a:1", "a formula with letters"),
+        ("V=x²&letters=a:1", "choose omega_1, omega_2, epsilon, rotation."),
+        ("case=Earth-Moon&epsilon=2", "parameters that the system does not have: choose m."),
+        ("case=Hill&rotation=2", "leave them out"),
     ],
 )
 def test_illegal_values_are_refused(link: str, message: str) -> None:
