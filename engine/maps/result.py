@@ -168,7 +168,7 @@ class EscapeMap(MapResult):
 
     @property
     def is_rounded(self) -> bool:
-        """Whether double precision does not support the outcomes of 1 % or more of the interior pixels."""
+        """Whether the outcomes of 1 % or more of the interior pixels are not reliable in double precision."""
         return self.rounded_share is not None and self.rounded_share >= NOTED_SHARE
 
     def check_complete(self, name: str) -> None:

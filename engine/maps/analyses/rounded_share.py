@@ -1,4 +1,4 @@
-"""Share of pixels that double precision does not support, estimated in deep zooms."""
+"""Share of pixels whose outcomes are not reliable in double precision, estimated in deep zooms."""
 
 from __future__ import annotations
 
