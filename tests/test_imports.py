@@ -26,7 +26,31 @@ SLOW = (
 def import_engine() -> None:
     import engine  # noqa: F401
 
-    list_imported("numba", *SLOW)
+    list_imported("numpy", "numba", *SLOW)
+
+
+def show_all_helps() -> None:
+    import contextlib
+    import io
+
+    from cli.main import COMMANDS, main
+
+    for name in COMMANDS:
+        with contextlib.redirect_stdout(io.StringIO()) as shown:
+            assert main([name, "--help"]) == 0
+        assert "Usage" in shown.getvalue()
+    list_imported("typer", "engine", "numba", *SLOW)
+
+
+def review_a_potential() -> None:
+    import contextlib
+    import io
+
+    from cli.main import main
+
+    with contextlib.redirect_stdout(io.StringIO()):
+        assert main(["potential", "HH"]) == 0
+    list_imported("engine", "numba", *SLOW)
 
 
 def list_lyapunov_orbits() -> None:
@@ -64,8 +88,16 @@ def serve_with_an_invalid_setting() -> None:
     runpy.run_module("panel", run_name="__main__")
 
 
-def test_engine_imports_numba_and_no_other_large_library(tmp_path: Path) -> None:
-    assert run(tmp_path, import_engine) == Finished(0, "numba", "")
+def test_engine_imports_no_large_library_but_numpy(tmp_path: Path) -> None:
+    assert run(tmp_path, import_engine) == Finished(0, "numpy", "")
+
+
+def test_help_of_all_commands_imports_no_large_library(tmp_path: Path) -> None:
+    assert run(tmp_path, show_all_helps) == Finished(0, "typer engine", "")
+
+
+def test_potential_command_imports_no_compiler(tmp_path: Path) -> None:
+    assert run(tmp_path, review_a_potential) == Finished(0, "engine", "")
 
 
 def test_lyapunov_command_loads_neither_scipy_nor_a_compiler_nor_a_plotting_library(tmp_path: Path) -> None:

@@ -47,8 +47,8 @@ from engine.propagation.fates import name_fate
 from engine.results import DecayLaws, EscapeFlux, EscapeStatistics, ExitMatching, Outcomes
 from engine.slices.window import GivenWindow
 from plots.pictures.palette import Palette
-from plots.printed.ensemble_movie import MovieFormat, ensemble_movie_bytes
-from plots.printed.figure_style import FigureStyle
+from plots.printed.figure_files import ensemble_movie_bytes
+from plots.printed.figure_style import FigureStyle, MovieFormat
 from plots.texts.exports import dataset_bytes, write_csv
 
 MOST_PATHS = 20_000

@@ -16,7 +16,7 @@ from __future__ import annotations
 import time
 from concurrent.futures import CancelledError
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -24,8 +24,9 @@ from cli.execution import THREADS_ONLY, Place
 from cli.options import with_options
 from cli.output_files import make_folder, reserve_output, write_files
 from cli.printing import AsJson, Table, print_result
-from reproduction import members, quality
-from reproduction.map_cache import MapCache
+
+if TYPE_CHECKING:
+    from reproduction.map_cache import MapCache
 
 
 @with_options
@@ -51,6 +52,10 @@ def run(
     output
         Output folder, which is created if missing; existing files are replaced.
     """
+    # Imported here, because the help needs no figures.
+    from reproduction import members, quality
+    from reproduction.map_cache import MapCache
+
     chosen = members.choose_members(names or ())
     if only_list:
         captions = {name: members.CAPTIONS[name] for name in chosen}
@@ -81,6 +86,8 @@ def run(
 
 def _make(name: str, cache: MapCache, folder: Path) -> dict[str, Any]:
     """Make and write a figure. Return its name, its files, and the duration in seconds."""
+    from reproduction import members
+
     begin = time.perf_counter()
     files = write_files({folder / file: content for file, content in members.make_files(name, cache).items()})
     return {"name": name, "files": files, "seconds": time.perf_counter() - begin}

@@ -18,14 +18,11 @@ from types import ModuleType
 from typing import Any
 
 import numpy as np
-from numba.core.dispatcher import Dispatcher
 
 from engine.integrator.jit.code_outlines import find_outline
 from engine.integrator.jit.compiled_operations import compiled_operations
-from engine.integrator.jit.decorator import kernel
-from engine.integrator.jit.disk_cache import DEFINE
-from engine.integrator.jit.function_pointers import SIGNATURES
-from engine.integrator.jit.llvm_emitter import straight_line, table_reader
+from engine.integrator.jit.compiling_process import DEFINE
+from engine.integrator.jit.decorator import Kernel, kernel
 from engine.integrator.kernels import interior, limited_steps, orbit_lanes, periodic_shooting, propagate
 from engine.integrator.source.recurrence import CodeOutline, Definition, Structure, find_structure, generate_code
 from engine.integrator.source.series import Setting
@@ -84,16 +81,15 @@ def is_compiled(structure: Structure, names: Iterable[str]) -> bool:
 class CompiledFunction:
     """A generated function that is compiled on first use, for the types in `SIGNATURES`."""
 
-    def __init__(self, dispatcher: Any) -> None:
-        self._dispatcher = dispatcher
-        self._signature = SIGNATURES[dispatcher.__name__]
+    def __init__(self, function: Kernel) -> None:
+        self._function = function
         self._address: int | None = None
         self._lock = threading.Lock()
 
     @property
     def signatures(self) -> list[Any]:
         """Argument types for which the function has been compiled."""
-        return list(self._dispatcher.signatures)
+        return self._function.signatures
 
     @property
     def address(self) -> int:
@@ -106,21 +102,25 @@ class CompiledFunction:
 
     def _compile(self) -> int:
         """Compile the function, and return the address of its machine code."""
-        self._dispatcher.compile(self._signature)
-        self._dispatcher.disable_compile()
-        result = self._dispatcher.get_compile_result(self._signature)
+        # Numba is imported at the first use of a kernel.
+        from engine.integrator.jit.function_types import SIGNATURES
+
+        dispatcher, signature = self._function.dispatcher, SIGNATURES[self.py_func.__name__]
+        dispatcher.compile(signature)
+        dispatcher.disable_compile()
+        result = dispatcher.get_compile_result(signature)
         return result.library.get_pointer_to_function(result.fndesc.llvm_func_name)
 
     @property
     def py_func(self) -> Any:
         """The Python function; code compiled from it can be inspected, unlike code from the cache."""
-        return self._dispatcher.py_func
+        return self._function.py_func
 
     def __call__(self, *arguments: Any) -> Any:
         """Call the function. Raises TypeError if the arguments cannot be cast to the types of its signature."""
         # The first use of the address compiles the function.
         _ = self.address
-        return self._dispatcher(*arguments)
+        return self._function(*arguments)
 
 
 class _BoundKernel:
@@ -152,13 +152,13 @@ def _bind_kernels(bound_module: ModuleType, functions: dict[str, CompiledFunctio
 
 
 @functools.cache
-def _shared_kernels() -> dict[str, Dispatcher]:
+def _shared_kernels() -> dict[str, Kernel]:
     """Return the kernels that all potentials share, by name."""
     return {
         name: function
         for module in _KERNEL_MODULES
         for name, function in vars(module).items()
-        if isinstance(function, Dispatcher) and function.py_func.__module__ == module.__name__
+        if isinstance(function, Kernel) and function.py_func.__module__ == module.__name__
     }
 
 
@@ -180,6 +180,8 @@ def _module_name(outline: CodeOutline) -> str:
 @functools.cache
 def _define_functions(outline: CodeOutline) -> dict[str, CompiledFunction]:
     """Define a module of generated functions, which are not compiled yet, and return the functions."""
+    from engine.integrator.jit.llvm_emitter import straight_line, table_reader
+
     compiled_operations.add(outline.digest, outline.operations)
     name = _module_name(outline)
     module = ModuleType(name)

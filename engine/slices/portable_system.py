@@ -11,8 +11,8 @@ from engine.exits.exit_shapes import exit_gates
 from engine.exits.exit_tables import ExitTable, tabulate_exits
 from engine.exits.interior import find_inner_radius, tabulate_polynomial
 from engine.integrator.jit.code_outlines import find_outline
-from engine.integrator.jit.kernel_module import HEAP_CELL
-from engine.integrator.jit.webassembly import FUNCTIONS, VECTOR_LANES, webassembly_module
+from engine.integrator.jit.webassembly import webassembly_module
+from engine.integrator.jit.webassembly_object import FUNCTIONS, HEAP_CELL, VECTOR_LANES
 from engine.integrator.kernels import events, exit_geometry, slice_starts
 from engine.integrator.kernels.random_starts import BEFORE_EXIT
 from engine.integrator.source.recurrence import ROWS, TOLERANCE

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import tempfile
 from dataclasses import dataclass
-from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +23,7 @@ from engine.results import SampledOrbits
 from plots.pictures.orbit_curves import find_well_window
 from plots.pictures.palette import LIGHT, Palette
 from plots.printed.figure_axes import RENDER_LOCK, new_figure, set_font, style_axes
-from plots.printed.figure_style import FigureStyle
+from plots.printed.figure_style import FigureStyle, MovieFormat
 from plots.printed.potential_figure import draw_well
 from plots.printed.window_axes import show_window
 
@@ -41,14 +40,6 @@ _LEAST_SHARE = 0.5
 _LAW_DASHES = (0, (4, 3))
 
 
-class MovieFormat(StrEnum):
-    """Format of a movie, by file ending."""
-
-    WEBP = "webp"
-    GIF = "gif"
-    MP4 = "mp4"
-
-
 @dataclass(frozen=True)
 class _Stage:
     """The figure, and the artists that change from frame to frame."""
@@ -59,7 +50,7 @@ class _Stage:
     count_title: Text
 
 
-def ensemble_movie_bytes(
+def make_ensemble_movie(
     potential: Potential, orbits: SampledOrbits, palette: Palette, format: MovieFormat, style: FigureStyle
 ) -> bytes:
     """Return the content of the file of a movie, with one frame for each of the common times of the orbits.

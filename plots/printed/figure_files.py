@@ -1,4 +1,4 @@
-"""Contents of figure files in PNG, SVG or PDF. The functions import Matplotlib when called, because its import is slow."""
+"""Contents of files of figures and movies. The functions import Matplotlib when called, because its import is slow."""
 
 from __future__ import annotations
 
@@ -6,12 +6,13 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from engine import EscapeMap, Potential, Result, Window, compute_statistics
+from engine.results import SampledOrbits
 from plots.layers.layer import NO_ANALYSES, Analyses
 from plots.pictures.orbit_curves import OrbitCurves, initial_state
 from plots.pictures.palette import Palette
 from plots.pictures.setting import Settings
 from plots.pictures.time_scale import TimeScale
-from plots.printed.figure_style import FigureFormat, FigureStyle
+from plots.printed.figure_style import FigureFormat, FigureStyle, MovieFormat
 from plots.studies.study import Study
 
 if TYPE_CHECKING:
@@ -129,6 +130,15 @@ def study_figure_bytes(study: Study[Any], found: Result, settings: Settings, for
 
     facts = {str(name): value for name, value in found.to_xarray().attrs.items()}
     return _figure_bytes(lambda: draw_study_figure(study, found, style, settings), format, facts)
+
+
+def ensemble_movie_bytes(
+    potential: Potential, orbits: SampledOrbits, palette: Palette, format: MovieFormat, style: FigureStyle
+) -> bytes:
+    """Return the content of the file of a movie, see `plots.printed.ensemble_movie.make_ensemble_movie`."""
+    from plots.printed.ensemble_movie import make_ensemble_movie
+
+    return make_ensemble_movie(potential, orbits, palette, format, style)
 
 
 def _figure_bytes(draw: Callable[[], Figure], format: FigureFormat, facts: Mapping[str, object]) -> bytes:

@@ -24,6 +24,14 @@ class FigureFormat(StrEnum):
     PDF = "pdf"
 
 
+class MovieFormat(StrEnum):
+    """Format of a movie, by file ending."""
+
+    WEBP = "webp"
+    GIF = "gif"
+    MP4 = "mp4"
+
+
 @dataclass(frozen=True)
 class FigureStyle:
     """Style of a figure. The default suits the full width of a page of a paper.

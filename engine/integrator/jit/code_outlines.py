@@ -9,7 +9,7 @@ from pathlib import Path
 
 from engine.foundations.cache_files import SUFFIX, cache_folder, read_or_make
 from engine.integrator.jit.compiling_process import call_compiler
-from engine.integrator.jit.disk_cache import hash_package, program_digest
+from engine.integrator.jit.source_digests import hash_package, program_digest
 from engine.integrator.source.recurrence import CodeOutline, Structure, outline_code
 
 # The package with the classes of which structures consist.

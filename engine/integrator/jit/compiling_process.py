@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+DEFINE = "define"
+"""Name of a function in each generated module. Another process that receives and calls the function defines the same module."""
+
 _call_in_process: Callable[[Callable[[], Any]], Any] | None = None
 
 

@@ -18,14 +18,13 @@ Numba has no public interface for caches, so this module uses internal names of 
 
 from __future__ import annotations
 
-import functools
 import hashlib
 import logging
 import pickle
 import sys
 from collections.abc import Callable
 from functools import partial
-from importlib import import_module, metadata
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -36,13 +35,8 @@ from numba.core.runtime.nrt import rtsys
 from numba.core.serialize import dumps
 
 from engine.foundations.cache_files import SUFFIX, cache_folder, delete_cached, read_cached, write_cached
-from engine.integrator.jit.compiling_process import call_compiler, compiles_here
-
-PACKAGE = Path(__file__).parents[1]
-"""The package that contains all source compiled into kernels."""
-
-DEFINE = "define"
-"""Name of a function in each generated module. Another process that receives and calls the function defines the same module."""
+from engine.integrator.jit.compiling_process import DEFINE, call_compiler, compiles_here
+from engine.integrator.jit.source_digests import compiler_versions
 
 log = logging.getLogger(__name__)
 
@@ -53,10 +47,10 @@ class KernelCache(_Cache):
     If the folder or a file cannot be used, a warning is logged and the function is compiled.
     """
 
-    def __init__(self, function: Callable[..., Any]) -> None:
+    def __init__(self, function: Callable[..., Any], source_hash: str) -> None:
         self._module_name, self._function_name = function.__module__, function.__qualname__
         self._name = f"{self._module_name}.{self._function_name}"
-        self._source_hash = hash_package(PACKAGE) + _hash_source(function.__code__.co_filename) + function.__code__.co_code.hex()
+        self._source_hash = source_hash
 
     @property
     def cache_path(self) -> str:
@@ -115,7 +109,7 @@ class KernelCache(_Cache):
 
     def _path(self, signature: Any, codegen: Any) -> Path:
         """Return the path for a signature. The path also depends on processor, source and versions, so the file never changes."""
-        key = repr((signature, codegen.magic_tuple(), self._source_hash, _versions()))
+        key = repr((signature, codegen.magic_tuple(), self._source_hash, compiler_versions()))
         return cache_folder() / f"{self._name}.{hashlib.sha256(key.encode()).hexdigest()[:24]}{SUFFIX}"
 
 
@@ -136,28 +130,4 @@ def _compile(define: Callable[[], object] | None, module: str, function: str, si
     """Compile a function and store its code; called in the other process."""
     if define is not None:
         define()
-    getattr(import_module(module), function).compile(signature)
-
-
-@functools.cache
-def _hash_source(file: str) -> str:
-    """Return the hash of a source file; empty for generated source, because the name of its module contains the hash."""
-    path = Path(file)
-    return hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else ""
-
-
-@functools.cache
-def hash_package(folder: Path) -> str:
-    """Return the hashes of all source files in a package, because a kernel contains code and constants of other modules."""
-    return "".join(_hash_source(str(path)) for path in sorted(folder.rglob("*.py")))
-
-
-@functools.cache
-def program_digest() -> str:
-    """Return a hash of the sources of the kernels and of the versions of the compilers."""
-    return hashlib.sha256(repr((hash_package(PACKAGE), _versions())).encode()).hexdigest()[:24]
-
-
-@functools.cache
-def _versions() -> tuple[str, ...]:
-    return (sys.version, *(metadata.version(package) for package in ("numba", "llvmlite", "numpy")))
+    getattr(import_module(module), function).dispatcher.compile(signature)

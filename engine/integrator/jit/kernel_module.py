@@ -1,8 +1,8 @@
 """The kernels as a WebAssembly module that runs in the browser of a visitor; Numba compiles the same functions for Python.
 
 Numba lowers a kernel to LLVM instructions that hardly depend on the machine: only the data layout contains the size of an
-address, and this layout is replaced. Numba must not optimise the code for this machine. Only environment variables prevent that
-(`SETTINGS`), so `lower_kernels` is called in a separate process.
+address, and this layout is replaced. Numba must not optimise the code for this machine. Only environment variables prevent that,
+so `lower_kernels` is called in a separate process (`engine.integrator.portable_kernels`).
 
 This module uses parts of Numba 0.68 that are not public: the context of the target, for its calling convention and the layout of
 arrays (`populate_array`), and the functions of its memory management to which code refers (`_RUNTIME`).
@@ -16,28 +16,15 @@ from typing import Any
 
 import llvmlite.binding as llvm  # type: ignore[import-untyped]
 from llvmlite import ir
-from numba import njit, types
+from numba import types
 from numba.core.registry import cpu_target
 from numba.core.typing.templates import Signature
 from numba.np.arrayobj import populate_array
 
-from engine.integrator.jit.decorator import OPTIONS
-from engine.integrator.jit.webassembly_object import TARGET, compile_module, target_machine
-
-SETTINGS = {
-    "NUMBA_OPT": "0",
-    "NUMBA_LOOP_VECTORIZE": "0",
-    "NUMBA_SLP_VECTORIZE": "0",
-    "NUMBA_CPU_NAME": "generic",
-    "NUMBA_CPU_FEATURES": "",
-    "NUMBA_DISABLE_INTEL_SVML": "1",
-}
-"""Environment of the process that calls `lower_kernels`, which Numba reads when it is imported."""
+from engine.integrator.jit.decorator import make_dispatcher
+from engine.integrator.jit.webassembly_object import HEAP_CELL, TARGET, compile_module, target_machine
 
 _INT32, _DOUBLE, _INT64 = ir.IntType(32), ir.DoubleType(), ir.IntType(64)
-
-HEAP_CELL = 16
-"""Address of the cell that contains the start of the free memory. The caller of a kernel restores the value of the cell."""
 
 # Replaces the functions of Numba's memory management. Arrays are allocated at the start of the free memory, without reference
 # counts. An array of Numba begins with the address of its metadata, which contain the address of its numbers. Here both addresses
@@ -59,7 +46,7 @@ define noalias nonnull ptr @NRT_MemInfo_alloc_aligned(i64 %size, i32 %alignment)
 }}
 """
 # Options of Numba for kernels that Python does not call.
-_OPTIONS: dict[str, Any] = {**OPTIONS, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+_OPTIONS = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 # Functions above this size, in LLVM's units, are not inlined. By default they would be, which gives 10 % more bytes and no speed.
 _INLINING_THRESHOLD = 100
 _RUNTIME_NAMES = "|".join(re.findall(r"@(NRT_\w+)", _RUNTIME))
@@ -76,7 +63,7 @@ def lower_kernels(kernels: Mapping[Any, Signature]) -> bytes:
     module = _parse(_RUNTIME, machine)
     names = {kernel: kernel.py_func.__name__ for kernel in kernels}
     for kernel, signature in kernels.items():
-        compiled = njit(**_OPTIONS)(kernel.py_func)
+        compiled = make_dispatcher(kernel.py_func, **_OPTIONS)
         compiled.compile(signature)
         symbol = compiled.overloads[signature.args].fndesc.llvm_func_name
         module.link_in(_parse(_without_runtime(compiled.inspect_llvm(signature.args)), machine))

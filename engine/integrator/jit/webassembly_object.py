@@ -10,6 +10,15 @@ import llvmlite.binding as llvm  # type: ignore[import-untyped]
 TARGET = "wasm32-unknown-unknown"
 """LLVM's name of 32-bit WebAssembly."""
 
+FUNCTIONS = ("step", "jets", "potential_value", "potential_slopes")
+"""Names of the functions of the module of a potential. Only the modules of expressions have `potential_slopes`."""
+
+VECTOR_LANES = 2
+"""Number of lanes, and so of doubles, in a vector."""
+
+HEAP_CELL = 16
+"""Address of the cell that contains the start of the free memory. The caller of a kernel restores the value of the cell."""
+
 # Features of WebAssembly that the code uses.
 _FEATURES = "+simd128,+bulk-memory"
 # Number of bytes before the first section of a module.

@@ -14,8 +14,8 @@ from PIL import Image
 from engine import CASES, sample_orbits, sample_starts
 from engine.results import SampledOrbits
 from plots.pictures.palette import PAPER
-from plots.printed.ensemble_movie import FRAMES_PER_SECOND, MovieFormat, ensemble_movie_bytes
-from plots.printed.figure_style import FigureStyle
+from plots.printed.ensemble_movie import FRAMES_PER_SECOND, make_ensemble_movie
+from plots.printed.figure_style import FigureStyle, MovieFormat
 
 III, FRAMES = CASES["III"], 5
 SMALL = FigureStyle(width=10.0, dpi=60.0)
@@ -28,7 +28,7 @@ def orbits() -> SampledOrbits:
 
 @pytest.mark.parametrize("format", [MovieFormat.WEBP, MovieFormat.GIF])
 def test_there_is_a_frame_for_each_time(format: MovieFormat, orbits: SampledOrbits) -> None:
-    with Image.open(BytesIO(ensemble_movie_bytes(III, orbits, PAPER, format, SMALL))) as movie:
+    with Image.open(BytesIO(make_ensemble_movie(III, orbits, PAPER, format, SMALL))) as movie:
         assert movie.n_frames == FRAMES
         movie.load()
         assert movie.width == pytest.approx(SMALL.inches * SMALL.dpi, abs=1)
@@ -37,14 +37,14 @@ def test_there_is_a_frame_for_each_time(format: MovieFormat, orbits: SampledOrbi
 
 def test_an_mp4_film_has_the_frames(orbits: SampledOrbits, tmp_path: Path) -> None:
     film = tmp_path / "film.mp4"
-    film.write_bytes(ensemble_movie_bytes(III, orbits, PAPER, MovieFormat.MP4, SMALL))
+    film.write_bytes(make_ensemble_movie(III, orbits, PAPER, MovieFormat.MP4, SMALL))
     command = [imageio_ffmpeg.get_ffmpeg_exe(), "-i", str(film), "-f", "framecrc", "-"]
     listed = subprocess.run(command, capture_output=True, text=True, check=True).stdout
     assert sum(line.startswith("0,") for line in listed.splitlines()) == FRAMES
 
 
 def test_particles_vanish_when_they_have_left(orbits: SampledOrbits) -> None:
-    with Image.open(BytesIO(ensemble_movie_bytes(III, orbits, PAPER, MovieFormat.GIF, SMALL))) as movie:
+    with Image.open(BytesIO(make_ensemble_movie(III, orbits, PAPER, MovieFormat.GIF, SMALL))) as movie:
         coloured = []
         for frame in (0, FRAMES - 1):
             movie.seek(frame)

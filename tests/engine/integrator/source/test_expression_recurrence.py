@@ -14,7 +14,7 @@ from engine import Potential, parse_formula
 from engine.expressions.calculus import derivative
 from engine.expressions.nodes import Coordinate, Expression, Function, Product, Sum
 from engine.integrator.bound_kernels import load_kernels
-from engine.integrator.jit.function_pointers import SIGNATURES
+from engine.integrator.jit.function_types import SIGNATURES
 from engine.integrator.source.recurrence import LANES, ROWS, SIZE_ROW, TOLERANCE
 from engine.integrator.source.series import ORDER, Setting
 

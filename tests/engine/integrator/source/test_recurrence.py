@@ -11,7 +11,7 @@ from numba import njit
 
 from engine import CASES, Fate, Potential, classify_orbits, start_states
 from engine.integrator.bound_kernels import load_kernels
-from engine.integrator.jit.function_pointers import SIGNATURES
+from engine.integrator.jit.function_types import SIGNATURES
 from engine.integrator.source.recurrence import LANES, ROWS, SIZE_ROW, TIME_ROW, TOLERANCE
 from engine.integrator.source.series import ORDER, Setting
 from engine.slices.planes import Plane
