@@ -21,7 +21,7 @@ from engine import (
 )
 
 # The mass ratio of the catalogue, in coordinates of the Moon and of the barycentre.
-NUMBERS = {"m": 0.01215058560962404, "rotation": 1.0}
+NUMBERS = {"m": 0.01215058560962404}
 MOON, BARYCENTRE = (System(name, "", NUMBERS).potential for name in ("Earth-Moon", "Copenhagen"))
 
 HEADER = (

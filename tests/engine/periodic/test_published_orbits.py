@@ -28,7 +28,7 @@ DE_LEON_BERNE = parse_formula("10(1 − exp(−1.5x))² + 1 + 4y²(y² − 1) ex
 PLUMMER, ISOCHRONE = parse_formula("−1/√(r² + 1)"), parse_formula("−1/(1 + √(1 + r²))")
 LOGARITHMIC, KEPLER = parse_formula("½ log(r² + 0.1)"), parse_formula("−1/r; centre sun (0, 0) 0.001")
 OSCILLATOR = parse_formula("½(x² + 2y²)")
-SUN_EARTH = System("Copenhagen", "", {"m": 3.0542e-6, "rotation": 1.0}).potential
+SUN_EARTH = System("Copenhagen", "", {"m": 3.0542e-6}).potential
 SUN_EARTH_START = [0.9919572253872686, 0.0, 0.0, -0.011810020232594805]
 
 
@@ -154,7 +154,7 @@ def rotating_oscillator() -> Orbit:
 def oterma(x: float, sense: float, period: float) -> Orbit:
     """A Lyapunov orbit of Sun and Jupiter at the Jacobi constant of comet Oterma."""
     mass = 0.0009537
-    potential = System("Copenhagen", "", {"m": mass, "rotation": 1.0}).potential
+    potential = System("Copenhagen", "", {"m": mass}).potential
     start = along((0.0, sense), potential, -0.5 * (3.03 - mass * (1.0 - mass)), x)
     return Orbit(potential, start, "y = 0 up" if sense > 0.0 else "y = 0 down", period, None)
 
@@ -262,7 +262,7 @@ def test_hills_orbit_of_the_moon_has_his_motion_of_the_perigee() -> None:
 
 def small_orbit(mass: float, point: float) -> PeriodicOrbit:
     """A small orbit around a point L1 or L2 of the restricted three-body problem."""
-    potential = System("Copenhagen", "", {"m": mass, "rotation": 1.0}).potential
+    potential = System("Copenhagen", "", {"m": mass}).potential
     x = find_root(lambda place: potential.gradient(place, 0.0)[0], point - 0.1, point + 0.1, xtol=1e-15)
     return find_periodic_orbit(potential, [x - 1e-4, 0.0, 0.0, 1e-4 * steepness(mass, x)], 1)
 
@@ -308,7 +308,7 @@ def test_small_orbits_around_equilibria_have_the_linear_frequencies() -> None:
 def test_small_orbits_around_l4_have_both_frequencies(is_long: bool) -> None:
     # Szebehely 1967, section 5.4: ω² = ½ (1 ∓ √(1 − 27μ(1 − μ))).
     mass = 0.0009537
-    potential = System("Copenhagen", "", {"m": mass, "rotation": 1.0}).potential
+    potential = System("Copenhagen", "", {"m": mass}).potential
     place = np.array([0.5 - mass, 0.5 * np.sqrt(3.0)])
     own, other = np.sqrt(0.5 * (1.0 + np.array([-1.0, 1.0]) * np.sqrt(1.0 - 27.0 * mass * (1.0 - mass))))[:: 1 if is_long else -1]
     # The real part of a solution exp(iωt) of the linear equations.
