@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 
 # Name of the file with the metadata of the group, or of an array.
 _METADATA_FILE = "zarr.json"
-# Name of the attribute of the group with the number of values on the disk.
-_COUNT_ATTRIBUTE = "finished"
+# Names of the attributes of the group with the number of values on the disk, and with the names of all arrays.
+_COUNT_ATTRIBUTE, _ARRAYS_ATTRIBUTE = "finished", "arrays"
 # Pattern of the names of the temporary files of Zarr.
 _PARTIAL_FILES = "*.partial"
 # Names of attributes that follow from the potential, but whose wording may differ between versions.
@@ -72,7 +72,8 @@ class SweepStore:
         self._axis = axis_names(attributes)[0]
         # Number of values on the disk.
         self._finished = 0
-        if path.exists() and any(path.iterdir()):
+        # A run that was killed at its start leaves incomplete files only.
+        if path.exists() and not all(file.match(_PARTIAL_FILES) for file in path.iterdir()):
             self._resume()
 
     def read(self) -> xr.Dataset:
@@ -88,40 +89,32 @@ class SweepStore:
 
     def append(self, point: xr.Dataset) -> None:
         """Add a value. It counts only after its arrays are on the disk, in case of a power failure or a full disk."""
-        import zarr
-
         first: dict[str, Any] = {"mode": "w", "encoding": absent_values(point)}
         mode = {"append_dim": self._axis} if self._finished else first
+        state = {_COUNT_ATTRIBUTE: self._finished, _ARRAYS_ATTRIBUTE: sorted(map(str, point.variables))}
         with output_named_in_errors(self._path):
-            point.assign_attrs(self._attributes | {_COUNT_ATTRIBUTE: self._finished}).to_zarr(
-                self._path, **mode, **_WRITING_OPTIONS
-            )
+            point.assign_attrs(self._attributes | state).to_zarr(self._path, **mode, **_WRITING_OPTIONS)
             for pattern in ("*/zarr.json", f"*/c/{self._finished}", f"*/c/{self._finished}/**/*", "**/"):
                 for written in self._path.glob(pattern):
                     _sync_to_disk(written)
-            self._set_finished(zarr.open_group(self._path, mode="r+", use_consolidated=False), self._finished + 1)
+            self._set_finished(self._finished + 1)
 
-    def _set_finished(self, group: zarr.Group, count: int) -> None:
-        """Write the number of finished values, to the disk."""
-        group.attrs[_COUNT_ATTRIBUTE] = count
-        _consolidate(self._path)
+    def _set_finished(self, count: int) -> None:
+        """Write the number of finished values, in one file with the metadata of all arrays, to the disk."""
+        _consolidate(self._path).attrs[_COUNT_ATTRIBUTE] = count
         for written in (self._path / _METADATA_FILE, self._path, self._path.parent):
             _sync_to_disk(written)
         self._finished = count
 
     def _resume(self) -> None:
         """Continue after the values of an earlier run, and remove the incomplete data of a killed run."""
-        import zarr
-
-        if not (self._path / _METADATA_FILE).exists():
-            raise ValueError(f"store={self._path}: holds other files; must be new, empty, or the store of this request")
-        with _damage_named(self._path):
-            group = zarr.open_group(self._path, mode="r+", use_consolidated=False)
-            arrays = dict(group.arrays())
-            # The collected metadata also name arrays that have been lost.
-            is_whole = set(zarr.open_group(self._path, mode="r").array_keys()) <= set(arrays)
-            finished = int(group.attrs.get(_COUNT_ATTRIBUTE, 0))  # type: ignore[arg-type]
-        check_same_sweep(f"store={self._path}", group.attrs, self._attributes)
+        attributes, arrays = self._open_attributes(), self._open_arrays()
+        if not (attributes or arrays):
+            # A run was killed before it wrote its request.
+            return
+        finished = attributes.get(_COUNT_ATTRIBUTE, 0)
+        check_same_sweep(f"store={self._path}", attributes, self._attributes)
+        is_whole = arrays.keys() >= set(attributes.get(_ARRAYS_ATTRIBUTE, ()))
         self._finished = count_complete(self._path, arrays, self._axis, finished) if is_whole else 0
         if self._finished == self._attributes["count"]:
             return
@@ -130,13 +123,44 @@ class SweepStore:
             pass
         for file in self._path.rglob(_PARTIAL_FILES):
             file.unlink()
-        if self._finished < finished:
-            log.warning("store=%s: the data of value %d are damaged; computing from there", self._path, self._finished + 1)
-            self._set_finished(group, self._finished)
         # Arrays may contain values that do not count.
         for array in arrays.values():
             if has_axis(array, self._axis) and array.shape[0] > self._finished:
                 array.resize((self._finished, *array.shape[1:]))
+        if self._finished < finished:
+            log.warning("store=%s: the data of value %d are damaged; computing from there", self._path, self._finished + 1)
+            self._set_finished(self._finished)
+
+    def _open_attributes(self) -> dict[str, Any]:
+        """Return the attributes of the group."""
+        import zarr
+
+        if not (self._path / _METADATA_FILE).exists():
+            raise ValueError(
+                f"store={self._path}: holds other files but no {_METADATA_FILE}; must be new, empty, or the store of this request"
+            )
+        with self._damage_named(_METADATA_FILE):
+            return dict(zarr.open_group(self._path, mode="r+", use_consolidated=False).attrs)
+
+    def _open_arrays(self) -> dict[str, zarr.Array[Any]]:
+        """Return the arrays of the group that have metadata, by name."""
+        import zarr
+
+        arrays = {}
+        for file in self._path.glob(f"*/{_METADATA_FILE}"):
+            name = file.parent.name
+            with self._damage_named(f"{name}/{_METADATA_FILE}"):
+                arrays[name] = zarr.open_array(file.parent, mode="r+")
+        return arrays
+
+    @contextmanager
+    def _damage_named(self, file: str) -> Iterator[None]:
+        """Name a file of the store in errors of its metadata."""
+        try:
+            yield
+        except (ValueError, KeyError, TypeError) as error:
+            problem = f"store={self._path}: its file {file} cannot be read: {error}"
+            raise ValueError(f"{problem}; restore it, or delete the folder to compute everything again") from error
 
 
 def without_values(attributes: Mapping[str, Any]) -> xr.Dataset:
@@ -160,13 +184,19 @@ def check_same_sweep(label: str, found: Mapping[str, Any], wanted: Mapping[str, 
             raise ValueError(f"{label}: holds another request, with {name}={found.get(name)!r}; must have {name}={value!r}")
 
 
-def _consolidate(path: Path) -> None:
-    """Collect the metadata of all arrays in one file, an extension of format 3. Otherwise xarray warns and opens more slowly."""
+def _consolidate(path: Path) -> zarr.Group:
+    """Collect the metadata of all arrays in one file, an extension of format 3. Otherwise xarray warns and opens more slowly.
+
+    Returns
+    -------
+    The group, which keeps the collected metadata when its attributes change.
+    """
     import zarr
 
     with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", "Consolidated metadata", zarr.errors.ZarrUserWarning)
-        zarr.consolidate_metadata(path, zarr_format=3)
+        # Of the extension, and of folders of arrays that have been lost.
+        warnings.simplefilter("ignore", zarr.errors.ZarrUserWarning)
+        return zarr.consolidate_metadata(path, zarr_format=3)
 
 
 def _sync_to_disk(path: Path) -> None:
@@ -178,13 +208,3 @@ def _sync_to_disk(path: Path) -> None:
         os.fsync(opened)
     finally:
         os.close(opened)
-
-
-@contextmanager
-def _damage_named(path: Path) -> Iterator[None]:
-    """Name the store in errors of its metadata."""
-    try:
-        yield
-    except (ValueError, KeyError, TypeError) as error:
-        problem = f"store={path}: a file {_METADATA_FILE} in it cannot be read: {error}"
-        raise ValueError(f"{problem}; restore it, or delete the folder to compute the sweep again") from error

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+import zarr
 
 from engine import CASES, Fate, Plane, SweepSpec, Window, compute_sweep
 from engine.foundations.execution import Execution, count_workers
@@ -186,6 +187,20 @@ def test_killed_run_resumes_byte_identically(tmp_path: Path) -> None:
     assert files_of(tmp_path / "store") == files_of(tmp_path / "straight")
 
 
+def leave_an_incomplete_file(store: Path) -> None:
+    store.mkdir()
+    (store / "zarr.0123.partial").touch()
+
+
+@pytest.mark.parametrize("begin", [leave_an_incomplete_file, zarr.create_group])
+def test_a_run_that_was_killed_before_it_wrote_its_request_is_begun_again(
+    tmp_path: Path, finished: Path, begin: Callable[[Path], object]
+) -> None:
+    begin(tmp_path / "store")
+    compute_sweep(SPEC, tmp_path / "store")
+    assert files_of(tmp_path / "store") == files_of(finished)
+
+
 def remove(path: Path) -> None:
     path.unlink()
 
@@ -213,10 +228,15 @@ def test_values_from_a_damaged_one_on_are_computed_again(
     assert "are damaged; computing from there" in caplog.text
 
 
-def test_a_sweep_that_has_lost_an_array_is_computed_again(tmp_path: Path, finished: Path) -> None:
+@pytest.mark.parametrize("lost", ["fate", "h/zarr.json"])
+@pytest.mark.parametrize("is_killed", [False, True])
+def test_a_sweep_that_has_lost_an_array_is_computed_again(tmp_path: Path, finished: Path, lost: str, is_killed: bool) -> None:
     store = tmp_path / "store"
     shutil.copytree(finished, store)
-    shutil.rmtree(store / "fate")
+    shutil.rmtree(store / lost) if (store / lost).is_dir() else remove(store / lost)
+    if is_killed:
+        # While a value is written, the collected metadata are missing.
+        zarr.open_group(store, use_consolidated=False).attrs["finished"] = 2
     compute_sweep(SPEC, store)
     assert files_of(store) == files_of(finished)
 
@@ -226,7 +246,15 @@ def test_damaged_metadata_are_named(tmp_path: Path, finished: Path, file: str) -
     store = tmp_path / "store"
     shutil.copytree(finished, store)
     truncate(store / file)
-    with pytest.raises(ValueError, match=r"store=.*a file zarr\.json in it cannot be read.*delete the folder"):
+    with pytest.raises(ValueError, match=rf"store=.*its file {file} cannot be read.*delete the folder"):
+        compute_sweep(SPEC, store)
+
+
+def test_a_store_without_its_metadata_is_refused(tmp_path: Path, finished: Path) -> None:
+    store = tmp_path / "store"
+    shutil.copytree(finished, store)
+    remove(store / "zarr.json")
+    with pytest.raises(ValueError, match=r"holds other files but no zarr\.json"):
         compute_sweep(SPEC, store)
 
 
