@@ -86,7 +86,6 @@ class Explorer:
         self.maps = MapPresenter(context, self.links.history, alone=self.links.embedded)
         self.potential = PotentialPresenter(context, self.links.history, self.maps.view.well.show_sketch)
         self.analyses = AnalysisPresenter(context, self.maps.view)
-        self.studies = {name: StudyPresenter(study, context) for name, study in STUDIES.items()}
         self.comparison = ComparisonPresenter(
             context, self.maps.view, lambda sentence: self.analyses.show_notes(compared=sentence), self.links.refuse_comparison
         )
@@ -96,21 +95,17 @@ class Explorer:
     def _make_views(self) -> None:
         state, results, locked = self.state, self.results, self._locked
         self.statistics = StatisticsView(state, results, self._copy)
-        may_embed = bool(process_state().settings.ancestors_at(page_host(self._document)))
-        copy_link = partial(self._copy, None)
-        self.downloads = Downloads(state, results, copy_link, self._copy_embed_code, locked(self._copied), may_embed=may_embed)
         self.gallery = Gallery(state, locked(self._show_preset), locked(self._take_tour))
         keys = WINDOW_MOVES if self.links.embedded else KEYS
         self.browser = BrowserEvents(state, keys, locked, self._press, self.links.navigate, self._copied)
         lock_times = lambda on: state.param.update(lock_times=self.maps.view.times if on else None)  # noqa: E731
         self.controls = Controls(state, self.engine, self._toggle_drawer, self.comparison.swap_views, lock_times)
-        section = self.studies[SECTION_STUDY.name]
         self.drawers = Drawers(
             {
                 "potential": ("", "Potential", self.potential.panel.parts()),
                 "slice": ("", "Slice", [lambda: SlicePanel(state).build()]),
                 "gallery": ("Gallery", "Gallery", [self.gallery.build]),
-                "share": ("Share", "Share and download", [self.downloads.build]),
+                "share": ("Share", "Share and download", [self._build_downloads]),
                 "help": ("Help", "Help", [lambda: help_panes(state, results, self._take_tour)]),
             },
             self.browser.focus_drawer,
@@ -121,8 +116,11 @@ class Explorer:
                 Analysis.ORBIT: [lambda: [self.orbits.inspector.layout(), self.gallery.invitation()]],
                 Analysis.STATISTICS: self.statistics.parts(),
                 Analysis.MEASURES: self.analyses.measures.parts(),
-                **{name: [self.studies[each].view.build for each in names] for name, names in studies_by_tab().items()},
-                SECTION_STUDY.name: [section.view.build, lambda: [LiveSection(state, results, locked, self._context.change)]],
+                **{name: [partial(self._build_study, each) for each in names] for name, names in studies_by_tab().items()},
+                SECTION_STUDY.name: [
+                    partial(self._build_study, SECTION_STUDY.name),
+                    lambda: [LiveSection(state, results, locked, self._context.change)],
+                ],
                 Analysis.WATCH: [self._build_watch],
             },
             "analysis",
@@ -144,6 +142,15 @@ class Explorer:
     @cached_property
     def _player(self) -> EnsemblePlayer:
         return EnsemblePlayer(self.state, self.results, self._client, self._locked)
+
+    def _build_downloads(self) -> list[pn.viewable.Viewable]:
+        may_embed = bool(process_state().settings.ancestors_at(page_host(self._document)))
+        copy_link, on_copied = partial(self._copy, None), self._locked(self._copied)
+        downloads = Downloads(self.state, self.results, copy_link, self._copy_embed_code, on_copied, may_embed=may_embed)
+        return downloads.build()
+
+    def _build_study(self, name: str) -> list[pn.viewable.Viewable]:
+        return StudyPresenter(STUDIES[name], self._context).view.build()
 
     def _build_watch(self) -> list[pn.viewable.Viewable]:
         title = TextPane(title_with_help("Many orbits at once", "watch", HELP_TEXTS["watch"]), margin=(0, 10))

@@ -39,7 +39,7 @@ class StudyPresenter:
         self.view = StudyView(study, self._state, self._toggle, self.click, context.latest)
         self._request = LatestRequest(context.jobs, self._show, self._fail, context.latest)
         if study.follows_map:
-            self._state.param.watch(lambda event: self._follow_map(), "analysis")
+            self._state.follow(lambda analysis: self._follow_map(), "analysis")
             self._results.param.watch(lambda event: self._follow_map(), "frame")
         self._state.param.watch(lambda *events: self._stop(), ["system", "plane", "section", "t_max"])
         self._state.param.watch(lambda *events: self._show(None), "system")

@@ -51,9 +51,13 @@ class ChartView:
         self._shared_x_range = x_range
         self._labels = frame.labels
         self.plot: figure | None = None
-        self.view = pn.Column(margin=0, sizing_mode="stretch_width", visible=False)
 
-    # The models are made when they are first used, because a page is opened without charts.
+    # The view and the models are made when they are first used, because a page is opened without charts.
+    @cached_property
+    def view(self) -> pn.Column:
+        """The column of the chart."""
+        return pn.Column(margin=0, sizing_mode="stretch_width", visible=False)
+
     @cached_property
     def x_range(self) -> Range1d:
         """The range of x."""

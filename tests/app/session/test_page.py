@@ -9,10 +9,15 @@ import weakref
 from bokeh.core.validation import check_integrity
 from bokeh.document import Document
 from panel.io.state import set_curdoc
+from panel.viewable import Viewable
 
 from app.session.explorer import Explorer
 from app.session.page import explorer_page
+from plots.studies.section import SECTION_STUDY
 from tests.waiting import SECONDS
+
+MOST_VIEWS = 130
+"""Largest number of components of Panel of a page that shows maps only."""
 
 
 def build() -> weakref.ref[Explorer]:
@@ -35,6 +40,28 @@ def test_a_closed_page_is_freed() -> None:
     while alive(built) and time.monotonic() < deadline:
         pass
     assert alive(built) == []
+
+
+def count_views() -> int:
+    """Return the number of components of Panel that are alive."""
+    return sum(isinstance(each, Viewable) for each in gc.get_objects())
+
+
+def test_parts_of_closed_tabs_and_drawers_are_made_when_they_are_first_opened() -> None:
+    with set_curdoc(Document()):
+        before = count_views()
+        explorer = Explorer()
+        page = explorer_page(explorer)
+        opened = count_views()
+        # All components cost time when the page is made, and each is searched in every collection of garbage.
+        assert opened - before <= MOST_VIEWS
+        explorer.state.analysis = SECTION_STUDY.name
+        with_study = count_views()
+        assert with_study > opened
+        explorer.drawers.show("share")
+        assert count_views() > with_study
+        explorer.close()
+    assert page is not None
 
 
 def test_a_page_is_valid() -> None:

@@ -29,9 +29,13 @@ class Session:
         self.changed = threading.Condition()
         self.state, self.jobs = ViewState(system=System("II"), energy=0.25, resolution=112, t_max=1e3), jobs
         self.context = context_of(self.state, jobs, self.changed, lambda *opened: setattr(self, "opened", opened))
+        self.opened: Any = None
+        self.present(study)
+
+    def present(self, study: Study[Any]) -> None:
+        """Make the presenter, as when its tab is first opened."""
         self.presenter = StudyPresenter(study, self.context)
         self.view = self.presenter.view
-        self.opened: Any = None
 
     def press(self) -> None:
         with self.changed:
@@ -112,6 +116,15 @@ def test_a_quick_study_follows_each_map_from_its_first_frame_while_its_tab_is_op
     # Later frames of the same map need no other computation.
     session.context.results.frame = maps[0.15]
     assert not session.view.running
+
+
+def test_a_quick_study_that_is_made_while_its_tab_is_open_begins_with_the_present_map(begin: Callable[..., Session]) -> None:
+    session = begin(study_of_periods())
+    session.context.results.frame = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.25, (9, 9), t_max=1e3))
+    session.state.analysis = "section"
+    session.present(SECTION_STUDY)
+    session.wait_for(lambda: session.view.shown is not None and not session.view.running)
+    assert "at h = 0.25" in session.view.text.object
 
 
 @pytest.mark.usefixtures("wide_intervals")
