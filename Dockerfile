@@ -3,19 +3,19 @@ ARG BASE=python:3.13.7-slim-bookworm
 
 FROM ${BASE} AS build
 RUN pip install --no-cache-dir uv
-ENV UV_PROJECT_ENVIRONMENT=/opt/venv UV_LINK_MODE=copy UV_NO_CACHE=1 UV_PYTHON_DOWNLOADS=never UV_COMPILE_BYTECODE=1
+ENV VIRTUAL_ENV=/opt/venv UV_LINK_MODE=copy UV_NO_CACHE=1 UV_PYTHON_DOWNLOADS=never UV_COMPILE_BYTECODE=1
 WORKDIR /srv/escape-explorer
 # Install the dependencies before copying the sources, so that this layer is cached when only the sources change.
-COPY pyproject.toml README.md LICENSE ./
-RUN uv sync --no-dev --extra page --no-install-project
-COPY hatch_build.py ./
+COPY deploy/requirements.txt ./
+RUN uv venv /opt/venv && uv pip install --require-hashes --requirements requirements.txt
+COPY pyproject.toml README.md LICENSE hatch_build.py ./
 COPY engine engine
 COPY plots plots
 COPY app app
 COPY reproduction reproduction
 COPY cli cli
 COPY escape_explorer escape_explorer
-RUN uv sync --no-dev --extra page && /opt/venv/bin/python -m compileall -q app cli engine escape_explorer plots reproduction
+RUN uv pip install --no-deps --editable . && /opt/venv/bin/python -m compileall -q app cli engine escape_explorer plots reproduction
 
 FROM ${BASE}
 COPY --from=build /opt/venv /opt/venv
