@@ -21,7 +21,7 @@ def _other_legend(shown: ShownMap) -> Legend:
     if shown.other is None:
         return Legend(sentence="…")
     ends = shown.palette.legend_entries(shown.other.outcomes)
-    return Legend([*ends.values()], is_short=True, sentence=shown.other.title)
+    return Legend([*ends.values()], [*shown.outcome_entries(shown.other).values()], is_short=True, sentence=shown.other.title)
 
 
 def _difference_legend(shown: ShownMap) -> Legend:

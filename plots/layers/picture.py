@@ -95,11 +95,19 @@ class OtherView:
         Outcomes of the view's potential.
     axes
         Symbols of its axes.
+    fates
+        Fates that occur on its map.
     """
 
     title: str
     outcomes: tuple[Outcome, ...]
     axes: tuple[str, str]
+    fates: frozenset[int] = frozenset()
+
+
+def occurring_fates(frame: EscapeMap) -> frozenset[int]:
+    """Return the fates that occur on a map."""
+    return frozenset(np.unique(frame.fate).tolist())
 
 
 @dataclass(frozen=True)
@@ -135,12 +143,12 @@ class ShownMap:
     @classmethod
     def of(cls, frame: EscapeMap, palette: Palette, results: Mapping[str, Any], times: TimeScale | None = None) -> ShownMap:
         """Return a map with the results of its layers. `times` is the scale of the escape times; None means `fitted_scale`."""
-        fates = frozenset(np.unique(frame.fate).tolist())
-        return cls(frame.spec, palette, times or fitted_scale(frame), fates, results=results)
+        return cls(frame.spec, palette, times or fitted_scale(frame), occurring_fates(frame), results=results)
 
-    def outcome_entries(self) -> dict[Fate, Entry]:
-        """Return the entries of the map's fates that are not ends, bounded orbits first."""
-        return {fate: entry for fate, entry in reversed(self.palette.outcomes.items()) if fate in self.fates}
+    def outcome_entries(self, other: OtherView | None = None) -> dict[Fate, Entry]:
+        """Return the entries of the fates that are not ends, of the map or of another view, bounded orbits first."""
+        fates = self.fates if other is None else other.fates
+        return {fate: entry for fate, entry in reversed(self.palette.outcomes.items()) if fate in fates}
 
     def time_scale(self) -> ColourScale:
         """Return the scale of the escape times."""

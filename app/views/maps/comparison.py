@@ -12,7 +12,7 @@ from app.views.components.view_store import ViewStore
 from app.views.maps.hover import fate_hover
 from app.views.maps.map_curves import MapCurves
 from engine import EscapeMap, Slice
-from plots.layers.picture import OtherView
+from plots.layers.picture import OtherView, occurring_fates
 from plots.pictures.image_columns import NO_LAYER, difference_column, map_columns
 
 Columns = dict[str, list[Any]]
@@ -49,7 +49,7 @@ class ComparedMap:
 
     def show(self, frame: EscapeMap, title: str) -> None:
         """Show the other map."""
-        self.other = OtherView(title, frame.spec.outcomes, frame.spec.plane.axis_symbols)
+        self.other = OtherView(title, frame.spec.outcomes, frame.spec.plane.axis_symbols, occurring_fates(frame))
         columns = map_columns(frame)
         self.source.data = {name: columns[name] for name in _MAP_COLUMNS}
         self._outlines.show(frame.spec)

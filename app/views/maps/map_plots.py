@@ -29,7 +29,7 @@ from engine import EscapeMap, Fate, MapSpec, Window
 from engine.foundations.wording import format_number
 from engine.slices.axes import highest_energy
 from plots.layers.map_images import LAYER_COLUMNS, result_columns
-from plots.layers.picture import ShownMap
+from plots.layers.picture import ShownMap, occurring_fates
 from plots.layers.table import LAYERS, map_legend
 from plots.layers.table import PICTURES as PICTURE_ENTRIES
 from plots.links.map_view import Start
@@ -150,7 +150,7 @@ class MapsView:
         self._store.follow(frame.spec.find_window())
         if frame.stride == 1:
             self._fitted_times = fitted_scale(frame)
-        self._fates = frozenset(np.unique(frame.fate).tolist())
+        self._fates = occurring_fates(frame)
         self._scale_times()
         self.source.data = columns | self.compared.difference(columns, frame.spec.plane)
 
