@@ -98,7 +98,11 @@ def _open(path: str | os.PathLike[str]) -> Any:
             f"path={os.fspath(path)}: is a folder without {_ZARR_FILE}; must be a NetCDF file or a Zarr store of format 3"
         )
     with _open_netcdf(path) as dataset:
-        return _read(path, dataset.load())
+        try:
+            dataset.load()
+        except OSError as error:
+            raise OSError(f"path={os.fspath(path)}: its data are damaged: {error}") from error
+        return _read(path, dataset)
 
 
 def _open_netcdf(path: str | os.PathLike[str]) -> xr.Dataset:

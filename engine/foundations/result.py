@@ -6,10 +6,11 @@ Another package, which is imported for the first picture, draws the pictures; se
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from enum import IntEnum
 from importlib import metadata
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, cast
 
@@ -267,7 +268,7 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
         dataset = self.to_xarray()
         with output_named_in_errors(path):
             try:
-                dataset.to_netcdf(incomplete)
+                dataset.to_netcdf(incomplete, encoding=_checksums(dataset))
                 incomplete.replace(file)
             finally:
                 incomplete.unlink(missing_ok=True)
@@ -277,6 +278,17 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
         if name in self.codes:
             return describe_codes(self.codes[name], self.fate_labels)
         return {"units": "1"} if np.asarray(values).dtype.kind in "iuf" else {}
+
+
+def _checksums(dataset: xr.Dataset) -> dict[Hashable, dict[str, bool]]:
+    """Return the encoding with which arrays of numbers have checksums in a file, so that damaged data are not read.
+
+    Without the extra ``files``, files are of NetCDF 3, which has no checksums.
+    """
+    if find_spec("h5netcdf") is None:
+        return {}
+    numbers = (name for name, variable in dataset.variables.items() if variable.dtype.kind in "biuf" and variable.size > 1)
+    return {name: {"fletcher32": True} for name in numbers}
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -338,6 +338,20 @@ class Failing(Result):
         return xr.Dataset({"number": ("x", dask.array.from_delayed(dask.delayed(fail)(), (3,), float))})
 
 
+def test_a_file_with_damaged_data_is_refused_and_named(tmp_path: Path) -> None:
+    escape_map = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.24, (40, 40), t_max=100.0))
+    file = tmp_path / "map.nc"
+    escape_map.save(file)
+    content = bytearray(file.read_bytes())
+    some_times = escape_map.escape_time[20, 10:18].tobytes()
+    place = content.find(some_times)
+    content[place : place + len(some_times)] = bytes(len(some_times))
+    file.write_bytes(content)
+    assert place > 0
+    with pytest.raises(OSError, match=r"map\.nc: its data are damaged"):
+        open_result(file)
+
+
 def test_a_result_that_cannot_be_written_leaves_the_earlier_file(tmp_path: Path) -> None:
     computed("potential").save(tmp_path / "result.nc")
     earlier = (tmp_path / "result.nc").read_bytes()
