@@ -13,7 +13,7 @@ from jinja2 import Template
 from panel.io.resources import parse_template
 from panel.io.state import set_curdoc
 
-from app.browser.module_files import ADDRESS, KERNELS_ADDRESS
+from app.browser.module_files import ADDRESS
 from app.session.explorer import Explorer
 from app.state.view import View
 from app.views.components.notice import watch_connection
@@ -80,7 +80,6 @@ class ExplorerTemplate(pn.Template):
         self.add_variable("link_sentence", link_sentence(view))
         self.add_variable("is_embedded", "picture_alone" in roots)
         self.add_variable("preloaded_module", ADDRESS)
-        self.add_variable("preloaded_kernels", KERNELS_ADDRESS)
         self.add_variable("theme_css", theme_css())
         self.add_variable("theme_key", THEME_KEY)
 
