@@ -69,19 +69,8 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
 
     inner_names: ClassVar[frozenset[str]] = frozenset(
         {
-            *(
-                "array_dimensions",
-                "chart",
-                "codes",
-                "columns",
-                "fate_labels",
-                "held_as",
-                "in_well_units",
-                "inner_names",
-                "kinds",
-                "made_by",
-            ),
-            *("numbers", "read_parts", "row_dimension", "shown_numbers"),
+            *("array_dimensions", "chart", "codes", "columns", "fate_labels", "held_as", "in_well_units", "inner_names"),
+            *("kinds", "made_by", "numbers", "read_parts", "row_dimension", "shown_numbers"),
         }
     )
     """Attributes that `dir` omits, because they are for internal use."""
@@ -287,8 +276,8 @@ def _checksums(dataset: xr.Dataset) -> dict[Hashable, dict[str, bool]]:
     """
     if find_spec("h5netcdf") is None:
         return {}
-    numbers = (name for name, variable in dataset.variables.items() if variable.dtype.kind in "biuf" and variable.size > 1)
-    return {name: {"fletcher32": True} for name in numbers}
+    arrays = {name: variable for name, variable in dataset.variables.items() if variable.ndim and variable.size}
+    return {name: {"fletcher32": True} for name, variable in arrays.items() if variable.dtype.kind in "biuf"}
 
 
 @dataclass(frozen=True, eq=False, repr=False)

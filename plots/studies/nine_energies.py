@@ -30,6 +30,8 @@ _COLUMNS = 3
 _STEPS = 1.08, 1.36
 # Margin beside and below the pictures.
 _MARGIN = 0.03
+# Width of the chart with its title over its height, at which the pictures are as high as wide.
+_ASPECT = 0.76
 # Columns and rows of each map.
 _RESOLUTION = (150, 150)
 # Digits of the numbers above the maps.
@@ -42,7 +44,7 @@ TILES = Frame(
     "The basins of escape at nine energies, in the same window of the plane, and a measure of each map. In the cases of Zotos "
     "(2014) the energies are those of the maps of the paper. Click a map to open it.",
     text="Click to open the map of @text",
-    aspect=0.76,
+    aspect=_ASPECT,
     has_tiles=True,
 )
 
