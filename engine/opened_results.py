@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, get_type_hints, overload
 
 from engine.foundations.extras import require_package
+from engine.foundations.netcdf_files import read_netcdf
 from engine.foundations.plug_ins import import_plug_ins
 from engine.foundations.result import RecordedResult, Result
 from engine.foundations.stored_fields import plain_attributes, read_field, with_present_names
@@ -33,8 +34,6 @@ _READERS: dict[Any, Callable[[xr.Dataset], Result]] = {
 }
 # Name of a file in every Zarr store of format 3.
 _ZARR_FILE = "zarr.json"
-# First bytes of HDF5 files, and thus of NetCDF 4 files.
-_HDF5_SIGNATURE = b"\x89HDF"
 
 
 @overload
@@ -97,29 +96,7 @@ def _open(path: str | os.PathLike[str]) -> Any:
         raise ValueError(
             f"path={os.fspath(path)}: is a folder without {_ZARR_FILE}; must be a NetCDF file or a Zarr store of format 3"
         )
-    with _open_netcdf(path) as dataset:
-        try:
-            dataset.load()
-        except OSError as error:
-            raise OSError(f"path={os.fspath(path)}: its data are damaged: {error}") from error
-        return _read(path, dataset)
-
-
-def _open_netcdf(path: str | os.PathLike[str]) -> xr.Dataset:
-    """Return the dataset of a NetCDF file, read on access; an OSError names the path."""
-    # The import is slow and seldom needed.
-    import xarray as xr
-
-    with open(path, "rb") as file:
-        if file.read(len(_HDF5_SIGNATURE)) == _HDF5_SIGNATURE:
-            require_package("h5netcdf", "files")
-    try:
-        return xr.open_dataset(path)
-    except OSError as error:
-        raise OSError(f"path={os.fspath(path)}: cannot be read as a NetCDF file: {error}") from error
-    except ValueError:
-        # No engine of xarray recognises the file.
-        raise OSError(f"path={os.fspath(path)}: cannot be read as a NetCDF file: its format is unknown") from None
+    return _read(path, read_netcdf(path))
 
 
 def _read(path: str | os.PathLike[str], dataset: xr.Dataset) -> Any:

@@ -14,7 +14,7 @@ escape-explorer map III --energies 0.25 1 --plane x_h --resolution 400x300 --for
 
 escape-explorer map II --energy 0.2 --picture basins --output basins.pdf --width 8.5 --no-titles
 
-escape-explorer map II --energy 0.2 --resolution 4000 --format nc --scheduler tcp://node1:8786
+escape-explorer map II --energy 0.2 --resolution 4000 --format nc --store large.nc --scheduler tcp://node1:8786
 """
 
 from __future__ import annotations
@@ -87,6 +87,7 @@ def run(
     style: FigureStyle,
     formats: Annotated[list[Format] | None, typer.Option("--format")] = None,
     output: Stem = None,
+    store: Annotated[Path | None, typer.Option(metavar="FILE")] = None,
     place: Place,
     as_json: AsJson = False,
 ) -> None:
@@ -98,6 +99,8 @@ def run(
         Count starts beyond an exit as escaped.
     formats
         Output format, by default the ending of --output, or else nc and png; can be repeated.
+    store
+        File, with the ending nc, that keeps the finished blocks of the map; the same command continues after an interruption.
     """
     requested_layers = layers.with_pictures(picture or ())
     requested_layers.check(spec)
@@ -109,7 +112,7 @@ def run(
         stem, endings = split_ending(output, list(Format), DEFAULT_FORMATS)
     with reserve_output(stem):
         with place.run() as context:
-            frame, analyses = compute_map_with_layers(spec, requested_layers, context)
+            frame, analyses = compute_map_with_layers(spec, requested_layers, context, store)
         # The cluster is closed now: with a Dask client, xarray would use locks that in-memory files do not support.
         with Place().run() as context:
             context.start_stage("writing")

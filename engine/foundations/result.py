@@ -6,19 +6,17 @@ Another package, which is imported for the first picture, draws the pictures; se
 from __future__ import annotations
 
 import os
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from enum import IntEnum
 from importlib import metadata
-from importlib.util import find_spec
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, cast
 
 import numpy as np
 
 from engine.foundations.arrays import ReadOnlyArrays
 from engine.foundations.extras import load_pictures
-from engine.foundations.output_lock import output_named_in_errors
+from engine.foundations.netcdf_files import write_netcdf
 from engine.foundations.stored_fields import write_field
 from engine.foundations.wording import describe_codes, show_numbers, summarize
 
@@ -249,35 +247,13 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
         OSError
             If the file cannot be written.
         """
-        file = Path(path)
-        if file.suffix != ".nc":
-            raise ValueError(f"path={path}: must end in .nc")
-        # An existing file is replaced only by a complete file, even if the call is interrupted.
-        incomplete = file.with_name(f".{file.name}.{os.getpid()}.part")
-        dataset = self.to_xarray()
-        with output_named_in_errors(path):
-            try:
-                dataset.to_netcdf(incomplete, encoding=_checksums(dataset))
-                incomplete.replace(file)
-            finally:
-                incomplete.unlink(missing_ok=True)
+        write_netcdf(self.to_xarray(), path)
 
     def _meaning(self, name: str, values: Any) -> dict[str, str]:
         """Return the attributes of a variable: the meanings of codes, or the unit 1 for other numbers."""
         if name in self.codes:
             return describe_codes(self.codes[name], self.fate_labels)
         return {"units": "1"} if np.asarray(values).dtype.kind in "iuf" else {}
-
-
-def _checksums(dataset: xr.Dataset) -> dict[Hashable, dict[str, bool]]:
-    """Return the encoding with which arrays of numbers have checksums in a file, so that damaged data are not read.
-
-    Without the extra ``files``, files are of NetCDF 3, which has no checksums.
-    """
-    if find_spec("h5netcdf") is None:
-        return {}
-    arrays = {name: variable for name, variable in dataset.variables.items() if variable.ndim and variable.size}
-    return {name: {"fletcher32": True} for name, variable in arrays.items() if variable.dtype.kind in "biuf"}
 
 
 @dataclass(frozen=True, eq=False, repr=False)

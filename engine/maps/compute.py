@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
-from dataclasses import fields, replace
+from dataclasses import replace
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,6 +16,7 @@ import numpy as np
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.validation import checks_types
 from engine.maps.analyses.rounded_share import with_rounded_share
+from engine.maps.map_store import open_map_store
 from engine.maps.parameter_map import LinewiseRun
 from engine.maps.result import PIXEL_ARRAYS, EscapeMap, collect_map, empty_arrays
 from engine.maps.run import MapRun
@@ -24,16 +27,29 @@ from engine.propagation.fates import Fate
 LARGEST_RUN = 2**20
 """Largest number of pixels whose orbits are in memory together. Larger maps are computed in blocks."""
 
+_STORED_RUN = 2**18
+"""Largest number of pixels of a block of a map with a store, which is saved between blocks."""
+
+OnFrame = Callable[[EscapeMap], None]
+"""A function that receives the map so far."""
+
+type _Run = MapRun | LinewiseRun | BlockwiseRun
+type _Restore = Callable[[EscapeMap], EscapeMap]
+
 
 @shows_progress("escape map")
-@checks_types(spec=MapSpec, resume=(EscapeMap, type(None)), on_frame=(Callable, type(None)), execution=Execution)
+@checks_types(
+    spec=MapSpec, resume=(EscapeMap, type(None)), store=(str, os.PathLike, type(None)),
+    on_frame=(Callable, type(None)), execution=Execution,
+)  # fmt: skip
 def compute_map(
     spec: MapSpec,
-    on_frame: Callable[[EscapeMap], None] | None = None,
+    on_frame: OnFrame | None = None,
     cancel: threading.Event | None = None,
     executor: Executor | None = None,
     *,
     resume: EscapeMap | None = None,
+    store: str | os.PathLike[str] | None = None,
     on_progress: Callable[[float], None] | None = None,
     execution: Execution = DEFAULT_EXECUTION,
 ) -> EscapeMap:
@@ -52,6 +68,10 @@ def compute_map(
         An earlier map, complete or cancelled, whose orbits are continued. Its spec must be equal, but its t_max may be smaller.
         Of a map of more than 2²⁰ pixels, finished rows are kept; it may be a frame or come from a file, and its t_max must be
         equal. Along a parameter, such a map cannot be resumed.
+    store
+        A file for the map so far, whose name ends in ".nc". The map is computed in blocks of rows and saved between them, at
+        the end, and when it is cancelled. The same call with the same file continues, also after the process was killed. The
+        map has no integration state. Not for a map along a parameter.
     execution
         How the computation runs. When it is cancelled, the map so far is returned, with ``complete`` False.
 
@@ -62,7 +82,11 @@ def compute_map(
     Raises
     ------
     ValueError
-        When `resume` belongs to another map, or no exit is defined at an energy of `spec`.
+        When `resume` or `store` belongs to another map, both are given, or no exit is defined at an energy of `spec`.
+    OSError
+        When `store` cannot be read or written.
+    BlockingIOError
+        When another process is writing `store`.
 
     Examples
     --------
@@ -73,9 +97,18 @@ def compute_map(
     """
     overrides: dict[str, Any] = {"cancel": cancel, "executor": executor, "on_progress": on_progress}
     execution = replace(execution, **{name: value for name, value in overrides.items() if value is not None})
+    if store is not None:
+        if resume is not None:
+            raise ValueError("resume: must be None with a store, which holds the earlier map")
+        return _compute_stored(spec, Path(store), on_frame, execution)
     if resume is not None:
         _check_resumable(spec, resume)
     work, restore = _begin_computation(spec, resume, coarse_first=on_frame is not None)
+    return _run(work, restore, on_frame, execution)
+
+
+def _run(work: _Run, restore: _Restore, on_frame: OnFrame | None, execution: Execution) -> EscapeMap:
+    """Run a computation, and return its map in the units of the request."""
     run_stages(work, execution, None if on_frame is None else lambda frame: on_frame(restore(frame)))
     result = restore(with_rounded_share(work.result(), execution))
     if on_frame is not None and result.complete:
@@ -83,9 +116,17 @@ def compute_map(
     return result
 
 
-def _begin_computation(
-    spec: MapSpec, resume: EscapeMap | None, *, coarse_first: bool
-) -> tuple[MapRun | LinewiseRun | BlockwiseRun, Callable[[EscapeMap], EscapeMap]]:
+def _compute_stored(spec: MapSpec, path: Path, on_frame: OnFrame | None, execution: Execution) -> EscapeMap:
+    """Return a map of which the finished blocks are kept in a file."""
+    with open_map_store(path, spec) as store:
+        earlier = None if store.earlier is None else store.earlier.in_well_units()
+        work = BlockwiseRun(spec.in_well_units(), _STORED_RUN, earlier)
+        result = _run(work, partial(EscapeMap.restored, spec=spec), store.saving(on_frame), execution)
+        store.save(result)
+        return result
+
+
+def _begin_computation(spec: MapSpec, resume: EscapeMap | None, *, coarse_first: bool) -> tuple[_Run, _Restore]:
     """Return the computation of a map, and a function that converts its maps to the units of the request."""
     keeps_states = _keeps_states(spec)
     if spec.plane.parameter is not None:
@@ -100,7 +141,7 @@ def _begin_computation(
 
 def _check_resumable(spec: MapSpec, resume: EscapeMap) -> None:
     """Raise ValueError unless a map can be continued for a request."""
-    different_fields = [field.name for field in fields(spec) if getattr(resume.spec, field.name) != getattr(spec, field.name)]
+    different_fields = spec.different_fields(resume.spec)
     if not _keeps_states(spec) and spec.plane.parameter is None:
         if different_fields:
             raise ValueError(f"resume: a map with another {', '.join(different_fields)}; must be equal for more than 2²⁰ pixels")
@@ -163,7 +204,7 @@ class BlockwiseRun:
 
     def __init__(self, spec: MapSpec, max_pixels: int, earlier: EscapeMap | None = None) -> None:
         self.spec, self._max_pixels = spec, max_pixels
-        self._horizon = 0.0
+        self._horizon = 0.0 if earlier is None else earlier.horizon
         self._arrays = empty_arrays(PIXEL_ARRAYS, spec.resolution[::-1])
         if earlier is not None:
             finished = _are_decided(earlier)

@@ -6,7 +6,7 @@ import json
 import operator
 import os
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -136,6 +136,10 @@ class MapSpec:
             object.__setattr__(self, name, value)
         if plane.parameter is not None and plane.parameter.system.potential != self.potential:
             raise ValueError(f"plane={plane.title}: its parameter belongs to another system; must be of {self.potential.name}")
+
+    def different_fields(self, other: MapSpec) -> list[str]:
+        """Return the names of the fields in which another request differs."""
+        return [field.name for field in fields(self) if getattr(self, field.name) != getattr(other, field.name)]
 
     @property
     def common_energy(self) -> float | None:

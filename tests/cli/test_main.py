@@ -5,6 +5,7 @@ from __future__ import annotations
 import signal
 import subprocess
 import sys
+from functools import partial
 from importlib import metadata
 from pathlib import Path
 
@@ -172,6 +173,15 @@ def test_ctrl_c_cancels_a_map_and_a_second_ctrl_c_ends_it_at_once(times: int, ru
     assert "escape-explorer: interrupted" in line
     assert not any(tmp_path.iterdir())
     assert signal.getsignal(signal.SIGINT) is before
+
+
+def test_ctrl_c_keeps_the_store_of_a_map_and_says_so(run_in_terminal: Run, tmp_path: Path) -> None:
+    store = tmp_path / "kept.nc"
+    interrupt = partial(signal.raise_signal, signal.SIGINT)
+    code, _, line = run_in_terminal("map", interrupt, *LONG, "--output", tmp_path / "map", "--store", store)
+    assert code == INTERRUPTED
+    assert f"interrupted; finished blocks are kept in {store}, and the same command continues from there" in line
+    assert [file.name for file in tmp_path.iterdir()] == [store.name]
 
 
 @pytest.mark.parametrize(("word", "code"), [("mpa", INVALID_REQUEST), ("--help", 0), ("serve --help", 0)])
