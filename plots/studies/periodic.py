@@ -29,6 +29,9 @@ FRAME = Frame(
     aspect=1.0,
 )
 
+FOLLOW = " Click a point to follow its orbit. On an unstable one, rounding errors grow until the path leaves it."
+"""What a click on a return does."""
+
 UP_TO = Setting(
     name="periodic_returns",
     title="Returns of periodic orbits",
@@ -74,7 +77,7 @@ def _changes(subject: Subject, axis: str, found: PeriodicOrbits, click: Click) -
 
 def _sentence(found: PeriodicOrbits) -> str:
     can_click = found.complete and len(found) and found.section.plane is not None
-    return f"{found.describe()}{' Click a point to follow its orbit.' if can_click else ''}"
+    return f"{found.describe()}{FOLLOW if can_click else ''}"
 
 
 PERIODIC_STUDY = Study(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 from html import escape
@@ -18,7 +19,7 @@ from app.views.components.widgets import button, flex_row
 from engine import System
 from engine.foundations.wording import format_number
 from engine.systems.catalogue.table import CATALOGUE
-from engine.systems.formulas.formula_parser import LARGEST_VALUE, LONGEST_TEXT
+from engine.systems.formulas.formula_parser import LARGEST_VALUE, LONGEST_TEXT, formula_letters
 from engine.systems.parameters import WELL_PARAMETERS
 from engine.systems.system import TYPED
 from plots.pictures.palette import MOST_CHANNELS
@@ -93,8 +94,9 @@ class PotentialPanel:
             *(button(label, partial(self._add, clause=clause), margin=0) for label, clause in _CLAUSES.items()),
         ]
         self.sliders = ParameterSliders(self._slide, sizing_mode="stretch_width", margin=0)
-        # Half the range of the slider of each letter.
+        # Half the range of the slider of each letter, and the values of all sliders.
         self._reaches: dict[str, float] = {}
+        self._values: dict[str, float] = {}
         reset = lambda: self._choose(System(self.shown.case, self.shown.formula))  # noqa: E731
         self.reset = button("Reset parameters", reset, margin=(8, 0))
         self.definition = TextPane(_DEFINITION, margin=(8, 0), sizing_mode="stretch_width")
@@ -112,8 +114,13 @@ class PotentialPanel:
         return [partial(list, part) for part in batched(views, _VIEWS_OF_PART)]
 
     def _show_sliders(self) -> None:
-        """Show a slider for each parameter, letters first. A letter that remains in the formula keeps the range of its slider."""
-        values = {name: self.shown.value_of(name) for name in self.shown.parameter_names}
+        """Show a slider for each parameter, letters first. A letter that remains in the formula keeps the range of its slider.
+
+        While the letters of a text cannot be read, the sliders of the last text stay, because the letters probably return.
+        """
+        if not _has_readable_letters(self.shown):
+            return
+        self._values = values = {name: self.shown.value_of(name) for name in self.shown.parameter_names}
         first_reaches = {name: max(_SMALLEST_REACH, 2.0 * abs(values[name])) for name in _letters_of(self.shown)}
         self._reaches = {name: self._reaches.get(name, reach) for name, reach in first_reaches.items()}
         self.sliders.show(
@@ -196,7 +203,7 @@ class PotentialPanel:
     def _take_text(self, text: str, done: bool) -> None:
         """Propose the system of a typed formula, or the system of the maps if the formula is the same."""
         used = self.used.system
-        self._show_around_text(used if text == _formula_of(used) else _typed_system(text, self.shown))
+        self._show_around_text(used if text == _formula_of(used) else _typed_system(text, self._values))
         self._propose(self.shown, done=done)
 
     def _use_well(self) -> None:
@@ -213,6 +220,9 @@ class PotentialPanel:
 
     def _slide(self, name: str, number: float, done: bool) -> None:
         """Propose the system with the number of a slider."""
+        if not _has_readable_letters(self.shown):
+            self._values[name] = number
+            return
         self._show_around_text(replace(self.shown, parameters={**self.shown.parameters, name: number}))
         self._propose(self.shown, done=done)
 
@@ -236,10 +246,18 @@ def _letters_of(system: System) -> tuple[str, ...]:
     return tuple(name for name in system.parameter_names if name not in WELL_PARAMETERS)
 
 
-def _typed_system(text: str, previous: System) -> System:
-    """Return the system of a typed formula. Its parameters have their values in the previous system."""
+def _has_readable_letters(system: System) -> bool:
+    try:
+        formula_letters(system.formula)
+    except ValueError:
+        return False
+    return True
+
+
+def _typed_system(text: str, values: Mapping[str, float]) -> System:
+    """Return the system of a typed formula with these values of its parameters, or their defaults."""
     typed = System(TYPED, text)
-    return replace(typed, parameters={name: previous.value_of(name) for name in typed.parameter_names})
+    return replace(typed, parameters={name: values.get(name, typed.default_of(name)) for name in typed.parameter_names})
 
 
 def _alert(sentence: str) -> str:

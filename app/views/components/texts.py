@@ -34,7 +34,7 @@ def describe_outcomes(review: PotentialReview) -> str:
     """Describe the ends of orbits, and the energies above which exits are open, or up to which a well without exits is closed."""
     potential = review.potential
     if not potential.ends:
-        return _describe_openings(potential) or f"no exits, closed up to h = {format_number(review.closed_energy)}"
+        return _describe_openings(potential) or f"no exits, closed at least up to h = {format_number(review.closed_energy)}"
     labels = ", ".join(outcome.label for outcome in potential.outcomes)
     openings = f"exits open above h = {format_number(potential.escape_energy)}" if potential.channels else ""
     return "; ".join(part for part in (labels, openings) if part)

@@ -233,6 +233,18 @@ def test_letters_of_a_formula_have_sliders_with_ranges_that_remain(session: Sess
     assert session.state.system.parameters == {}
 
 
+def test_letters_keep_their_sliders_and_values_while_a_text_cannot_be_read(session: Session) -> None:
+    formula = "½(x² + y²) − a x²y + b y³/3"
+    session.type(formula)
+    session.slide("b", -7.0)
+    session.wait_for(lambda: session.state.system.parameters == {"b": -7.0})
+    session.type(f"{formula}; a = 1.1")
+    assert shown_letters(session) == {"a": (1.0, 2.0), "b": (-7.0, 2.0)}
+    session.type(f"{formula} + x⁴")
+    session.wait_for(lambda: session.state.system.formula == f"{formula} + x⁴")
+    assert session.state.system.parameters == {"b": -7.0}
+
+
 def test_a_typed_formula_keeps_the_parameters_which_can_be_reset(session: Session) -> None:
     session.state.show_system(review_for_page(System("III", parameters={"omega_1": 1.13, "epsilon": 0.5})))
     assert session.sliders()["epsilon"]["value"] == 0.5

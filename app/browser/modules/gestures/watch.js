@@ -271,7 +271,9 @@ class EnsemblePlayer {
     if (where === "disc" && !point.length) return "Click a map first. These starts are in the view."
     if (explanations[where]) return explanations[where]
     const words = this.#controls.where.selectedOptions[0].textContent
-    return `${whole(this.#ensemble.count)} starts ${words}, in the colours of the exits that they will take; grey ones stay.`
+    const longest = number(LONGEST_TIME * (present()?.system.units.time ?? 1), 3)
+    const starts = `${whole(this.#ensemble.count)} starts ${words}`
+    return `${starts}, in the colours of the exits that they will take; grey ones are still inside at t = ${longest}.`
   }
 
   #end() {
