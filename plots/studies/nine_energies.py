@@ -2,40 +2,28 @@
 
 from __future__ import annotations
 
-import numpy as np
-
-from engine import MEASURES, Plane, Section, SweepSpec, compute_statistics, compute_sweep
+from engine import Plane, Section, SweepSpec, compute_statistics, compute_sweep
 from engine.foundations.wording import format_number
 from engine.jobs.job import Job
 from engine.measures.table import curve_names
 from engine.results import Sweep
 from engine.sweeps.sweep_job import sweep_job
 from engine.systems.catalogue.published_fits import PAPER_FITS, PaperFits
-from plots.pictures.charts import Chart, Frame, Tile
-from plots.pictures.image_columns import fate_codes
+from plots.pictures.charts import Chart, Frame
 from plots.pictures.palette import Palette
-from plots.pictures.setting import Setting, Settings
+from plots.pictures.setting import Settings
 from plots.studies.against import sweep_caption, sweep_progress
 from plots.studies.axes import ENERGY, changes_at, spaced_values, swept_slice
 from plots.studies.escape_charts import ESCAPES, ESCAPES_BY_CROSSINGS, PROBABILITIES_BY_ENERGY, crossing_charts, escapes_chart
+from plots.studies.map_tiles import BESIDE, TILES_ASPECT, TileGrid
 from plots.studies.study import Changes, Click, Study, Subject
 
 ENERGIES = 9
 """Number of maps."""
 
-# Number of pictures in a row.
-_COLUMNS = 3
-# Distance between the left edges of neighbouring pictures of side 1, and between their lower edges. Two lines of text are above
-# each picture.
-_STEPS = 1.08, 1.36
-# Margin beside and below the pictures.
-_MARGIN = 0.03
-# Width of the chart with its title over its height, at which the pictures are as high as wide.
-_ASPECT = 0.76
+_GRID = TileGrid(columns=3, rows=3)
 # Columns and rows of each map.
 _RESOLUTION = (150, 150)
-# Digits of the numbers above the maps.
-_DIGITS = 3
 
 TILES = Frame(
     "plates",
@@ -44,19 +32,9 @@ TILES = Frame(
     "The basins of escape at nine energies, in the same window of the plane, and a measure of each map. In the cases of Zotos "
     "(2014) the energies are those of the maps of the paper. Click a map to open it.",
     text="Click to open the map of @text",
-    aspect=_ASPECT,
+    aspect=TILES_ASPECT,
     has_tiles=True,
 )
-
-BESIDE = Setting(
-    name="beside",
-    title="Measure of each map",
-    word="Number:",
-    choices={name: name for name in curve_names(slow=False)},
-    default="basin_entropy",
-    help="Measure that is written above each map.",
-)
-"""The measure whose number is written above each map; of the shares, that of the bounded starts."""
 
 
 def _job(subject: Subject, axis: str) -> Job[Sweep]:
@@ -83,31 +61,14 @@ def nine_energies_charts(found: Sweep, palette: Palette, settings: Settings) -> 
     if not found.values.size:
         return []
     by_energy = {float(h): compute_statistics(found.dataset.isel(h=k)) for k, h in enumerate(found.values)}
-    return [_tiles_chart(found, palette, settings), escapes_chart(by_energy, _fits(found)), *crossing_charts(by_energy)]
+    tiles = _GRID.chart(TILES, found, _places(found), palette, settings)
+    return [tiles, escapes_chart(by_energy, _fits(found)), *crossing_charts(by_energy)]
 
 
-def _tiles_chart(found: Sweep, palette: Palette, settings: Settings) -> Chart:
-    measure = BESIDE.value_in(settings)
-    tiles = [
-        Tile(fate_codes(fate, found.outcomes), left, bottom, f"h = {h:g}\n{_measure_text(found, k, measure)}")
-        for k, (fate, h, (left, bottom)) in enumerate(zip(found["fate"], found.values, _corners(found), strict=True))
-    ]
-    right, top = (_COLUMNS - 1) * _STEPS[0] + 1.0, _STEPS[1]
-    return Chart(TILES, [], ((-_MARGIN, right + _MARGIN), (top - _COLUMNS * top - _MARGIN, top)), tiles, palette.fate_colours)
-
-
-def _corners(found: Sweep) -> list[tuple[float, float]]:
-    """Return the lower left corner of each map, which depends on the place of its energy among the requested ones."""
-    numbers = [found.dataset.attrs["requested"].index(h) for h in found.values.tolist()]
-    return [(number % _COLUMNS * _STEPS[0], -(number // _COLUMNS) * _STEPS[1]) for number in numbers]
-
-
-def _measure_text(found: Sweep, k: int, measure: str) -> str:
-    """Return what is written of the map of an index, below its energy; empty for a measure without a number there."""
-    if measure == "shares":
-        return f"{format_number(100.0 * found['share'][k, 0], _DIGITS)} % stay"
-    value = float(found[next(iter(MEASURES[measure].labels))][k])
-    return format_number(value, _DIGITS) if np.isfinite(value) else ""
+def _places(found: Sweep) -> dict[int, tuple[int, ...]]:
+    """Return the index of each map by its place, which is that of its energy among the requested ones."""
+    requested = found.dataset.attrs["requested"]
+    return {requested.index(h): (k,) for k, h in enumerate(found.values.tolist())}
 
 
 def _fits(found: Sweep) -> PaperFits | None:
@@ -123,10 +84,9 @@ def _changes(subject: Subject, axis: str, found: Sweep, click: Click) -> Changes
         return changes_at(subject, ENERGY, found.values, click.x)
     if click.chart != TILES.name:
         return {}
-    for h, (left, bottom) in zip(found.values.tolist(), _corners(found), strict=True):
-        if left <= click.x <= left + 1.0 and bottom <= click.y <= bottom + 1.0:
-            return {"energy": h, "plane": swept_slice(subject), "window": None}
-    return {}
+    place = _GRID.place_at(click)
+    index = None if place is None else _places(found).get(place)
+    return {} if index is None else {"energy": float(found.values[index]), "plane": swept_slice(subject), "window": None}
 
 
 def _sentence(found: Sweep) -> str:

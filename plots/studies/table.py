@@ -10,10 +10,11 @@ from plots.studies.against import AGAINST
 from plots.studies.family import FAMILY_STUDY
 from plots.studies.nine_energies import NINE_ENERGIES
 from plots.studies.periodic import PERIODIC_STUDY
+from plots.studies.plate import PLATE_STUDY
 from plots.studies.section import SECTION_STUDY
 from plots.studies.study import Study
 
-_ENTRIES: tuple[Study[Any], ...] = (SECTION_STUDY, PERIODIC_STUDY, NINE_ENERGIES, AGAINST, FAMILY_STUDY)
+_ENTRIES: tuple[Study[Any], ...] = (SECTION_STUDY, PERIODIC_STUDY, NINE_ENERGIES, PLATE_STUDY, AGAINST, FAMILY_STUDY)
 
 STUDIES: Mapping[str, Study[Any]] = Entries(Group.STUDIES, Study, _ENTRIES)
 """The studies by name, in the order of their tabs, with those of other packages."""

@@ -18,7 +18,8 @@ from plots.pictures.image_columns import fate_codes
 from plots.pictures.palette import PAPER
 from plots.pictures.setting import NO_SETTINGS
 from plots.studies.escape_charts import FEWEST_REMAINING
-from plots.studies.nine_energies import BESIDE, ENERGIES, NINE_ENERGIES, TILES
+from plots.studies.map_tiles import BESIDE
+from plots.studies.nine_energies import ENERGIES, NINE_ENERGIES, TILES
 from plots.studies.study import Click, Subject
 
 MARKED = PAPER_ENERGIES["I"].marked
