@@ -24,13 +24,13 @@ FULL = 0.85
 CROWDED = 0.5
 """Share (see `FULL`) above which work that can wait is postponed, so that open pages stay fast."""
 
-PAGES_PER_SECOND = 0.12
+PAGES_PER_SECOND = 0.17
 """Number of pages whose making takes as much processor time as an active visitor uses in a second.
 
 Both run mostly Python code, so this number changes little from machine to machine.
 """
 
-FIRST_CORES_PER_PAGE = 0.03
+FIRST_CORES_PER_PAGE = 0.04
 """Processors that an active visitor is assumed to use before the first page is made."""
 
 MEASURED_PAGES = 15

@@ -41,6 +41,8 @@ _SEARCH_SADDLE_DISTANCES = 2.0
 _SEARCH_BODY_DISTANCES = 2.5
 # Number of rays from the origin on which the interior is searched.
 _RAYS = 180
+# Number of blocks of a ray whose points are tested together.
+_BLOCKS = 16
 # Number of points along a side of the lattice on which the interior of an oblique slice is searched.
 _LATTICE_SIDE = 201
 # Number of lattices, each around the interior found on the preceding lattice.
@@ -158,22 +160,17 @@ def _momentum_range(potential: Potential, energy: float, ranges: dict[Coordinate
     return -momentum, momentum
 
 
-def _run_around_middle(mask: np.ndarray) -> slice:
-    """Return the run of True values around the middle of an array."""
-    middle = mask.size // 2
-    false_indices = np.flatnonzero(~mask)
-    begin = false_indices[false_indices < middle].max(initial=-1) + 1
-    end = false_indices[false_indices > middle].min(initial=mask.size)
-    return slice(begin, end)
-
-
 def _interior_interval(potential: Potential, energy: float, axis: Coordinate, fixed: dict[Coordinate, float]) -> np.ndarray:
     """Return the values of `axis`, x or y, of interior points on the line where the other coordinate is fixed, of shape (n,)."""
     radius = _search_radius(potential, energy)
     line = np.linspace(-radius, radius, 4 * _SCAN_POINTS)
     x, y = (line if axis is coordinate else np.full_like(line, fixed[coordinate]) for coordinate in POSITIONS)
-    inside = _without_outside(potential, energy, x, y, _is_allowed(potential, energy, x, y))
-    return line[inside if not potential.escapes_over_saddles else _run_around_middle(inside)]
+    if not potential.escapes_over_saddles:
+        return line[_without_outside(potential, energy, x, y, _is_allowed(potential, energy, x, y))]
+    middle = line.size // 2
+    sides = (np.s_[None, middle - 1 :: -1], np.s_[None, middle + 1 :])
+    before, after = (np.count_nonzero(_inside_from_middle(potential, energy, x[side], y[side])) for side in sides)
+    return line[middle - before : middle + 1 + after]
 
 
 def _is_allowed(potential: Potential, energy: float, x: np.ndarray, y: np.ndarray) -> np.ndarray:
@@ -212,13 +209,25 @@ def _interior_on_rays(potential: Potential, energy: float, farthest: float) -> t
     angle = np.linspace(0.0, 2.0 * np.pi, _RAYS + 1)
     radius = np.linspace(0.0, farthest, _SCAN_POINTS // 2)
     x, y = radius * np.cos(angle)[:, None], radius * np.sin(angle)[:, None]
-    allowed = _is_allowed(potential, energy, x, y)
     if not potential.escapes_over_saddles:
-        return x, y, _without_outside(potential, energy, x, y, allowed)
-    # The accumulation ends each ray, first at its first forbidden point, then at its first point outside.
-    allowed = np.logical_and.accumulate(allowed, axis=1)
-    inside = _without_outside(potential, energy, x, y, allowed)
-    return x, y, np.logical_and.accumulate(inside, axis=1)
+        return x, y, _without_outside(potential, energy, x, y, _is_allowed(potential, energy, x, y))
+    return x, y, _inside_from_middle(potential, energy, x, y)
+
+
+def _inside_from_middle(potential: Potential, energy: float, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Return which points on rays outward, of shape (rays, n), come before the first forbidden or outside point of their ray."""
+    inside = np.logical_and.accumulate(_is_allowed(potential, energy, x, y), axis=1)
+    # Points beyond an exit take longest to test, so that each ray is tested up to the end of the block in which it ends.
+    length = math.ceil(x.shape[1] / _BLOCKS)
+    for begin in range(0, x.shape[1], length):
+        block = np.s_[:, begin : begin + length]
+        if begin:
+            inside[block] &= inside[:, begin - 1 : begin]
+        if not inside[block].any():
+            inside[:, begin:] = False
+            break
+        inside[block] = np.logical_and.accumulate(_without_outside(potential, energy, x[block], y[block], inside[block]), axis=1)
+    return inside
 
 
 def _shown_radius(potential: Potential, escape_radius: float) -> float:
