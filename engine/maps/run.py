@@ -16,7 +16,8 @@ from engine.maps.pixels import MirrorPixels
 from engine.maps.result import EscapeMap, collect_map, find_interior, representative_indices
 from engine.maps.spec import MapSpec
 from engine.maps.stages import OnChange, Stage
-from engine.propagation.batch import OrbitBatch, propagate_batch
+from engine.propagation.batch import OrbitBatch
+from engine.propagation.batch_propagation import propagate_batch
 from engine.propagation.classification import Outcomes, collect_outcomes
 from engine.propagation.fates import Evidence, Fate
 

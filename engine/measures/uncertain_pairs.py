@@ -12,7 +12,8 @@ from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_pro
 from engine.foundations.validation import RandomNumbers, checked_count, checked_seed, checks_types, short_repr
 from engine.maps.spec import MapSpec
 from engine.measures.basins.power_law_fit import MIN_EXPECTED_PAIRS, UncertaintyExponent, fit_uncertainty, predict_shares
-from engine.propagation.batch import OrbitBatch, propagate_batch
+from engine.propagation.batch import OrbitBatch
+from engine.propagation.batch_propagation import propagate_batch
 from engine.propagation.fates import Evidence, Fate
 
 HORIZON = 1e4

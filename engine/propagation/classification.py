@@ -16,7 +16,8 @@ from engine.foundations.execution import Execution
 from engine.integrator.kernels.dense_output import trace_orbit
 from engine.integrator.kernels.propagate import Exits
 from engine.integrator.source.section_numbers import UPWARD, SectionNumbers
-from engine.propagation.batch import OrbitBatch, propagate_batch
+from engine.propagation.batch import OrbitBatch
+from engine.propagation.batch_propagation import propagate_batch
 from engine.propagation.fates import Fate, OrbitResult
 from engine.systems.outcomes import Outcome
 from engine.systems.potential import Potential

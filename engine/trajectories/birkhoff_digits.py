@@ -12,7 +12,8 @@ from engine.exits.exit_rows import exit_curves_if_known
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.foundations.result import Chart, RecordedResult
 from engine.foundations.validation import checked_state, checks_types
-from engine.propagation.batch import OrbitBatch, propagate_batch
+from engine.propagation.batch import OrbitBatch
+from engine.propagation.batch_propagation import propagate_batch
 from engine.propagation.fates import Fate
 from engine.systems.potential import Potential
 from engine.systems.well_units import TIME

@@ -23,7 +23,8 @@ from engine.maps.pixels import PixelAnalysis, PixelCodes, code_share
 from engine.maps.result import EscapeMap, MapLike, as_complete_map
 from engine.maps.run import FIRST_TEST_TIME, looks_for_tori, rising_horizons
 from engine.maps.stages import OnChange, Stage
-from engine.propagation.batch import OrbitBatch, propagate_batch
+from engine.propagation.batch import OrbitBatch
+from engine.propagation.batch_propagation import propagate_batch
 from engine.propagation.fates import CHAOS_THRESHOLD, Evidence, Fate
 
 CHAOTIC_DISTANCE = SHIFT / CHAOS_THRESHOLD

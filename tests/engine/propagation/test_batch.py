@@ -13,7 +13,8 @@ import pytest
 from engine import CASES, Fate, Plane, start_states
 from engine.exits.exit_rows import exit_curves
 from engine.foundations.execution import Execution, create_thread_pool
-from engine.propagation.batch import OrbitBatch, propagate_batch
+from engine.propagation.batch import OrbitBatch
+from engine.propagation.batch_propagation import propagate_batch
 
 POTENTIAL, ENERGY = CASES["III"], 0.4
 

@@ -15,7 +15,8 @@ from engine.integrator.source.recurrence import TOLERANCE
 from engine.maps.analyses.reruns import LARGEST_DELAY, SECOND_TOLERANCE, SHIFT, shifted_starts
 from engine.maps.analyses.trust import CHAOTIC_DISTANCE, Trust, TrustMap, compute_trust
 from engine.maps.spec import FINEST_PIXEL
-from engine.propagation.batch import OrbitBatch, propagate_batch
+from engine.propagation.batch import OrbitBatch
+from engine.propagation.batch_propagation import propagate_batch
 from engine.slices.default_window import default_window
 
 SAMPLE = 60
