@@ -184,6 +184,17 @@ def test_an_energy_that_is_being_typed_stays_when_the_case_changes(explorer: Exp
     explorer.wait_for_view("case=III", "h=0.6&")
 
 
+def test_typing_replaces_a_selected_energy_that_the_server_has_changed_meanwhile(explorer: ExplorerPage) -> None:
+    exact_energy(explorer).press("ControlOrMeta+a")
+    # This does not take the focus from the box.
+    explorer.radio("III").evaluate("radio => radio.click()")
+    explorer.wait_for_view("case=III", "h=0.35&")
+    expect(exact_energy(explorer)).to_have_value("0.35")
+    explorer.page.keyboard.type("0.6")
+    explorer.page.keyboard.press("Enter")
+    explorer.wait_for_view("case=III", "h=0.6&")
+
+
 def test_a_box_that_is_left_empty_shows_the_energy_again(explorer: ExplorerPage) -> None:
     exact_energy(explorer).fill("")
     exact_energy(explorer).press("Tab")

@@ -20,8 +20,13 @@ export function render({model, el}) {
   const follow = () => {
     input.step = model.step
     input.disabled = model.disabled
+    if (isTyped) return
     // A number that the server has not received yet is shown without the rounding errors in its last digits.
-    if (!isTyped) input.value = String(value.isUnsent ? Number(value.value.toPrecision(10)) : value.value)
+    const text = String(value.isUnsent ? Number(value.value.toPrecision(10)) : value.value)
+    if (text === input.value) return
+    input.value = text
+    // Otherwise a visitor who has selected the previous number, to type another, would type behind the new number.
+    if (input.matches(":focus")) input.select()
   }
   const finish = () => {
     if (!isTyped) return
