@@ -171,8 +171,22 @@ class OrbitBatch:
 
 def _find_outside(potential: Potential, states: np.ndarray, curves: np.ndarray, curve_row: np.ndarray) -> np.ndarray:
     """Return the number of the outcome beyond whose exit each start lies, 0 inside; int8, of shape (n,). Called in a worker."""
-    x, y = np.ascontiguousarray(states[:, :2].T)
+    every = np.arange(len(states))
+    first, inverse = _find_positions(states) if len(curves) == 1 else (every, every)
+    starts = states[first]
+    x, y = np.ascontiguousarray(starts[:, :2].T)
     with np.errstate(invalid="ignore"):
         # At the centre of a body V = −∞, so a start of any energy has an infinite momentum there.
-        energy = np.where(np.isinf(states[:, 2:]).any(axis=1), np.inf, potential.energy(states))
-    return find_outside_starts(potential, x, y, energy, curves, curve_row)
+        energy = np.where(np.isinf(starts[:, 2:]).any(axis=1), np.inf, potential.energy(starts))
+    return find_outside_starts(potential, x, y, energy, curves, curve_row[first])[inverse]
+
+
+def _find_positions(states: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the index of the first start at each position, and the number of the position of each start.
+
+    On many slices, starts of one energy at the same position differ in momentum only. Forbidden starts, which have momentum NaN,
+    count as one position.
+    """
+    position = np.where(np.isnan(states).any(axis=1), np.nan, states[:, 0] + 1j * states[:, 1])
+    _, first, inverse = np.unique(position, return_index=True, return_inverse=True)
+    return first, inverse

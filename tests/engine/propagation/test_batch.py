@@ -12,6 +12,7 @@ import pytest
 
 from engine import CASES, Fate, Plane, start_states
 from engine.exits.exit_rows import exit_curves
+from engine.exits.interior import find_outside_channels
 from engine.foundations.execution import Execution, create_thread_pool
 from engine.propagation.batch import OrbitBatch
 from engine.propagation.batch_propagation import propagate_batch
@@ -36,6 +37,19 @@ def test_intermediate_horizon_gives_no_bounded_orbits(batch: OrbitBatch, curves:
     assert Fate.BOUNDED not in batch.fate
     assert np.any(batch.fate >= 1)
     assert np.all(batch.t[batch.fate == Fate.NOT_COMPUTED] > 18.0)
+
+
+def test_starts_beyond_an_exit_are_found_also_beside_forbidden_starts_of_the_same_position() -> None:
+    potential, energy = CASES["II"], 0.175
+    x, px = np.meshgrid(np.linspace(-1.05, 1.05, 43), np.linspace(-0.3, 0.3, 12))
+    states = start_states(potential, Plane.X_PX, energy, x.ravel(), px.ravel())
+    batch = OrbitBatch.from_starts(states, np.zeros(x.size, np.int64))
+    batch.mark_outside(potential, np.arange(x.size), exit_curves(potential, energy)[None])
+    real = np.isfinite(states).all(axis=1)
+    expected = find_outside_channels(potential, energy, *states[:, :2].T)
+    assert not batch.outside[~real].any()
+    assert batch.outside[real].any()
+    np.testing.assert_array_equal(batch.outside[real], expected[real])
 
 
 def test_worker_errors_are_raised(batch: OrbitBatch, curves: np.ndarray) -> None:
