@@ -32,8 +32,9 @@ _T_MAX = 10.0
 # Execution of these calls: in the calling thread, because the threads of pools have low priority.
 _EXECUTION = DEFAULT_EXECUTION.in_this_thread()
 
-# Names of the kernels of the first frame of a map and of its Lyapunov orbits.
-_MAP_KERNELS = ("step", "jets", "potential_value", "shoot", "propagate")
+# Names of the kernels of the first frame of a map, and of its Lyapunov orbits without and with a rotation of the frame.
+_MAP_KERNELS = ("step", "jets", "propagate")
+_LYAPUNOV_KERNELS = {False: ("potential_value", "shoot"), True: ("tangent",)}
 
 
 class Compilations:
@@ -68,7 +69,8 @@ _map_compilations = Compilations()
 
 def is_ready_for_maps(potential: Potential) -> bool:
     """Return whether the kernels for the first frame of a map of this potential are compiled."""
-    return is_compiled(potential.in_well_units.well.structure, _MAP_KERNELS)
+    lyapunov_kernels = _LYAPUNOV_KERNELS[potential.rotation != 0.0] if potential.escapes_over_saddles else ()
+    return is_compiled(potential.in_well_units.well.structure, (*_MAP_KERNELS, *lyapunov_kernels))
 
 
 def prepare_for_maps(potential: Potential) -> None:

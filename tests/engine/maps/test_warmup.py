@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import threading
 
-from engine import Potential
+import pytest
+
+from engine import Potential, System
 from engine.integrator.bound_kernels import load_kernels
 from engine.integrator.jit.compiled_operations import compiled_operations
 from engine.integrator.source.series import Setting
@@ -22,6 +24,12 @@ def test_kernels_are_compiled_in_the_order_of_need() -> None:
         prepare(OTHER)
         compiled.append({name for name in ("step", "jets", "limited_step") if getattr(kernels, name).signatures})
     assert compiled == [{"step", "jets"}, {"step", "jets", "limited_step"}]
+
+
+@pytest.mark.parametrize("case", ["II", "Copenhagen", "Barred galaxy"])
+def test_systems_are_ready_when_they_are_prepared_also_in_rotating_frames_and_with_bodies(case: str) -> None:
+    prepare_for_maps(System(case).potential)
+    assert is_ready_for_maps(System(case).potential)
 
 
 def test_maps_go_before_background_compilation() -> None:
