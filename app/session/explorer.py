@@ -108,7 +108,7 @@ class Explorer:
                 "share": ("Share", "Share and download", [self._build_downloads]),
                 "help": ("Help", "Help", [lambda: help_panes(state, results, self._take_tour)]),
             },
-            self.browser.focus_drawer,
+            self._follow_drawers,
             self._later,
         )
         self.analysis = Stack(
@@ -138,6 +138,10 @@ class Explorer:
         if self.drawers.shown == "potential":
             # The process that reviews a formula starts while the visitor types.
             process_state().limited.start()
+
+    def _follow_drawers(self, is_open: bool) -> None:
+        self.browser.focus_drawer(is_open)
+        self.potential.set_open(self.drawers.shown == "potential")
 
     @cached_property
     def _player(self) -> EnsemblePlayer:

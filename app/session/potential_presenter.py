@@ -6,6 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from app.job_clients.latest_request import LatestRequest
+from app.job_clients.parameter_shares import CHANGES, ParameterShares
+from app.runtime.process_state import process_state
 from app.session.context import History, SessionContext
 from app.state.system_review import PageReview, is_known, review_catalogue_entry, review_job
 from app.views.analysis.potential_panel import NEW_INTEGRATOR, PotentialPanel
@@ -62,7 +64,12 @@ class PotentialPresenter:
         # The latest system that was proposed during a review.
         self._waiting_proposal: _Proposal | None = None
         self._last_review: PageReview | None = None
-        self.panel = PotentialPanel(state.reviewed, context.locked(self._take))
+        self.panel = PotentialPanel(state.reviewed, context.locked(self._take), context.locked(self._request_shares))
+        self._is_open = False
+        self._shares = ParameterShares(
+            state, context.jobs, self.panel.sliders.show_shares, context.locked, process_state().is_crowded
+        )
+        state.param.watch(lambda *events: self._end_shares(), list(CHANGES))
         self._request = LatestRequest(context.jobs, self._show, self._on_failure, context.locked)
         # The potential of the latest sketch. If it cannot be drawn, the picture stays.
         self._sketched: Potential | None = None
@@ -80,6 +87,23 @@ class PotentialPresenter:
             return False
         self._propose(_Proposal(system, use, refuse))
         return self._proposal is not None
+
+    def set_open(self, is_open: bool) -> None:
+        """Follow whether the panel is on the page. Meanwhile, a slider shows shares of the outcomes, see `ParameterShares`."""
+        if is_open != self._is_open:
+            self._is_open = is_open
+            self._end_shares()
+
+    def _request_shares(self) -> None:
+        """Compute the shares for the view at rest, unless the panel shows a system that is not used yet."""
+        moved = self.panel.sliders.moved
+        if self._is_open and moved is not None and self.panel.shown == self._state.system:
+            self._shares.request(moved.name, moved.label, moved.low, moved.high)
+
+    def _end_shares(self) -> None:
+        """Show no shares until the panel is open and the view at rest."""
+        self._shares.cancel()
+        self.panel.sliders.clear_shares()
 
     def _cancel_link_review(self) -> None:
         """Cancel the review of an earlier link, but not the review of a system of the panel."""

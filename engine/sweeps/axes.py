@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from enum import Enum
 from typing import Any
 
@@ -63,6 +63,19 @@ def checked_axes(along: Any) -> tuple[SweepAxis, ...]:
 def axis_names(attributes: Mapping[str, Any]) -> tuple[str, ...]:
     """Return the names of the axes of a sweep from the attributes of its dataset."""
     return tuple(str(attributes["axis"]).split(AXIS_SEPARATOR))
+
+
+def coarse_to_fine(values: Sequence[float]) -> list[float]:
+    """Return the values in another order: the ends first, and then repeatedly the midpoints."""
+    count = len(values)
+    order = [0, count - 1]
+    # The smallest power of 2 above the last index.
+    step = 1 << (count - 1).bit_length()
+    while step > 1:
+        step //= 2
+        order += range(step, count, 2 * step)
+    # `dict.fromkeys` drops repeated indices.
+    return [values[index] for index in dict.fromkeys(order)]
 
 
 def write_axes(axes: tuple[SweepAxis, ...]) -> str:

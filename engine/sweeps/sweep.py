@@ -20,7 +20,7 @@ from engine.foundations.validation import checks_types
 from engine.foundations.wording import format_count
 from engine.measures.compute import compute_point
 from engine.measures.measured_map import SweepPoint
-from engine.sweeps.axes import AXIS_SEPARATOR, axis_names
+from engine.sweeps.axes import AXIS_SEPARATOR, axis_names, coarse_to_fine
 from engine.sweeps.spec import VALUE_ATTRIBUTES, SweepSpec
 from engine.sweeps.store import SweepStore, check_same_sweep, open_store, without_values
 from engine.systems.outcomes import Outcome, read_outcomes
@@ -199,7 +199,7 @@ def compute_sweep(
     measure_all = partial(_measure_all, spec, on_frame=on_frame, measure=measure, execution=execution)
     values = spec.axis_values[0]
     if store is None:
-        return measure_all(_MemoryStorage(spec, earlier), _coarse_to_fine(values))
+        return measure_all(_MemoryStorage(spec, earlier), coarse_to_fine(values))
     with open_store(Path(store), spec.attributes()) as sweep_store:
         return measure_all(sweep_store, values)
 
@@ -289,16 +289,3 @@ def _next_value(spec: SweepSpec, dataset: xr.Dataset, order: Sequence[float]) ->
     largest_changes = changes.max(axis=tuple(range(1, changes.ndim)))
     steepest = int(np.argmax(largest_changes))
     return float(0.5 * (values[steepest] + values[steepest + 1]))
-
-
-def _coarse_to_fine(values: Sequence[float]) -> list[float]:
-    """Return the values in another order: the ends first, and then repeatedly the midpoints."""
-    count = len(values)
-    order = [0, count - 1]
-    # The smallest power of 2 above the last index.
-    step = 1 << (count - 1).bit_length()
-    while step > 1:
-        step //= 2
-        order += range(step, count, 2 * step)
-    # `dict.fromkeys` drops repeated indices.
-    return [values[index] for index in dict.fromkeys(order)]

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import re
 import urllib.parse
 from collections.abc import Callable
 
+import numpy as np
 import pytest
 from playwright.sync_api import Locator, expect
 
-from plots.pictures.palette import OUTCOMES
+from engine import Fate, MapSpec, Plane, System, compute_map
+from plots.pictures.palette import DEFAULT_COLOURS, OUTCOMES
 from tests.browser.explorer_page import ExplorerPage
 
 pytestmark = pytest.mark.browser
@@ -64,6 +67,39 @@ def test_quick_steps_of_a_parameter_end_at_the_same_number_everywhere(explorer: 
     box.fill("77")
     box.press("Tab")
     expect(box).to_have_value("2.5")
+    explorer.press("Close")
+
+
+# Colours of the picture on a slider, at a place from 0 to 1, from the top.
+STRIP = """(slider, place) => {
+    const {width, height} = slider.previousElementSibling
+    const context = new OffscreenCanvas(width, height).getContext('2d', {willReadFrequently: true})
+    context.drawImage(slider.previousElementSibling, 0, 0)
+    const {data} = context.getImageData(Math.floor(place * width), 0, 1, height)
+    return Array.from({length: height}, (_, row) => [...data.subarray(4 * row, 4 * row + 4)])
+}"""
+
+
+def test_a_slider_shows_the_shares_of_the_outcomes_while_the_view_is_at_rest(explorer: ExplorerPage) -> None:
+    open_box(explorer)
+    slider = explorer.page.get_by_role("slider", name="ω₁", exact=True)
+    expect(slider).to_have_attribute("title", re.compile("^Shares of coarse maps against ω₁ at h = 0.19, t = 100;"))
+    explorer.page.wait_for_function(
+        f"slider => [0.1, 0.25, 0.5, 0.99].every(place => ({STRIP})(slider, place).every(colour => colour[3] > 0))",
+        arg=slider.element_handle(),
+    )
+    # A value of which the strip has a column.
+    place, low, high = 0.25, 0.2, 2.0
+    potential = System("I").with_parameter("omega_1", low + place * (high - low)).potential
+    fate = compute_map(MapSpec(potential, Plane.X_PX, 0.19, (24, 24), t_max=100.0)).fate
+    allowed = fate[~np.isin(fate, (Fate.FORBIDDEN, Fate.OUTSIDE))]
+    colours = [tuple(colour) for colour in slider.evaluate(STRIP, place)]
+    for channel, colour in enumerate(DEFAULT_COLOURS.channels[:2], 1):
+        share = colours.count((*bytes.fromhex(colour[1:]), 255)) / len(colours)
+        assert share == pytest.approx(np.mean(allowed == channel), abs=1.0 / len(colours))
+    # Another view has other shares.
+    slider.press("ArrowRight")
+    expect(slider).to_have_attribute("title", "")
     explorer.press("Close")
 
 

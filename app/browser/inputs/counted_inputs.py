@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import asdict
 from math import isfinite
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -10,11 +11,14 @@ from typing import Any, NamedTuple
 import param
 
 from app.browser.components.plain_component import PlainComponent
+from app.job_clients.parameter_shares import SliderShares
 from plots.browser.javascript import component_code
 
 LONGEST_TYPED = 4000
 """Largest length of a typed text, in characters. The box cuts longer texts silently, so this is larger than the limit for
 formulas, whose message is then shown."""
+
+_NO_STRIP = asdict(SliderShares("", "", ()))
 
 
 def _code(name: str) -> str:
@@ -161,18 +165,24 @@ class ParameterSliders(PlainComponent):
     on_number
         Called with the name of a parameter, each legal number that the visitor enters, and whether the number is final. The call
         does not hold the session's lock.
+    on_rest
+        Called when the view has been at rest for a while, likewise.
     **options
         Parameters of the component.
     """
 
     rows = param.List(doc="fields of `SliderParameter` with the shown number and the count of numbers received before, by name")
     step = param.Number(default=0.01, doc="step of the sliders and of the boxes")
+    strip = param.Dict(default=_NO_STRIP | {"count": 0}, doc="fields of `SliderShares`, and the number of views before")
 
     _esm = _code("parameter_sliders")
 
-    def __init__(self, on_number: Callable[[str, float, bool], None], **options: Any) -> None:
+    def __init__(
+        self, on_number: Callable[[str, float, bool], None], on_rest: Callable[[], None] = lambda: None, **options: Any
+    ) -> None:
         super().__init__(**options)
-        self._on_number = on_number
+        self._on_number, self._on_rest = on_number, on_rest
+        self._moved = ""
         # Numbers received from the browser so far. A slider that is shown again goes on counting.
         self._counts: dict[str, int] = {}
 
@@ -183,9 +193,25 @@ class ParameterSliders(PlainComponent):
             for parameter, number in parameters.items()
         ]
 
+    @property
+    def moved(self) -> SliderParameter | None:
+        """The parameter whose slider was moved last, or the first parameter; None without sliders."""
+        row = next((row for row in self.rows if row["name"] == self._moved), next(iter(self.rows), None))
+        return None if row is None else SliderParameter(*(row[field] for field in SliderParameter._fields))
+
+    def show_shares(self, shares: SliderShares) -> None:
+        """Show the shares of the outcomes on the slider of a parameter."""
+        self.strip = asdict(shares) | {"count": self.strip["count"]}
+
+    def clear_shares(self) -> None:
+        """Show no shares until the new view has been at rest for a while."""
+        self.strip = _NO_STRIP | {"count": self.strip["count"] + 1}
+
     def _handle_msg(self, message: Any) -> None:
         # A browser can send anything: unexpected messages, and those of sliders that are no longer shown, are ignored.
         match message:
+            case {"rest": int(count)} if count == self.strip["count"]:
+                self._on_rest()
             case {"name": str(name), "value": sent_value, "count": int(count), "done": bool(is_final)}:
                 row = next((row for row in self.rows if row["name"] == name), None)
                 if row is not None:
@@ -198,6 +224,7 @@ class ParameterSliders(PlainComponent):
         changed_row = row | {"value": number if is_legal else row["value"], "count": count}
         self.rows = [changed_row if each is row else each for each in self.rows]
         if number is not None and is_legal:
+            self._moved = row["name"]
             self._on_number(row["name"], number, is_final)
 
 

@@ -1,5 +1,7 @@
 // @ts-check
 import {CountedValue} from "../modules/counted_value.js"
+import {paintShares} from "../modules/painting/share_columns.js"
+import {VIEW_REST_MS, storeOf} from "../modules/view_store.js"
 
 /**
  * A slider: the name and label of its parameter, its ends, the legal numbers of its box, and the shown number, with the count of
@@ -7,17 +9,26 @@ import {CountedValue} from "../modules/counted_value.js"
  *
  * @typedef {{name: string, label: string, low: number, high: number, lowest: number, highest: number, value: number,
  *   count: number}} Row
+ *
+ * The picture on one of the sliders: the name of its parameter, a text about it, its columns, and the number of views before.
+ *
+ * @typedef {{name: string, title: string, count: number,
+ *   columns: [number, import("../modules/painting/share_columns.js").Stack][]}} Strip
  */
 
 /**
  * Sliders of parameters, each with a box for its number, which may lie beyond the ends of the slider. Each number is sent. A
  * number is final when the slider is released, when the slider or the box loses focus, or when Enter is pressed in the box.
+ * When the view has been at rest for a while, {rest: count} asks for the picture on one of the sliders.
  *
  * @param {{model: any, el: HTMLElement}} component
  */
 export function render({model, el}) {
   /** @type {Map<string, SliderRow>} */
   const shown = new Map()
+  const paint = () => {
+    for (const row of shown.values()) row.paint(model.strip)
+  }
   const show = () => {
     /** @type {Row[]} */
     const rows = model.rows
@@ -34,9 +45,34 @@ export function render({model, el}) {
       if (el.children[place] !== made.element) el.insertBefore(made.element, el.children[place] ?? null)
       made.follow(row)
     })
+    paint()
   }
   model.on("rows", show)
+  model.on("strip", paint)
+  new ResizeObserver(paint).observe(el)
   show()
+  askAtRest(model)
+}
+
+/** Ask for the picture of each view once, after a time without changes. @param {any} model  of the component */
+function askAtRest(model) {
+  const {energy, window: shared} = storeOf(model.document)
+  let askedFor = -1
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let rest
+  const wait = () => {
+    clearTimeout(rest)
+    const {count} = model.strip
+    if (count === askedFor) return
+    rest = setTimeout(() => {
+      askedFor = count
+      model.send_msg({rest: count})
+    }, VIEW_REST_MS)
+  }
+  model.on("strip", wait)
+  const ends = [energy, shared].map(value => value.listen(wait))
+  model.on("lifecycle:remove", () => [() => clearTimeout(rest), ...ends].forEach(end => end()))
+  wait()
 }
 
 class SliderRow {
@@ -48,13 +84,17 @@ class SliderRow {
     this.row = row
     this.element = document.createElement("div")
     this.label = document.createElement("label")
+    this.rail = document.createElement("div")
+    this.canvas = document.createElement("canvas")
     this.slider = document.createElement("input")
     this.box = document.createElement("input")
     this.element.className = "parameter-slider"
+    this.rail.className = "rail"
     this.label.htmlFor = this.slider.id = `rail-${row.name}`
     Object.assign(this.slider, {type: "range", step: model.step})
     Object.assign(this.box, {type: "number", step: model.step, className: "bk-input"})
-    this.element.append(this.label, this.slider, this.box)
+    this.rail.append(this.canvas, this.slider)
+    this.element.append(this.label, this.rail, this.box)
     this.value = new CountedValue(
       this._channel(model),
       () => this.box.valueAsNumber,
@@ -110,6 +150,14 @@ class SliderRow {
     Object.assign(this.slider, {min: row.low, max: row.high})
     Object.assign(this.box, {min: row.lowest, max: row.highest})
     this.value.follow()
+  }
+
+  /** Paint the picture if it belongs to this slider. @param {Strip} strip */
+  paint({name, title, columns}) {
+    const isPictured = name === this.row.name
+    this.slider.title = isPictured ? title : ""
+    this.slider.toggleAttribute("data-pictured", isPictured)
+    paintShares(this.canvas, isPictured ? columns : [])
   }
 }
 

@@ -3,6 +3,9 @@
 
 import {SharedValue} from "./counted_value.js"
 
+/** Time without change after which the server computes what it shows of a view at rest, in ms. */
+export const VIEW_REST_MS = 2000
+
 /**
  * The values, and a function that sends a message to the component, see `app/views/components/view_store.py`.
  *

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 from html import escape
@@ -68,9 +68,11 @@ class PotentialPanel:
         The review of the system of the maps.
     propose
         Receives each system that is chosen, typed, or set by a slider.
+    on_rest
+        Called when the view has been at rest for a while.
     """
 
-    def __init__(self, used: PageReview, propose: Propose) -> None:
+    def __init__(self, used: PageReview, propose: Propose, on_rest: Callable[[], None] = lambda: None) -> None:
         self._propose = propose
         self._offered_well: tuple[float, float] | None = None
         self.used = used
@@ -93,7 +95,7 @@ class PotentialPanel:
             *(button(label, partial(self._add, term=term), margin=0) for label, term in _TERMS.items()),
             *(button(label, partial(self._add, clause=clause), margin=0) for label, clause in _CLAUSES.items()),
         ]
-        self.sliders = ParameterSliders(self._slide, sizing_mode="stretch_width", margin=0)
+        self.sliders = ParameterSliders(self._slide, on_rest, sizing_mode="stretch_width", margin=0)
         # Half the range of the slider of each letter, and the values of all sliders.
         self._reaches: dict[str, float] = {}
         self._values: dict[str, float] = {}

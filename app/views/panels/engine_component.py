@@ -11,10 +11,11 @@ import param
 
 from app.browser.module_files import ADDRESS
 from app.job_clients.latest_request import LatestRequest, Locked
+from app.job_clients.parameter_shares import stack_colours
 from app.job_clients.shown_results import ShownResults
 from app.state.view_state import ViewState
 from app.views.components.view_store import ViewStore
-from engine import Fate, Window
+from engine import Window
 from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job, Queue
 from plots.browser.browser_system import (
@@ -29,9 +30,6 @@ from plots.browser.browser_system import (
 from plots.browser.javascript import component_code
 from plots.layers.map_images import LAYER_COLUMNS
 from plots.pictures.image_columns import pixel_coding
-
-# Fates of allowed starts that reach no outcome, in the order of a stack of shares.
-_FATES_INSIDE = (Fate.BOUNDED, Fate.NOT_COMPUTED, Fate.FAILED)
 
 
 class BrowserEngine(ViewStore):
@@ -151,7 +149,7 @@ def describe_view(state: ViewState) -> dict[str, Any]:
         "resolution": state.resolution,
         "energies": [state.energies.low, state.energies.high],
         "colours": colours,
-        "stack": [*enumerate(colours, 1), *((int(fate), state.colours.outcomes[fate].colour) for fate in _FATES_INSIDE)],
+        "stack": stack_colours(state.colours, outcomes),
         "labels": [end.label for end in outcomes],
         "coding": {**pixel_coding(outcomes, state.section), "layers": list(LAYER_COLUMNS)},
     }

@@ -1,16 +1,13 @@
 // @ts-check
 /** The picture on the slider of the energy: the shares of the outcomes at each energy, stacked, for the slice and window in view. */
 
-import {contextFor} from "../../../../plots/browser/modules/painting/canvas.js"
 import {energyAxis} from "../../../../plots/browser/modules/engine/starts.js"
+import {paintShares} from "../painting/share_columns.js"
 import {RESTING_HORIZON} from "../../../../plots/browser/modules/workers/frames.js"
 import {Shares} from "../../../../plots/browser/modules/workers/shares.js"
 
 /** Largest width of the column of an energy, in pixels of the page. */
 const WIDEST_COLUMN = 6
-
-/** Number of known energies from which columns are painted. Fewer would show the shares of one energy at all energies. */
-const FEWEST_COLUMNS = 5
 
 export class ShareStrip {
   /**
@@ -70,45 +67,19 @@ export class ShareStrip {
 
   /** Paint all columns in the present size, and compute those that are missing. */
   #resize() {
-    const {clientWidth: width, clientHeight: height} = this.#canvas
-    contextFor(this.#canvas, {width, height})?.clearRect(0, 0, width, height)
     this.#paint()
     const shares = this.#shares
     shares?.refine(this.#levels)
     this.#frames.setExtras(() => shares?.next() ?? null)
   }
 
-  /** Paint the column of each known energy, which extends halfway to the next ones. */
   #paint() {
-    const context = this.#canvas.getContext("2d")
-    const known = [...(this.#shares?.counts ?? [])].sort(([place], [other]) => place - other)
-    if (!context || known.length < FEWEST_COLUMNS) return
-    context.setTransform(1, 0, 0, 1, 0, 0)
-    known.forEach(([place, counts], k) => {
-      const [left, right] = [known[k - 1]?.[0] ?? -place, known[k + 1]?.[0] ?? 2 - place].map(other => (place + other) / 2)
-      this.#paintColumn(context, left, right, counts)
-    })
-  }
-
-  /**
-   * Paint the stack of an energy between two places.
-   *
-   * @param {CanvasRenderingContext2D} context
-   * @param {number} from
-   * @param {number} to
-   * @param {import("../../../../plots/browser/modules/workers/shares.js").Counts} counts
-   */
-  #paintColumn(context, from, to, counts) {
-    const {width, height} = this.#canvas
-    // Columns that begin and end between two pixels of the screen would leave gaps.
-    const [left, right] = [Math.round(from * width), Math.round(to * width)]
-    const total = this.#stack.reduce((sum, [fate]) => sum + (counts.get(fate) ?? 0), 0)
-    let sum = 0
-    for (const [fate, colour] of this.#stack) {
-      const top = Math.round((sum / total) * height)
-      sum += counts.get(fate) ?? 0
-      context.fillStyle = colour
-      context.fillRect(left, top, right - left, Math.round((sum / total) * height) - top)
-    }
+    const stackOf = (/** @type {import("../../../../plots/browser/modules/workers/shares.js").Counts} */ counts) =>
+      this.#stack.map(([fate, colour]) => /** @type {[string, number]} */ ([colour, counts.get(fate) ?? 0]))
+    const columns = [...(this.#shares?.counts ?? [])]
+    paintShares(
+      this.#canvas,
+      columns.map(([place, counts]) => [place, stackOf(counts)]),
+    )
   }
 }

@@ -2,9 +2,7 @@
 /** Asks the server for maps with the pixels of the screen when nothing has changed for a while. */
 
 import {mapPictures} from "../painting/pictures.js"
-
-/** Time without change after which a finer map is requested, in ms. */
-const REST_MS = 2000
+import {VIEW_REST_MS} from "../view_store.js"
 
 /**
  * Send {pixels}, the largest side of a map on the screen, when the complete map of the server is at rest and has fewer pixels.
@@ -27,7 +25,7 @@ export function keepSharp(maps, {energy, window: shared, send}) {
   }
   const wait = () => {
     clearTimeout(rest)
-    rest = setTimeout(request, REST_MS)
+    rest = setTimeout(request, VIEW_REST_MS)
   }
   const move = () => {
     wait()
