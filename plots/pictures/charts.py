@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum, auto
+from types import MappingProxyType
 
 import numpy as np
 
@@ -16,6 +17,12 @@ _MARGIN = 0.05
 
 Limits = tuple[float, float]
 """Ends of an axis."""
+
+Ticks = Mapping[float, str]
+"""Labels of an axis by their places."""
+
+NO_TICKS: Ticks = MappingProxyType({})
+"""The ticks of an axis that is not drawn."""
 
 
 class Shape(Enum):
@@ -89,6 +96,8 @@ class Tile:
         (rows, columns) uint8 indices of `Chart.tile_colours`, row 0 lowest.
     left, bottom
         Coordinates of the lower left corner.
+    name
+        Text under the mouse.
     text
         The text above the image.
     side
@@ -98,6 +107,7 @@ class Tile:
     codes: np.ndarray
     left: float
     bottom: float
+    name: str
     text: str
     side: float = 1.0
 
@@ -118,7 +128,7 @@ class Frame:
         What the chart shows, and how to read it.
     text
         Text of the line, point or bar under the mouse, see `app.views.components.plots.chart_hover`. The columns are x, y, low,
-        high, label and note; those of a bar are left, right and top.
+        high, label and note; those of a bar are left, right and top, and that of a tile is name.
     described
         The shape that the text describes: all lines, points, dots, or bars.
     logarithmic
@@ -128,7 +138,7 @@ class Frame:
     aspect
         Width of the chart over its height; 1 for a picture of a plane.
     has_tiles
-        Whether the charts consist of tiles, without axes.
+        Whether the charts consist of tiles, with the axes of `Chart.ticks`.
     """
 
     name: str
@@ -164,6 +174,8 @@ class Chart:
         The tiles.
     tile_colours
         Colours of the codes of the tiles.
+    ticks
+        Ticks of the x axis and the y axis of tiles; other axes choose their own.
     """
 
     frame: Frame
@@ -171,6 +183,7 @@ class Chart:
     limits: tuple[Limits | None, Limits | None] = (None, None)
     tiles: Sequence[Tile] = ()
     tile_colours: Sequence[str] = ()
+    ticks: tuple[Ticks, Ticks] = (NO_TICKS, NO_TICKS)
 
     @property
     def axis_limits(self) -> tuple[Limits, Limits]:

@@ -84,13 +84,22 @@ def draw_chart(axes: Axes, chart: Chart, style: FigureStyle = SCREEN, corner: Co
     for axis, limits in zip("xy", chart.axis_limits, strict=True):
         axes.set(**{f"{axis}lim": limits})
     if frame.has_tiles:
-        axes.set_axis_off()
-        axes.set_aspect("equal")
+        _style_tiles(axes, chart, style)
         return
     style_axes(axes, style, grid=True, labels=frame.labels)
     entry_count = len(chart.legend())
     if corner is not None and entry_count > 1:
         add_panel_legend(axes, corner, style, columns=1 if entry_count <= _MOST_ENTRIES else _LEGEND_COLUMNS)
+
+
+def _style_tiles(axes: Axes, chart: Chart, style: FigureStyle) -> None:
+    """Give maps that are as high as wide the axes that have ticks."""
+    style_axes(axes, style, labels=(_typeset(chart.frame.labels[0]), _typeset(chart.frame.labels[1])))
+    for axis, ticks in zip((axes.xaxis, axes.yaxis), chart.ticks, strict=True):
+        axis.set_ticks([*ticks], [*ticks.values()])
+        axis.set_visible(bool(ticks))
+    axes.spines[:].set_visible(False)
+    axes.set_aspect("equal")
 
 
 def draw_series(axes: Axes, chart: Chart) -> list[Artist]:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,14 +12,14 @@ from engine import MEASURES
 from engine.foundations.wording import format_number
 from engine.measures.table import curve_names
 from engine.results import Sweep
-from plots.pictures.charts import Chart, Frame, Tile
+from plots.pictures.charts import Chart, Frame, Ticks, Tile
 from plots.pictures.image_columns import fate_codes
 from plots.pictures.palette import Palette
 from plots.pictures.setting import Setting, Settings
 from plots.studies.study import Click
 
 TILES_ASPECT = 0.76
-"""Width of a chart of as many rows as columns with its title over its height, at which the maps are as high as wide."""
+"""Width of a chart of as many rows as columns with its title over its height, at which the maps are about as high as wide."""
 
 # Distance between the left edges of neighbouring maps of side 1, and between their lower edges.
 _STEPS = 1.08, 1.36
@@ -31,7 +31,7 @@ _DIGITS = 3
 BESIDE = Setting(
     name="beside",
     title="Measure of each map",
-    word="Number:",
+    word="Measure:",
     choices={name: name for name in curve_names(slow=False)},
     default="basin_entropy",
     help="Measure that is written above each map.",
@@ -67,7 +67,13 @@ class TileGrid:
         return place if click.x <= left + 1.0 and click.y <= bottom + 1.0 else None
 
     def chart(
-        self, frame: Frame, found: Sweep, maps: Mapping[int, tuple[int, ...]], palette: Palette, settings: Settings
+        self,
+        frame: Frame,
+        found: Sweep,
+        maps: Mapping[int, tuple[int, ...]],
+        palette: Palette,
+        settings: Settings,
+        axes: Sequence[Sequence[float]] = (),
     ) -> Chart:
         """Return the chart of the maps of a sweep.
 
@@ -83,17 +89,30 @@ class TileGrid:
             The colours of the fates.
         settings
             The setting `BESIDE`.
+        axes
+            Values of the columns from the left, and of the rows from below, beside the maps; empty writes them above each map.
         """
-        measure = BESIDE.value_in(settings)
         tiles = []
         for place, index in maps.items():
             values = zip(found.symbols, found.axes, index, strict=True)
             name = ", ".join(f"{symbol} = {found[axis][k]:g}" for symbol, axis, k in values)
-            text = f"{name}\n{_measure_text(found, index, measure)}"
-            tiles.append(Tile(fate_codes(found["fate"][index], found.outcomes), *self.corner(place), text))
+            measure = _measure_text(found, index, BESIDE.value_in(settings))
+            codes = fate_codes(found["fate"][index], found.outcomes)
+            tiles.append(Tile(codes, *self.corner(place), name, measure if axes else f"{name}\n{measure}"))
         right, top = (self.columns - 1) * _STEPS[0] + 1.0, _STEPS[1]
         limits = ((-_MARGIN, right + _MARGIN), (top - self.rows * top - _MARGIN, top))
-        return Chart(frame, [], limits, tiles, palette.fate_colours)
+        chart = Chart(frame, [], limits, tiles, palette.fate_colours)
+        if not axes:
+            return chart
+        labels = found.symbols[0], found.symbols[1]
+        return replace(chart, frame=replace(frame, labels=labels), ticks=self._ticks(*axes))
+
+    def _ticks(self, columns: Sequence[float], rows: Sequence[float]) -> tuple[Ticks, Ticks]:
+        """Return the ticks of both axes, at the middles of the maps."""
+        x = [self.corner(column)[0] + 0.5 for column in range(self.columns)]
+        y = [self.corner(row * self.columns)[1] + 0.5 for row in reversed(range(self.rows))]
+        labels = [[format_number(value, _DIGITS) for value in values] for values in (columns, rows)]
+        return dict(zip(x, labels[0], strict=True)), dict(zip(y, labels[1], strict=True))
 
 
 def _measure_text(found: Sweep, index: tuple[int, ...], measure: str) -> str:

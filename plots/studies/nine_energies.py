@@ -31,7 +31,7 @@ TILES = Frame(
     ("", ""),
     "The basins of escape at nine energies, in the same window of the plane, and a measure of each map. In the cases of Zotos "
     "(2014) the energies are those of the maps of the paper. Click a map to open it.",
-    text="Click to open the map of @text",
+    text="Click to open the map of @name",
     aspect=TILES_ASPECT,
     has_tiles=True,
 )

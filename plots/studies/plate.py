@@ -23,11 +23,11 @@ _RESOLUTION = (80, 80)
 
 PLATE = Frame(
     "plate",
-    "Basins against energy and a parameter",
+    "Basins against h and a parameter",
     ("", ""),
     "The basins of escape at several energies, from left to right, and at several values of a parameter, from below, in the same "
     "window of the plane, with a measure of each map. Click a map to open it.",
-    text="Click to open the map of @text",
+    text="Click to open the map of @name",
     aspect=TILES_ASPECT,
     has_tiles=True,
 )
@@ -56,7 +56,8 @@ def _job(subject: Subject, axis: str) -> Job[Sweep]:
 def plate_charts(found: Sweep, palette: Palette, settings: Settings) -> list[Chart]:
     """Return the maps of a sweep over energies and a parameter as tiles; empty before the first map."""
     places = _places(found)
-    return [PLATE_GRID.chart(PLATE, found, places, palette, settings)] if places else []
+    axes = found.dataset.attrs["requested"], found[found.axes[1]].tolist()
+    return [PLATE_GRID.chart(PLATE, found, places, palette, settings, axes)] if places else []
 
 
 def _places(found: Sweep) -> dict[int, tuple[int, ...]]:
@@ -95,7 +96,7 @@ PLATE_STUDY = Study(
     charts=plate_charts,
     changes=_changes,
     files="plate",
-    figure="Maps against energy and a parameter",
+    figure="Maps against h and a parameter",
     caption=sweep_caption,
     settings=(BESIDE,),
 )

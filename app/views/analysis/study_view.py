@@ -24,6 +24,7 @@ from engine.foundations.wording import format_duration
 from engine.systems.parameters import symbol_of
 from plots.studies.axes import ENERGY, value_on
 from plots.studies.study import Click, Study
+from plots.studies.table import STUDIES
 
 STOP = "Stop"
 """Label of the button while a study is computed."""
@@ -68,7 +69,9 @@ class StudyView:
         self._charts = {each.name: ChartView(each, aspect_ratio=each.aspect, **options) for each in study.frames}
         self._charts_in_turns = InTurns([partial(self._build_chart, chart) for chart in self._charts.values()], self._add, later)
         self._plots = pn.Column(sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=["charts"], visible=False)
-        self._choices = [setting_choice(state, setting) for setting in study.settings]
+        # The study whose tab this one shares has its settings already.
+        settings_above = STUDIES[study.tab].settings if study.tab else ()
+        self._choices = [setting_choice(state, setting) for setting in study.settings if setting not in settings_above]
         self._row = flex_row(gap="8px", align="end")
         self._row.css_classes = ["whole-row"]
         state.follow(self._follow_system, "system")
@@ -154,7 +157,7 @@ class StudyView:
     def _build_chart(self, chart: ChartView) -> list[pn.viewable.Viewable]:
         view = chart.build({Tap: lambda event: self._on_click(Click(chart.frame.name, event.x, event.y))})
         assert chart.plot is not None
-        if self._shown_axis:
+        if self._shown_axis and not chart.frame.has_tiles:
             chart.plot.add_layout(self._mark_line)
         return [view]
 

@@ -16,14 +16,14 @@ from bokeh.plotting import figure
 from app.views.components.plots import FigurePane, chart_hover, set_range, square_figure
 from app.views.components.texts import TextPane
 from app.views.components.theme import theme_line
-from plots.pictures.charts import ONLY_POINTS, Chart, Frame, Limits, Series, Shape, Tile
+from plots.pictures.charts import NO_TICKS, ONLY_POINTS, Chart, Frame, Limits, Series, Shape, Tile
 from plots.pictures.palette import THRESHOLD
 from plots.texts.legends import legend
 
 _POINT_COLUMNS = ("x", "y", "low", "high", "colour", "label", "marker", "size", "filled", "note")
 _LINE_COLUMNS = ("xs", "ys", "colour", "dash", "width", "label")
 _DOT_COLUMNS = ("x", "y", "colour")
-_TILE_COLUMNS = ("image", "x", "y", "side", "top", "text")
+_TILE_COLUMNS = ("image", "x", "y", "side", "top", "name", "text")
 # Borders of charts without axes, in pixels. The title is above the frame.
 _TILE_BORDERS = {"min_border_left": 0, "min_border_right": 0, "min_border_top": 28, "min_border_bottom": 0}
 _DASHES = {Shape.DASHED: "8 8"}
@@ -50,6 +50,7 @@ class ChartView:
         self.frame, self._options = frame, options
         self._shared_x_range = x_range
         self._labels = frame.labels
+        self._ticks = NO_TICKS, NO_TICKS
         self.plot: figure | None = None
 
     # The view and the models are made when they are first used, because a page is opened without charts.
@@ -117,7 +118,7 @@ class ChartView:
             set_range(axis_range, *limits)
         entries = chart.legend()
         self._legend.param.update(object=legend(entries), visible=bool(entries))
-        self._labels = chart.frame.labels
+        self._labels, self._ticks = chart.frame.labels, chart.ticks
         self._name_axes()
 
     def build(self, events: Mapping[type[Event], Callable[[Any], None]] = MappingProxyType({})) -> pn.Column:
@@ -174,12 +175,14 @@ class ChartView:
         font = {"text_font_size": "11px", "text_line_height": 1.1, "text_baseline": "bottom", "text_color": theme_line("text")}
         plot.add_glyph(self.tiles, Text(x="x", y="top", text="text", **font))
         plot.outline_line_color = None
-        for axis in (*plot.below, *plot.left):
-            axis.visible = False
 
     def _name_axes(self) -> None:
-        if self.plot is not None:
-            self.plot.below[0].axis_label, self.plot.left[0].axis_label = self._labels
+        if self.plot is None:
+            return
+        for axis, label, ticks in zip((*self.plot.below, *self.plot.left), self._labels, self._ticks, strict=True):
+            axis.axis_label = label
+            if self.frame.has_tiles:
+                axis.update(visible=bool(ticks), ticker=[*ticks], major_label_overrides={**ticks}, axis_line_color=None)
 
 
 def _line_columns(series: Sequence[Series]) -> dict[str, list[Any]]:
@@ -200,7 +203,7 @@ def _dot_columns(series: Sequence[Series]) -> dict[str, Any]:
 
 
 def _tile_columns(tiles: Sequence[Tile]) -> dict[str, list[Any]]:
-    columns = [(tile.codes, tile.left, tile.bottom, tile.side, tile.bottom + tile.side, tile.text) for tile in tiles]
+    columns = [(tile.codes, tile.left, tile.bottom, tile.side, tile.bottom + tile.side, tile.name, tile.text) for tile in tiles]
     return {name: [column[k] for column in columns] for k, name in enumerate(_TILE_COLUMNS)}
 
 

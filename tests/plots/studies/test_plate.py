@@ -32,7 +32,18 @@ def test_energies_increase_to_the_right_and_the_parameter_upward(found: Sweep) -
     assert len(tiles) == PLATE_GRID.columns * PLATE_GRID.rows
     for tile in tiles:
         k, row = round(tile.left / 1.08), round(tile.bottom / 1.36) + PLATE_GRID.rows - 1
-        assert tile.text.startswith(f"h = {found.values[k]:g}, ω1 = {found['omega_1'][row]:g}\n")
+        assert tile.name == f"h = {found.values[k]:g}, ω1 = {found['omega_1'][row]:g}"
+
+
+def test_the_axes_name_the_values_beside_their_maps(found: Sweep) -> None:
+    (chart,) = PLATE_STUDY.charts(found, PAPER, NO_SETTINGS)
+    assert chart.frame.labels == ("h", "ω1")
+    for tile in chart.tiles:
+        h, omega = (ticks[edge + 0.5] for ticks, edge in zip(chart.ticks, (tile.left, tile.bottom), strict=True))
+        values = [float(part.split(" = ")[1]) for part in tile.name.split(", ")]
+        assert [float(h), float(omega)] == pytest.approx(values, rel=5e-3)
+        # The text above a map is as narrow as the map.
+        assert "=" not in tile.text
 
 
 def test_each_tile_is_the_map_of_its_energy_and_parameter(found: Sweep) -> None:
@@ -57,11 +68,11 @@ def test_a_click_opens_the_map_under_it(found: Sweep, k: int, row: int) -> None:
 
 
 def test_tiles_keep_their_places_while_others_are_missing(found: Sweep) -> None:
-    whole = {tile.text: (tile.left, tile.bottom) for tile in PLATE_STUDY.charts(found, PAPER, NO_SETTINGS)[0].tiles}
+    whole = {tile.name: (tile.left, tile.bottom) for tile in PLATE_STUDY.charts(found, PAPER, NO_SETTINGS)[0].tiles}
     part = replace(found, dataset=found.dataset.isel(h=[1, 4]))
     tiles = PLATE_STUDY.charts(part, PAPER, NO_SETTINGS)[0].tiles
     assert len(tiles) == 2 * PLATE_GRID.rows
-    assert all(whole[tile.text] == (tile.left, tile.bottom) for tile in tiles)
+    assert all(whole[tile.name] == (tile.left, tile.bottom) for tile in tiles)
     assert not PLATE_STUDY.is_complete(part)
 
 

@@ -1,17 +1,24 @@
-"""A study has axes only when there is a result."""
+"""A study has axes only when there is a result, and a tab has each choice once."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import Any
+
 import numpy as np
-from bokeh.models import HoverTool
+from bokeh.models import HoverTool, Span
 
 from app.state.view_state import ViewState
 from app.views.analysis.study_view import StudyView
 from app.views.components.plots import FigurePane
+from app.views.components.widgets import SegmentedControl
 from engine import CASES, Plane, SweepSpec, compute_sweep
 from engine.measures.table import curve_names
 from engine.results import Sweep
 from plots.studies.against import AGAINST
+from plots.studies.nine_energies import NINE_ENERGIES
+from plots.studies.plate import PLATE_STUDY
+from plots.studies.study import Study
 
 
 def curves(*energies: float) -> Sweep:
@@ -38,3 +45,27 @@ def test_there_are_no_axes_before_the_first_curves() -> None:
         assert all(list(figure.select(HoverTool)) for figure in figures)
         view.show(None)
         assert not plots.visible
+
+
+def view_of(study: Study[Any]) -> StudyView:
+    return StudyView(study, ViewState(), lambda: None, lambda click: None)
+
+
+def test_studies_in_one_tab_have_each_choice_once() -> None:
+    rows = [view_of(study).build()[0] for study in (NINE_ENERGIES, PLATE_STUDY)]
+    titles = [part.label for row in rows for part in row.objects if isinstance(part, SegmentedControl)]
+    assert titles == [setting.title for setting in NINE_ENERGIES.settings]
+    assert all(setting in NINE_ENERGIES.settings for setting in PLATE_STUDY.settings)
+
+
+def test_axes_of_a_plate_name_its_values_and_no_line_marks_a_place_between_maps() -> None:
+    view = view_of(PLATE_STUDY)
+    (spec,) = PLATE_STUDY.job(ViewState().subject, "omega_1").arguments
+    values = (0.1, 0.2, 0.3, 0.4, 0.5), (0.5, 0.75, 1.0, 1.25, 1.5)
+    view.show(compute_sweep(replace(spec, values=values, resolution=(8, 8), t_max=10.0)), "omega_1")
+    (figure,) = [pane.object for column in view.build()[2].objects for pane in column.objects if isinstance(pane, FigurePane)]
+    for axis, label, numbers in zip((*figure.below, *figure.left), ("h", "ω1"), values, strict=True):
+        assert axis.visible
+        assert axis.axis_label == label
+        assert [float(text) for text in axis.major_label_overrides.values()] == [*numbers]
+    assert not [*figure.select(Span)]
