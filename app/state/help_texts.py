@@ -7,6 +7,7 @@ from html import escape
 from types import MappingProxyType
 
 from plots.layers.table import PICTURES
+from plots.texts.typeset import typeset
 
 HELP_TEXTS: Mapping[str, str] = MappingProxyType(
     {
@@ -54,4 +55,4 @@ def title_with_help(title: str, name: str, text: str, under_way: str = "") -> st
     """Return HTML with the title of `name`, a button that opens its help text, and a note on what is being computed."""
     button = f"<button type='button' class='help' popovertarget='help-{name}' aria-label='About: {escape(title)}'>?</button>"
     note = f" <small role='status'>{escape(under_way)}</small>" if under_way else ""
-    return f"<h2>{escape(title)} {button}{note}</h2><p id='help-{name}' class='help-text' popover>{escape(text)}</p>"
+    return f"<h2>{escape(title)} {button}{note}</h2><p id='help-{name}' class='help-text' popover>{typeset(escape(text))}</p>"

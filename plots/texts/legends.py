@@ -53,7 +53,7 @@ def picture_legend(content: Legend) -> str:
     entries = chips([] if table else content.entries)
     scale = _scale(content.scale) if content.scale is not None else ""
     sentence = f" <span>{typeset(escape(content.sentence))}</span>" if content.sentence else ""
-    return f"{table}{entries}{scale}{sentence}{chips(content.over)}{chips(content.others if content.is_short else [])}"
+    return f"{table}{entries}{scale}{chips(content.over)}{chips(content.others if content.is_short else [])}{sentence}"
 
 
 def figure_legend(content: Legend) -> str:

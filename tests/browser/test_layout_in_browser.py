@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable
-from html import unescape
+from html import escape, unescape
 
 import pytest
 from playwright.sync_api import Locator, expect
@@ -16,6 +16,7 @@ from engine import CASES, MapSpec, Plane
 from plots.layers.table import PICTURES as PICTURE_ENTRIES
 from plots.layers.table import TITLES
 from plots.pictures.palette import DEFAULT_COLOURS, PALETTES
+from plots.texts.typeset import typeset
 from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 
@@ -222,6 +223,10 @@ def test_nothing_is_wider_than_a_phone_at_twice_the_size_of_letters(phone: Explo
     expect(phone.button("▶ Play")).to_be_in_viewport(ratio=1)
     assert phone.page.evaluate("document.documentElement.scrollWidth") == 420
     assert phone.page.evaluate(_COVERED) == [[]]
+    watch, enlarge = (phone.page.locator(f"{button}:visible").bounding_box() for button in (".watch", ".enlarge"))
+    assert watch is not None
+    assert enlarge is not None
+    assert watch["x"] + watch["width"] <= enlarge["x"]
     phone.page.evaluate("document.documentElement.style.fontSize = ''")
 
 
@@ -346,7 +351,7 @@ def test_a_help_button_opens_its_text(explorer: ExplorerPage) -> None:
         expect(help_text(explorer, name)).to_be_hidden()
         explorer.press(f"About: {TITLE if name == 'well' else PICTURE_ENTRIES[name].title_for(SPEC)}")
         expect(help_text(explorer, name)).to_be_visible()
-        assert unescape(help_text(explorer, name).inner_text()) == HELP_TEXTS[name]
+        assert unescape(help_text(explorer, name).inner_html()) == unescape(typeset(escape(HELP_TEXTS[name])))
     # Opening one closes the others.
     expect(explorer.page.locator(".help-text:popover-open")).to_have_count(1)
     explorer.page.keyboard.press("Escape")

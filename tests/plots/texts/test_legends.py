@@ -8,7 +8,7 @@ from typing import Any
 from engine import CASES, Fate, MapSpec, Plane, Potential, parse_formula
 from engine.systems.outcomes import Centre
 from plots.layers.origins import passage_colour
-from plots.layers.picture import ShownMap
+from plots.layers.picture import OtherView, ShownMap
 from plots.layers.table import map_legend
 from plots.layers.trust import TONES
 from plots.pictures.palette import PAPER
@@ -29,6 +29,13 @@ def legend(picture: str, potential: Potential = CASES["II"], **changes: Any) -> 
 def entries(html: str) -> list[tuple[str, str]]:
     """Return the label and colour of each entry."""
     return [(label.replace("&gt;", ">"), colour) for colour, label in PATCH.findall(html)]
+
+
+def test_the_title_of_the_other_view_follows_all_colours_of_its_map() -> None:
+    potential = CASES["I"]
+    html = legend("compared", other=OtherView("Case I, (x, px), h = 0.3", potential.outcomes, Plane.X_PX.axis_symbols, ALL))
+    assert [label for label, _ in entries(html)] == ["1", "2", "bounded", "forbidden", "outside", "not decided yet"]
+    assert html.endswith("<span>Case I, (x, p<sub>x</sub>), h\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}0.3</span>")
 
 
 def test_legends_name_only_outcomes_of_the_map_and_short_labels_have_the_whole_labels_as_titles() -> None:
