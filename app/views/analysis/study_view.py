@@ -80,7 +80,8 @@ class StudyView:
 
     @property
     def _hint(self) -> str:
-        return f"{self._study.hint}{' They follow the map.' if self._study.follows_map else ''}"
+        follows = " They follow the map." if self._study.follows_map else ""
+        return f"{self._study.hint}{follows}{' Computing …' if self.running else ''}"
 
     @property
     def axis(self) -> str:
@@ -106,11 +107,13 @@ class StudyView:
             self._mark_line.location = value_on(self._shown_axis, self._state.system, self._state.energy)
 
     def show_running(self, running: bool) -> None:
-        """Label the button with its next action."""
+        """Label the button with its next action, and say that a first result is being computed."""
         if running and not self.running:
             self._start_time = time.monotonic()
         self.running = running
         self.button.label = STOP if running else self._study.button
+        if self.shown is None:
+            self.text.object = escape(self._hint)
 
     def show(self, found: Any, axis: str = "") -> None:
         """Draw the charts of a result about the system in view; None removes them.

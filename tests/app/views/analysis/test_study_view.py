@@ -17,6 +17,7 @@ from engine.measures.table import curve_names
 from engine.results import Sweep
 from plots.studies.against import AGAINST
 from plots.studies.nine_energies import NINE_ENERGIES
+from plots.studies.periodic import PERIODIC_STUDY
 from plots.studies.plate import PLATE_STUDY
 from plots.studies.study import Study
 
@@ -69,3 +70,12 @@ def test_axes_of_a_plate_name_its_values_and_no_line_marks_a_place_between_maps(
         assert axis.axis_label == label
         assert [float(text) for text in axis.major_label_overrides.values()] == [*numbers]
     assert not [*figure.select(Span)]
+
+
+def test_a_study_says_that_its_first_result_is_being_computed() -> None:
+    view = view_of(PERIODIC_STUDY)
+    hint = view.text.object
+    view.show_running(True)
+    assert view.text.object == f"{hint} Computing …"
+    view.show_running(False)
+    assert view.text.object == hint
