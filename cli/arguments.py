@@ -30,7 +30,7 @@ from engine import (
     read_section,
     review_potential,
 )
-from engine.foundations.validation import checked_count
+from engine.foundations.validation import checked_count, checked_number
 from engine.slices.axes import Energy
 from engine.slices.slice_text import AXIS_NAMES, read_slice
 from engine.slices.window import GivenWindow
@@ -166,10 +166,10 @@ def find_energy(system: System, energy: float | None = None, jacobi: float | Non
         Jacobi constant C instead of h in a rotating frame: C = −2h about the rotation axis (the barycentre), without μ(1 − μ).
     """
     if jacobi is None:
-        return energy
+        return None if energy is None else checked_number("energy", energy)
     if energy is not None:
         raise ValueError(f"jacobi={jacobi}: give either --energy H or --jacobi C")
-    return system.potential.jacobi_energy(jacobi)
+    return system.potential.jacobi_energy(checked_number("jacobi", jacobi))
 
 
 def require_energy(energy: GivenEnergy) -> OneEnergy:
@@ -244,6 +244,7 @@ def space_values(
         return tuple(listed)
     if listed or low is None or high is None or count is None:
         raise ValueError("energies: give --low, --high and --count, or repeat --energy")
+    low, high = checked_number("low", low), checked_number("high", high)
     if not (low < high or (low == high and count == 1)):
         raise ValueError(f"low={low}, high={high}: low must be below high")
     return tuple(np.linspace(low, high, checked_count("count", count, 1, MOST_VALUES)).tolist())

@@ -9,6 +9,7 @@ import typer
 
 from cli.option_marks import DocumentedBy
 from engine import Potential, Slice
+from engine.foundations.validation import checked_number
 
 State = tuple[float, float, float, float]
 """x, y, px, py."""
@@ -44,7 +45,7 @@ def find_state(
         raise ValueError(f"energy: on the plane {plane.key} it is a coordinate, so leave --energy out")
     if plane.energy_axis is None and energy is None:
         raise ValueError(f"energy: a start on the plane {plane.key} needs --energy H")
-    x, ordinate = np.array(start)[:, None]
+    x, ordinate = np.array([checked_number("start", number) for number in start])[:, None]
     found_state = plane.states(potential, energy, x, ordinate)[0]
     if np.isnan(found_state).any():
         raise ValueError(f"start={start}: forbidden, an orbit there would have negative kinetic energy")

@@ -6,14 +6,15 @@ import os
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, get_type_hints, overload
+from types import NoneType
+from typing import TYPE_CHECKING, Any, get_args, get_type_hints, overload
 
 from engine.foundations.extras import require_package
 from engine.foundations.netcdf_files import read_netcdf
 from engine.foundations.plug_ins import import_plug_ins
 from engine.foundations.result import RecordedResult, Result
-from engine.foundations.stored_fields import plain_attributes, read_field, with_present_names
-from engine.foundations.validation import checks_types
+from engine.foundations.stored_fields import content_named, plain_attributes, read_field, with_present_names
+from engine.foundations.validation import checked_path, checks_types
 from engine.maps.pixels import PixelAnalysis
 from engine.maps.result import EscapeMap, read_map
 from engine.maps.spec import read_spec
@@ -26,10 +27,18 @@ from engine.trajectories.sampled_orbits import SampledOrbits
 if TYPE_CHECKING:
     import xarray as xr
 
+
+def _read_sweep(dataset: xr.Dataset) -> Sweep:
+    """Return a sweep; KeyError without the variables and attributes that all sweeps have."""
+    found = Sweep(dataset)
+    _ = found.describe(), found.outcomes
+    return found
+
+
 # Readers of results whose files do not contain the fields of a dataclass, by class.
 _READERS: dict[Any, Callable[[xr.Dataset], Result]] = {
     EscapeMap: read_map,
-    Sweep: Sweep,
+    Sweep: _read_sweep,
     Potential: lambda dataset: read_potential(dataset.attrs),
 }
 # Name of a file in every Zarr store of format 3.
@@ -40,7 +49,7 @@ _ZARR_FILE = "zarr.json"
 def open_result(path: str | os.PathLike[str]) -> Any: ...
 @overload
 def open_result[Kind: Result](path: str | os.PathLike[str], kind: type[Kind]) -> Kind: ...
-@checks_types(path=(str, os.PathLike), kind=type)
+@checks_types(kind=type)
 def open_result(path: str | os.PathLike[str], kind: type[Any] = Result) -> Any:
     """Open a result from a file.
 
@@ -76,30 +85,30 @@ def open_result(path: str | os.PathLike[str], kind: type[Any] = Result) -> Any:
     >>> opened.spec == escapes.spec, bool((opened.fate == escapes.fate).all())
     (True, True)
     """
-    result = _open(path)
+    result = _open(checked_path("path", path))
     if kind is not Result and not isinstance(result, kind):
         raise ValueError(f"path={os.fspath(path)}: holds {type(result).__name__}; must hold {kind.__name__}")
     return result
 
 
-def _open(path: str | os.PathLike[str]) -> Any:
+def _open(path: Path) -> Any:
     """Return the result of a file or a Zarr store; an OSError names the path."""
     # The import is slow and seldom needed.
     import xarray as xr
 
-    if not Path(path).exists():
-        raise FileNotFoundError(f"path={os.fspath(path)}: there is no such file or folder")
-    if (Path(path) / _ZARR_FILE).exists():
+    if not path.exists():
+        raise FileNotFoundError(f"path={path}: there is no such file or folder")
+    if (path / _ZARR_FILE).exists():
         require_package("zarr", "files")
-        return _read(path, xr.open_zarr(path, chunks=None, consolidated=False))
-    if Path(path).is_dir():
-        raise ValueError(
-            f"path={os.fspath(path)}: is a folder without {_ZARR_FILE}; must be a NetCDF file or a Zarr store of format 3"
-        )
+        with content_named(f"path={path}"):
+            dataset = xr.open_zarr(path, chunks=None, consolidated=False)
+        return _read(path, dataset)
+    if path.is_dir():
+        raise ValueError(f"path={path}: is a folder without {_ZARR_FILE}; must be a NetCDF file or a Zarr store of format 3")
     return _read(path, read_netcdf(path))
 
 
-def _read(path: str | os.PathLike[str], dataset: xr.Dataset) -> Any:
+def _read(path: Path, dataset: xr.Dataset) -> Any:
     """Return the result of a dataset; a ValueError names the path."""
     name = str(dataset.attrs.get("result"))
     if name not in Result.kinds():
@@ -108,9 +117,10 @@ def _read(path: str | os.PathLike[str], dataset: xr.Dataset) -> Any:
     kind = Result.kinds().get(name)
     if kind is None:
         content = dataset.attrs.get("result", "no result")
-        raise ValueError(f"path={os.fspath(path)}: holds {content}; must hold a result of this library. xarray opens it")
-    dataset = with_present_names(dataset)
-    return _READERS[kind](dataset) if kind in _READERS else _read_fields(kind, dataset)
+        raise ValueError(f"path={path}: holds {content}; must hold a result of this library. xarray opens it")
+    with content_named(f"path={path}"):
+        dataset = with_present_names(dataset)
+        return _READERS[kind](dataset) if kind in _READERS else _read_fields(kind, dataset)
 
 
 def _read_fields(kind: Any, dataset: xr.Dataset) -> Any:
@@ -132,6 +142,9 @@ def _read_fields(kind: Any, dataset: xr.Dataset) -> Any:
         elif stored_name in dataset.attrs:
             values[field.name] = read_field(hints[field.name], dataset.attrs[stored_name])
         elif field.default is MISSING and field.default_factory is MISSING:
+            # Files omit fields that are None.
+            if NoneType not in get_args(hints[field.name]):
+                raise KeyError(field.name)
             values[field.name] = None
     result = kind(**values)
     return replace(result, made_by=_read_made_by(result, dataset)) if isinstance(result, RecordedResult) else result

@@ -28,8 +28,8 @@ from cli.options import with_options
 from cli.output_files import Content, Stem, name_files, reserve_output, write_files
 from cli.printing import AsJson, list_rows, print_result
 from cli.starts import GivenState, Start, find_state
-from engine import Potential, Result, Section, Slice, SweepSpec, System
-from engine.jobs.job import run_job
+from engine import Execution, NoPeriodicOrbitError, Potential, Result, Section, Slice, SweepSpec, System
+from engine.jobs.job import Job, run_job
 from engine.systems.review.potential_review import review_system
 from plots.pictures.setting import NO_SETTINGS, Settings
 from plots.printed.figure_files import study_figure_bytes
@@ -81,9 +81,17 @@ def run(
     paths = name_files(output, ["nc", "csv", *FigureFormat], ["nc", "csv"], stem)
     with reserve_output(output or stem):
         with place.run() as context:
-            found = run_job(job, context.start_stage(entry.files), {})
+            found = _run(job, context.start_stage(entry.files))
         files = write_files({path: study_content(entry, found, ending, style, settings) for ending, path in paths.items()})
     _print(entry, found, files, as_json)
+
+
+def _run(job: Job[Result], execution: Execution) -> Result:
+    """Return the result of a job; ValueError if no periodic orbit is near the start."""
+    try:
+        return run_job(job, execution, {})
+    except NoPeriodicOrbitError as error:
+        raise ValueError(f"start: {error}") from None
 
 
 def _find_study(name: str) -> Study[Any]:

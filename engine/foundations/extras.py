@@ -7,11 +7,11 @@ import importlib.util
 import os
 from collections.abc import Mapping
 from importlib.metadata import entry_points
-from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 from engine.foundations.output_lock import output_named_in_errors
+from engine.foundations.validation import checked_path
 
 GROUP = "escape_explorer.pictures"
 """Entry point group of the module that draws results, which has the functions plot_result, to_html, to_holoviews and
@@ -53,6 +53,7 @@ def load_pictures(group: str = GROUP) -> ModuleType:
 
 def write_live_figure(shown: object, path: str | os.PathLike[str], options: Mapping[str, Any]) -> None:
     """Write the live figure of a map, or of the request for one. Its options are those of `MapSpec.to_html`."""
+    file = checked_path("path", path)
     content = load_pictures().to_live_html(shown, **options)
-    with output_named_in_errors(Path(path)):
-        Path(path).write_text(content, encoding="utf-8")
+    with output_named_in_errors(file):
+        file.write_text(content, encoding="utf-8")

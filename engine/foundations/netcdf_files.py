@@ -5,11 +5,11 @@ from __future__ import annotations
 import os
 from collections.abc import Hashable
 from importlib.util import find_spec
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from engine.foundations.extras import require_package
 from engine.foundations.output_lock import output_named_in_errors
+from engine.foundations.validation import checked_path
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -35,7 +35,7 @@ def write_netcdf(dataset: xr.Dataset, path: str | os.PathLike[str]) -> None:
     OSError
         If the file cannot be written; the error names it.
     """
-    file = Path(path)
+    file = checked_path("path", path)
     if file.suffix != ".nc":
         raise ValueError(f"path={path}: must end in .nc")
     incomplete = file.with_name(f".{file.name}.{os.getpid()}.part")

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import fields, is_dataclass
 from enum import Enum
 from types import NoneType, UnionType
@@ -52,6 +53,16 @@ def checked_dataset(name: str, value: Any, arrays: Collection[str], legal: str) 
     if dataset["fate"].ndim > 2:
         raise ValueError(f"{name}: a dataset of several maps; must be one of them, such as dataset.sel(h=…)")
     return dataset
+
+
+@contextmanager
+def content_named(label: str) -> Iterator[None]:
+    """Raise a ValueError that begins with a label, such as the path, for content of a file that is not that of a result."""
+    try:
+        yield
+    except (ValueError, KeyError, TypeError, AttributeError, StopIteration) as error:
+        problem = f"{label}: cannot be read as a result ({error!r})"
+        raise ValueError(f"{problem}; must hold what this library has written") from error
 
 
 def write_field(value: Any) -> Any:

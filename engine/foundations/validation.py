@@ -10,9 +10,11 @@ import functools
 import inspect
 import numbers
 import operator
+import os
 import re
 import reprlib
 from collections.abc import Callable, Iterable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -97,6 +99,23 @@ def replace_unchecked[T](instance: T, **values: Any) -> T:
     for field in dataclasses.fields(instance):  # type: ignore[arg-type]
         object.__setattr__(copy, field.name, values.get(field.name, getattr(instance, field.name)))
     return copy
+
+
+def checked_path(name: str, value: Any) -> Path:
+    """Return a path; ValueError for other values, and for texts that are no name of a file or folder."""
+    check_type(name, value, (str, os.PathLike))
+    text = os.fspath(value)
+    if not text or "\0" in text:
+        raise ValueError(f"{name}={short_repr(text)}: must be the path of a file or folder, without a null character")
+    return Path(text)
+
+
+def checked_choice(name: str, value: Any, legal: Iterable[str]) -> str:
+    """Return one of some texts; ValueError for any other value."""
+    texts = tuple(legal)
+    if not isinstance(value, str) or value not in texts:
+        raise ValueError(f"{name}={short_repr(value)}: must be one of {', '.join(texts)}")
+    return value
 
 
 def checked_flag(name: str, value: Any) -> bool:

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
-from engine.foundations.validation import checks_types
+from engine.foundations.validation import checked_path, checks_types
 from engine.maps.analyses.rounded_share import with_rounded_share
 from engine.maps.map_store import open_map_store
 from engine.maps.parameter_map import LinewiseRun
@@ -100,7 +100,7 @@ def compute_map(
     if store is not None:
         if resume is not None:
             raise ValueError("resume: must be None with a store, which holds the earlier map")
-        return _compute_stored(spec, Path(store), on_frame, execution)
+        return _compute_stored(spec, checked_path("store", store), on_frame, execution)
     if resume is not None:
         _check_resumable(spec, resume)
     work, restore = _begin_computation(spec, resume, coarse_first=on_frame is not None)

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from engine.foundations.netcdf_files import read_netcdf, write_netcdf
 from engine.foundations.output_lock import hold_lock
+from engine.foundations.stored_fields import content_named
 from engine.maps.result import EscapeMap, read_map
 from engine.maps.spec import MapSpec
 
@@ -51,7 +52,8 @@ def _read_earlier(path: Path, spec: MapSpec) -> EscapeMap | None:
     dataset = read_netcdf(path)
     if dataset.attrs.get("result") != EscapeMap.__name__:
         raise ValueError(f"store={path}: holds no map; must be new, or the store of this map")
-    earlier = read_map(dataset)
+    with content_named(f"store={path}"):
+        earlier = read_map(dataset)
     if different := spec.different_fields(earlier.spec):
         raise ValueError(f"store={path}: holds a map with another {', '.join(different)}; must be new, or the store of this map")
     return earlier

@@ -146,7 +146,7 @@ def _write_dataset(spec: MapSpec, ordinate: np.ndarray, states: np.ndarray, time
 
 
 @shows_progress("returns")
-@checks_types(spec=MapSpec, execution=Execution)
+@checks_types(spec=MapSpec, on_frame=(Callable, type(None)), execution=Execution)
 def compute_returns(
     spec: MapSpec,
     returns: int = 1,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import operator
 import os
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, fields
@@ -12,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from engine.foundations.extras import write_live_figure
-from engine.foundations.validation import check_type, checked_flag, replace_unchecked, short_repr
+from engine.foundations.validation import check_type, checked_count, checked_flag, replace_unchecked, short_repr
 from engine.slices.axes import Energy, common_energy, scaled_energy
 from engine.slices.default_window import map_window
 from engine.slices.limiting_curves import trace_zero_velocity_curve
@@ -243,9 +242,9 @@ class MapSpec:
     def pixel_at(self, x: float, ordinate: float) -> tuple[int, int] | None:
         """Return (row, column) of the pixel that contains a point of the slice; None outside the window."""
         window, (columns, rows) = self.find_window(), self.resolution
-        column = int(np.floor((x - window.x_low) / window.width * columns))
-        row = int(np.floor((ordinate - window.ordinate_low) / window.height * rows))
-        return (row, column) if 0 <= row < rows and 0 <= column < columns else None
+        column = np.floor((x - window.x_low) / window.width * columns)
+        row = np.floor((ordinate - window.ordinate_low) / window.height * rows)
+        return (int(row), int(column)) if 0 <= row < rows and 0 <= column < columns else None
 
 
 def finest_pixel(spec: MapSpec, window: Window) -> tuple[float, float]:
@@ -265,12 +264,11 @@ def _check_pixels(spec: MapSpec, window: Window) -> None:
 
 def _checked_resolution(resolution: Any) -> tuple[int, int]:
     try:
-        sides = tuple(operator.index(side) for side in resolution)
-    except TypeError:
-        sides = ()
-    if len(sides) != 2 or not all(1 <= side <= LARGEST_SIDE for side in sides):
-        raise ValueError(f"resolution={short_repr(resolution)}: must be (columns, rows), each from 1 to {LARGEST_SIDE}")
-    return sides
+        columns, rows = (checked_count("resolution", side, 1, LARGEST_SIDE) for side in resolution)
+    except (TypeError, ValueError):
+        legal = f"(columns, rows), each from 1 to {LARGEST_SIDE}"
+        raise ValueError(f"resolution={short_repr(resolution)}: must be {legal}") from None
+    return columns, rows
 
 
 def read_spec(dataset: xr.Dataset) -> MapSpec:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import numbers
 from dataclasses import replace
 
 import numpy as np
 
 from engine.exits.exit_rows import exit_curves_at
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
-from engine.foundations.validation import RandomNumbers, checked_count, checked_seed, checks_types, short_repr
+from engine.foundations.validation import RandomNumbers, checked_count, checked_seed, checked_t_max, checks_types
 from engine.maps.spec import MapSpec
 from engine.measures.basins.power_law_fit import MIN_EXPECTED_PAIRS, UncertaintyExponent, fit_uncertainty, predict_shares
 from engine.propagation.batch import OrbitBatch
@@ -35,6 +34,8 @@ _DECADES_BELOW_PIXEL = 4.0
 _MIN_ZOOM_SEPARATION = 1e-13
 # Largest number of separations.
 _MAX_SEPARATIONS = 100
+# Largest integration time of all orbits, thousands of times the default.
+_MOST_WORK = 1e12
 # Largest initial number of pairs at each separation.
 _MAX_PAIRS = 100_000
 # Desired number of uncertain pairs at each separation. They determine a share to 7 %. The law fitted to the initial pairs
@@ -90,8 +91,8 @@ def compute_uncertainty_exponent(
     separations
         Number of values of ε, evenly spaced on a logarithmic scale, 5 to 100.
     work
-        Limit of the total integration time of all orbits, above 0, in time units of the well. The initial pairs are always
-        integrated.
+        Limit of the total integration time of all orbits, above 0 and at most 1e12, in time units of the well. The initial pairs
+        are always integrated.
     rng
         Random numbers: a seed, 0 to 2⁶³ − 1, of which equal ones give equal results, or a NumPy generator; None for new numbers.
     execution
@@ -119,10 +120,7 @@ def compute_uncertainty_exponent(
     pairs = checked_count("pairs", pairs, 10, _MAX_PAIRS)
     separations = checked_count("separations", separations, 5, _MAX_SEPARATIONS)
     seed = checked_seed(rng)
-    # With the declared type of `work`, type checkers would report that this check cannot fail; an `object` prevents this.
-    given_work: object = work
-    if not isinstance(given_work, numbers.Real) or not work > 0.0:
-        raise ValueError(f"work={short_repr(work)}: must be above 0")
+    work = checked_t_max(work, _MOST_WORK, name="work")
     units = spec.potential.units
     sampler = _PairSampler(spec.in_well_units(), _space_separations(spec, separations), seed, execution)
     sampler.sample(np.full(separations, pairs), execution.part(0, 2))

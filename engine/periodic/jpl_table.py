@@ -9,13 +9,14 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Sequence
+from pathlib import Path
 
 import numpy as np
 
 from engine.exits.closed_orbit import ClosedOrbit
 from engine.foundations.arrays import read_only
 from engine.foundations.output_lock import output_named_in_errors
-from engine.foundations.validation import checked_items, checks_types
+from engine.foundations.validation import checked_items, checked_path, checks_types
 from engine.systems.potential import Potential
 
 _STATE_COLUMNS = ("x", "y", "z", "vx", "vy", "vz")
@@ -64,8 +65,9 @@ def write_jpl_table(orbits: ClosedOrbit | Iterable[ClosedOrbit], path: str | os.
 
     members = checked_items("orbits", [orbits] if isinstance(orbits, ClosedOrbit) else orbits, ClosedOrbit)
     table = pd.DataFrame([_row(orbit) for orbit in members], columns=_COLUMNS)
-    with output_named_in_errors(path):
-        table.to_csv(path, index=False)
+    file = checked_path("path", path)
+    with output_named_in_errors(file):
+        table.to_csv(file, index=False)
 
 
 def _row(orbit: ClosedOrbit) -> Sequence[float]:
@@ -76,7 +78,7 @@ def _row(orbit: ClosedOrbit) -> Sequence[float]:
     return x, y, 0.0, vx, vy, 0.0, constant, orbit.period, max(abs(orbit.stability_index), 1.0)
 
 
-@checks_types(potential=Potential, path=(str, os.PathLike))
+@checks_types(potential=Potential)
 def read_jpl_table(potential: Potential, path: str | os.PathLike[str]) -> np.ndarray:
     """Read the starts of periodic orbits from a CSV table of the catalogue of JPL, or one that `write_jpl_table` wrote.
 
@@ -116,21 +118,26 @@ def read_jpl_table(potential: Potential, path: str | os.PathLike[str]) -> np.nda
     >>> find_periodic_orbit(moon, start, returns=1).describe()
     'Periodic orbit, stable, T = 3.20145, a = −0.718214, 1 return to y = 0.'
     """
-    numbers = _read_numbers(path)
+    file = checked_path("path", path)
+    numbers = _read_numbers(file)
     z, vz, constants = numbers[:, 2], numbers[:, 5], numbers[:, 6]
-    _check_rows(path, np.maximum(np.abs(z), np.abs(vz)) <= _PLANE, "z and vz must be 0, because the motion is in the plane")
+    _check_rows(file, np.maximum(np.abs(z), np.abs(vz)) <= _PLANE, "z and vz must be 0, because the motion is in the plane")
     states = np.column_stack([numbers[:, :2] + potential.rotation_axis, numbers[:, 3:5] * potential.mass])
     differences = np.abs(potential.jacobi_constant(potential.energy(states)) - constants)
     is_same = differences <= _SAME_SYSTEM
-    _check_rows(path, is_same, f"jacobi must be the constant of its state in {potential.name}; is it a table of another system?")
+    _check_rows(file, is_same, f"jacobi must be the constant of its state in {potential.name}; is it a table of another system?")
     return read_only(states)
 
 
-def _read_numbers(path: str | os.PathLike[str]) -> np.ndarray:
+def _read_numbers(path: Path) -> np.ndarray:
     """Return the columns `_READ_COLUMNS` of a table, (n, 7)."""
     import pandas as pd
 
-    table = pd.read_csv(path, skipinitialspace=True)
+    try:
+        table = pd.read_csv(path, skipinitialspace=True)
+    except ValueError as error:
+        # The errors of pandas for the content of a file are ValueErrors.
+        raise ValueError(f"path={path}: cannot be read as a table ({error}); must be a file of comma-separated values") from None
     # "x0 (LU)" is x, and "Jacobi constant (LU2/TU2)" jacobi.
     names = [re.sub(r"[^a-z].*", "", str(name).strip().lower()) for name in table.columns]
     missing = [name for name in _READ_COLUMNS if name not in names]
@@ -142,7 +149,7 @@ def _read_numbers(path: str | os.PathLike[str]) -> np.ndarray:
     return numbers
 
 
-def _check_rows(path: str | os.PathLike[str], is_legal: np.ndarray, rule: str) -> None:
+def _check_rows(path: Path, is_legal: np.ndarray, rule: str) -> None:
     """Raise a ValueError that names the first row that is not legal, counted from 1."""
     if not is_legal.all():
         raise ValueError(f"path={path}: row {int(np.argmin(is_legal)) + 1}: {rule}")

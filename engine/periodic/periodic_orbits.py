@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -101,7 +102,7 @@ class PeriodicOrbits(PointsOfOrbits):
         return (self[k] for k in range(len(self)))
 
     def __getitem__(self, index: int) -> PeriodicOrbit:
-        if not -len(self) <= index < len(self):
+        if not -len(self) <= operator.index(index) < len(self):
             raise IndexError(f"index={index}: must be below the number of orbits, {len(self)}")
         rows = self.orbit == range(1, len(self) + 1)[index]
         first = int(np.argmax(rows))

@@ -41,7 +41,7 @@ _SEARCHED = 1e-4
 
 
 @shows_progress("periodic orbits")
-@checks_types(spec=MapSpec, execution=Execution)
+@checks_types(spec=MapSpec, on_frame=(Callable, type(None)), execution=Execution)
 def find_periodic_orbits(
     spec: MapSpec,
     returns: int = 1,
@@ -86,6 +86,8 @@ def find_periodic_orbits(
     if min(spec.resolution) < 2:
         raise ValueError(f"spec: its resolution is {spec.resolution}; must be at least 2 columns and rows")
     returns = checked_count("returns", returns, 1, MOST_RETURNS)
+    # A periodic orbit closes in both directions of time.
+    spec = replace(spec, backward=False)
     search = _Search(spec, returns, execution.part(1, 2))
     found = compute_returns(spec, returns, execution=execution.part(0, 2))
     displacements = spec.section.axes.points(found.states) - search.starts

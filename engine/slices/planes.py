@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from engine.foundations.validation import checked_array, checks_types, short_repr
+from engine.foundations.validation import checked_array, checked_finite, checks_types, short_repr
 from engine.slices.axes import Coordinate
 from engine.slices.slice import Slice
 from engine.systems.potential import Potential
@@ -72,9 +72,9 @@ def start_states(
     potential
         The potential.
     plane
-        The slice, such as a `Plane`.
+        The slice, such as a `Plane`, of one potential.
     energy
-        h, a number or (n,); ignored on a slice with an axis h.
+        h, finite, a number or (n,); ignored on a slice with an axis h.
     x, ordinate
         Coordinates on the slice, (n,) or one number each.
 
@@ -86,7 +86,7 @@ def start_states(
     Raises
     ------
     ValueError
-        If a parameter is of a wrong type, or the coordinates differ in shape.
+        If a parameter is of a wrong type, an axis is a parameter, an energy is not finite, or the coordinates differ in shape.
 
     Examples
     --------
@@ -99,5 +99,10 @@ def start_states(
     xs, ordinates = checked_array("x", x), checked_array("ordinate", ordinate)
     if xs.shape != ordinates.shape:
         raise ValueError(f"ordinate of shape {ordinates.shape}: must be shaped like x, {xs.shape}")
+    energies = np.asarray(checked_finite("energy", energy))
+    if energies.ndim and energies.shape != xs.shape:
+        raise ValueError(f"energy of shape {energies.shape}: must be a number, or shaped like x, {xs.shape}")
+    checked = checked_slice(plane)
+    checked.check_one_potential("plane")
     # [()] turns an array without dimensions into a number.
-    return checked_slice(plane).states(potential, checked_array("energy", energy)[()], xs[()], ordinates[()])
+    return checked.states(potential, energies[()], xs[()], ordinates[()])

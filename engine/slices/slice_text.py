@@ -60,7 +60,9 @@ def read_slice(axes: str, fixed_values: str, system: System) -> Slice:
     ValueError
         If a text is not legal; the message names the part, its value and the legal values.
     """
-    if axes in {plane.key for plane in Plane} and not fixed_values:
+    if axes in {plane.key for plane in Plane}:
+        if fixed_values:
+            raise ValueError(f"fix={short_repr(fixed_values)}: must be left out for {axes}; give two axes such as x,py instead")
         return checked_slice(axes)
     if axes.count(",") != 1:
         keys = ", ".join(plane.key for plane in Plane)

@@ -37,7 +37,9 @@ class Window:
         for name, (low, high) in zip(("x", "ordinate"), self.ranges, strict=True):
             low_edge, high_edge = (checked_number(f"window {name} edge", edge) for edge in (low, high))
             if not low_edge < high_edge:
-                raise ValueError(f"window {name} range {low} … {high}: the lower edge must be below the upper edge")
+                raise ValueError(f"window {name} range {low_edge} … {high_edge}: the lower edge must be below the upper edge")
+            object.__setattr__(self, f"{name}_low", low_edge)
+            object.__setattr__(self, f"{name}_high", high_edge)
 
     @property
     def edges(self) -> tuple[float, float, float, float]:
@@ -82,7 +84,7 @@ def checked_window(window: Any) -> Window:
     if isinstance(window, Window):
         return window
     try:
-        x_low, x_high, ordinate_low, ordinate_high = map(float, window)
-    except (TypeError, ValueError, OverflowError):
+        x_low, x_high, ordinate_low, ordinate_high = window
+    except (TypeError, ValueError):
         raise ValueError(f"window={short_repr(window)}: must be (x_low, x_high, ordinate_low, ordinate_high)") from None
     return Window(x_low, x_high, ordinate_low, ordinate_high)

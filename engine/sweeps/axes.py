@@ -54,9 +54,9 @@ def checked_axes(along: Any) -> tuple[SweepAxis, ...]:
     energies = [axis for axis in axes if isinstance(axis, EnergyAxis)]
     if not 1 <= len(axes) <= _MOST_AXES or len(energies) > 1 or len({axis.key for axis in axes}) < len(axes):
         legal = "one axis, or a pair of different axes of which at most one is h or jacobi"
-        raise ValueError(f"along={short_repr(along)}: must be {legal}")
+        raise ValueError(f"along={', '.join(axis.key for axis in axes) or '()'}: must be {legal}")
     if len({axis.system for axis in axes if isinstance(axis, ParameterAxis)}) > 1:
-        raise ValueError(f"along={short_repr(along)}: both parameters must be of the same system")
+        raise ValueError(f"along={', '.join(axis.key for axis in axes)}: both parameters must be of the same system")
     return axes
 
 

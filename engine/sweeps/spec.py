@@ -10,7 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from engine.foundations.validation import LARGEST_NUMBER, checked_count, short_repr
+from engine.foundations.validation import (
+    LARGEST_NUMBER,
+    check_type,
+    checked_between,
+    checked_count,
+    checked_number,
+    short_repr,
+)
 from engine.maps.spec import DEFAULT_RESOLUTION, MapSpec
 from engine.measures.measured_map import SweepPoint
 from engine.measures.table import MEASURES
@@ -114,6 +121,7 @@ class SweepSpec:
         ) -> None: ...
 
     def __post_init__(self) -> None:
+        check_type("potential", self.potential, Potential)
         axes = checked_axes(self.along)
         has_energy = any(isinstance(axis, EnergyAxis) for axis in axes)
         if has_energy != (self.energy is None):
@@ -124,9 +132,12 @@ class SweepSpec:
         object.__setattr__(self, "values", values)
         object.__setattr__(self, "measures", measures)
         _, highest_energy = self.energy_range
-        for parameter in self.parameters:
-            # This validates the parameter, which must belong to the system of the potential.
-            MapSpec(self.potential, Slice(Coordinate.X, parameter), highest_energy)
+        for parameter, parameter_values in zip(axes, self.axis_values, strict=True):
+            if isinstance(parameter, ParameterAxis):
+                # This validates the parameter, which must belong to the system of the potential.
+                MapSpec(self.potential, Slice(Coordinate.X, parameter), highest_energy)
+                for value in (parameter_values[0], parameter_values[-1]):
+                    checked_between(parameter.key, value, *parameter.system.range_of(parameter.key))
         refine = checked_count("refine", self.refine, 0, MOST_REFINED)
         if refine > 0 and "shares" not in measures:
             raise ValueError(f"refine={self.refine}: must be 0 without the measure 'shares', which decides where to refine")
@@ -278,18 +289,18 @@ def _checked_pair(values: Any) -> tuple[tuple[float, ...], tuple[float, ...]]:
         first, second = values
     except (TypeError, ValueError):
         raise ValueError(f"values={short_repr(values)}: must be a pair of sequences along a pair of axes") from None
-    return _checked_values("values", first), _checked_values("values", second)
+    return _checked_values("values[0]", first), _checked_values("values[1]", second)
 
 
 def _checked_values(name: str, values: Any) -> tuple[float, ...]:
     """Return the values, sorted and made unique."""
     try:
-        checked = tuple(sorted({float(value) for value in values}))
-    except (TypeError, ValueError, OverflowError):
-        raise ValueError(f"{name}={short_repr(values)}: must be a sequence of finite numbers") from None
-    if not 1 <= len(checked) <= MOST_VALUES or not np.all(np.abs(checked) <= LARGEST_NUMBER):
-        legal = f"1 to {MOST_VALUES} different numbers, each finite and at most {LARGEST_NUMBER:g} in magnitude"
-        raise ValueError(f"{name}={short_repr(values)}: must be {legal}")
+        checked = tuple(sorted({checked_number(name, value) for value in values}))
+    except (TypeError, ValueError):
+        legal = f"a sequence of finite numbers, at most {LARGEST_NUMBER:g} in magnitude"
+        raise ValueError(f"{name}={short_repr(values)}: must be {legal}") from None
+    if not 1 <= len(checked) <= MOST_VALUES:
+        raise ValueError(f"{name}={short_repr(values)}: must be 1 to {MOST_VALUES} different numbers")
     return checked
 
 

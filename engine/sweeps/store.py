@@ -53,7 +53,7 @@ def open_store(path: Path, attributes: Mapping[str, Any]) -> Iterator[SweepStore
         If another process has locked the store.
     """
     require_package("zarr", "files")
-    if not path.parent.exists():
+    if not path.absolute().parent.is_dir():
         raise ValueError(f"store={path}: the folder {path.parent} does not exist; make it first")
     with hold_lock(path):
         yield SweepStore(path, attributes)
@@ -177,8 +177,8 @@ def check_same_sweep(label: str, found: Mapping[str, Any], wanted: Mapping[str, 
     Attributes that are `ignored` are not compared.
     """
     found = {**FORMER_ATTRIBUTES, **found}
-    # The window is compared last, because a default window follows from other attributes. Types differ in files.
-    for name, value in sorted(wanted.items(), key=lambda item: item[0] == "window"):
+    # Other attributes follow from the axes, and a default window follows from others. Types differ in files.
+    for name, value in sorted(wanted.items(), key=lambda item: (item[0] == "window") - (item[0] == "axis")):
         is_compared = name not in {*ignored, *_WORDED_ATTRIBUTES}
         if is_compared and (name not in found or np.ravel(found[name]).tolist() != np.ravel(value).tolist()):
             raise ValueError(f"{label}: holds another request, with {name}={found.get(name)!r}; must have {name}={value!r}")

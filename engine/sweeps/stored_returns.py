@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import os
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
-from engine.foundations.validation import checks_types
+from engine.foundations.validation import checked_path, checks_types
 from engine.maps.returns import Returns, check_request, compute_row
 from engine.maps.spec import MapSpec
 from engine.sweeps.store import open_store
@@ -65,7 +64,7 @@ def store_returns(
     check_request(spec, returns, columns)
     axis, _ = spec.plane.axis_names[::-1]
     attributes = {"result": Returns.__name__, **spec.provenance(), "returns": returns, "axis": axis, "count": rows}
-    with open_store(Path(store), attributes) as storage:
+    with open_store(checked_path("store", store), attributes) as storage:
         for row in range(storage.read().sizes[axis], rows):
             execution.report(lambda done=row: done / rows)  # type: ignore[misc]
             storage.append(compute_row(spec, returns, row, execution).transpose(axis, ...))

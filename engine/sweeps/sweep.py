@@ -8,15 +8,14 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from engine.exits.lyapunov_orbits import find_lyapunov_orbits
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.result import Result
-from engine.foundations.validation import checks_types
+from engine.foundations.validation import checked_path, checks_types, short_repr
 from engine.foundations.wording import format_count
 from engine.measures.compute import compute_point
 from engine.measures.measured_map import SweepPoint
@@ -200,7 +199,7 @@ def compute_sweep(
     values = spec.axis_values[0]
     if store is None:
         return measure_all(_MemoryStorage(spec, earlier), coarse_to_fine(values))
-    with open_store(Path(store), spec.attributes()) as sweep_store:
+    with open_store(checked_path("store", store), spec.attributes()) as sweep_store:
         return measure_all(sweep_store, values)
 
 
@@ -233,8 +232,18 @@ def _measure_value(
     places, measured = [(value, *others) for others in itertools.product(*spec.axis_values[1:])], []
     for number, place in enumerate(places):
         point, part = spec.point(*place), execution.part(number, len(places))
-        measured.append(measure(point) if measure is not None else compute_point(point, execution=part))
+        measured.append(compute_point(point, execution=part) if measure is None else _checked_measured(measure(point)))
     return _join(measured, spec.axes[-1].key)
+
+
+def _checked_measured(found: Any) -> xr.Dataset:
+    """Return what the `measure` of a caller returned; ValueError unless it is a dataset."""
+    # This import is slow.
+    import xarray as xr
+
+    if not isinstance(found, xr.Dataset):
+        raise ValueError(f"measure: returned {short_repr(found)}; must return an xarray.Dataset, as the measures of one map")
+    return found
 
 
 def _join(parts: Sequence[xr.Dataset], axis: str) -> xr.Dataset:

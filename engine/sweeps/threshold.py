@@ -10,7 +10,8 @@ import numpy as np
 
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.result import RecordedResult
-from engine.foundations.validation import checked_count, checked_number, checked_t_max, checks_types, short_repr
+from engine.foundations.validation import checked_count, checked_flag, checked_number, checked_t_max, checks_types, short_repr
+from engine.foundations.wording import format_count
 from engine.measures.table import MEASURES
 from engine.sweeps.spec import SweepSpec
 from engine.sweeps.sweep import Sweep, compute_sweep, share_names
@@ -70,7 +71,7 @@ class Threshold(RecordedResult):
 
 
 @shows_progress("search")
-@checks_types(spec=SweepSpec, quantity=str, last=bool, execution=Execution)
+@checks_types(spec=SweepSpec, quantity=str, execution=Execution)
 def find_where(
     spec: SweepSpec,
     quantity: str,
@@ -92,7 +93,7 @@ def find_where(
     Parameters
     ----------
     spec
-        The request, with two values or more of the energy or of a parameter. Its measures are not used.
+        The request, with 2 to `most_maps` values of the energy or of a parameter. Its measures are not used.
     quantity
         Name of the measure: a number of `MEASURES`, such as "s_b", or the share of an outcome, such as "share_bounded".
     value
@@ -127,8 +128,11 @@ def find_where(
     """
     wanted = checked_number("value", value)
     most = checked_count("most_maps", most_maps, 2, _MOST_MAPS)
-    if len(spec.axes) > 1 or len(spec.values) < 2:
-        raise ValueError(f"spec: has {spec.count} values of {spec.name}; must have two or more, on one axis")
+    last = checked_flag("last", last)
+    if len(spec.axes) > 1:
+        raise ValueError(f"spec: has the axes {' and '.join(axis.key for axis in spec.axes)}; must have one axis")
+    if not 2 <= len(spec.values) <= most:
+        raise ValueError(f"spec: has {format_count(len(spec.values), 'value')}; must have from 2 to most_maps={most} values")
     width = _TOLERANCE * (spec.values[-1] - spec.values[0]) if tolerance is None else checked_t_max(tolerance, name="tolerance")
     measure = _measure_of(spec, quantity)
     request = replace(spec, measures=(measure,), refine=0)

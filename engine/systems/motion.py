@@ -11,7 +11,7 @@ import numpy as np
 
 from engine.expressions.nodes import Expression, Sum, X, Y, multiply
 from engine.foundations.result import Result
-from engine.foundations.validation import checked_between, checked_finite, checked_number
+from engine.foundations.validation import checked_array, checked_between, checked_finite, checked_number
 from engine.integrator.source.polynomial_recurrence import Terms
 from engine.systems.forms.expression_form import Form
 from engine.systems.forms.form import hessian_matrix
@@ -76,7 +76,10 @@ class Motion(Result):
 
     def energy(self, states: Any) -> Any:
         """Return H of states x, y, px, py, of shape (…, 4)."""
-        x, y, px, py = np.moveaxis(np.asarray(states, dtype=float), -1, 0)
+        array = checked_array("states", states)
+        if array.shape[-1:] != (4,):
+            raise ValueError(f"states of shape {array.shape}: must be (…, 4) with x, y, px, py")
+        x, y, px, py = np.moveaxis(array, -1, 0)
         return 0.5 * (px * px + py * py) / self.mass + self.value(x, y)
 
     def derivatives(self, states: np.ndarray) -> np.ndarray:

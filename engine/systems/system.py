@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 
-from engine.foundations.validation import check_type, checks_types
+from engine.foundations.validation import check_type, checked_items, checked_number, checks_types, short_repr
 from engine.systems.catalogue.entry import CatalogueEntry
 from engine.systems.catalogue.table import CATALOGUE
 from engine.systems.formulas.formula_parser import LARGEST_VALUE, formula_letters, make_potential
@@ -53,16 +53,20 @@ class System:
         check_type("case", self.case, str)
         check_type("formula", self.formula, str)
         check_type("parameters", self.parameters, Mapping)
+        names = checked_items("parameters", self.parameters, str)
         self._check_names()
+        parameters = {name: checked_number(name, self.parameters[name]) for name in names}
         # Titles and links must not depend on the order in which parameters were chosen.
         positions = {name: position for position, name in enumerate(WELL_PARAMETERS)}
-        sorted_names = sorted(self.parameters, key=lambda name: (positions.get(name, len(positions)), name))
-        changed = {name: self.parameters[name] for name in sorted_names if self.parameters[name] != self.default_of(name)}
+        sorted_names = sorted(parameters, key=lambda name: (positions.get(name, len(positions)), name))
+        changed = {name: parameters[name] for name in sorted_names if parameters[name] != self.default_of(name)}
         object.__setattr__(self, "parameters", changed)
 
     def _check_names(self) -> None:
-        """Raise ValueError for an unknown case, or a parameter that an entry of the catalogue lacks."""
+        """Raise ValueError for an unknown case, and for a parameter that its entry lacks or a formula beside its own."""
         legal = self.entry.adjustable
+        if self.case != TYPED and self.formula:
+            raise ValueError(f"formula={short_repr(self.formula)}: must be empty for {self.case}, which has a formula")
         if self.case != TYPED and (unknown := [name for name in self.parameters if name not in legal]):
             names = ", ".join(legal) or "none"
             raise ValueError(f"parameters: {reprlib.repr(unknown[0])} is not a parameter of {self.case}; it has {names}")

@@ -74,7 +74,7 @@ def classify_orbits(
     units, section = potential.units, checked_section(section)
     energies = np.full(len(states), np.nan) if energy is None else np.full(len(states), float(energy))
     if energy is None:
-        energies[~is_forbidden] = _common_energies(potential, potential.energy(states[~is_forbidden]))
+        energies[~is_forbidden] = _common_energies(potential, _own_energies(potential, states, is_forbidden)[~is_forbidden])
     outcomes = classify_in_well_units(
         potential.in_well_units, energies / units.energy, states / units.state, t_max / units.time, execution,
         section.in_well_units(units).numbers,
@@ -84,6 +84,16 @@ def classify_orbits(
     common = ends[0] if ends[0] == ends[1] else ends
     made_by = potential.describe_run(energy=common, t_max=t_max, section=section.text)
     return replace(units.restore(outcomes), t_max=t_max, outcomes=potential.outcomes_at(common), made_by=made_by)
+
+
+def _own_energies(potential: Potential, states: np.ndarray, is_forbidden: np.ndarray) -> np.ndarray:
+    """Return the energy of each start; ValueError where it is infinite, as at the place of a body."""
+    energies: np.ndarray = potential.energy(states)
+    is_legal = np.isfinite(energies) | is_forbidden
+    if not is_legal.all():
+        row = int(np.argmin(is_legal))
+        raise ValueError(f"states: row {row} has energy {float(energies[row])!r}; must have a finite energy")
+    return energies
 
 
 def _common_energies(potential: Potential, energies: np.ndarray) -> np.ndarray:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from engine import EscapeMap
+from engine.foundations.validation import checked_choice
 from plots.layers.layer import NO_ANALYSES, Analyses
 from plots.layers.table import LAYERS, LAYERS_BY_PICTURE, PICTURES, TITLES
 from plots.pictures.image_columns import NO_LAYER, map_columns
@@ -96,8 +97,7 @@ def picture_values(frame: EscapeMap, picture: str, analyses: Analyses = NO_ANALY
 
 
 def _columns(frame: EscapeMap, picture: str, analyses: Analyses) -> dict[str, list[Any]]:
-    if picture not in TITLES:
-        raise ValueError(f"picture={picture!r}: must be one of {', '.join(TITLES)}")
+    checked_choice("picture", picture, TITLES)
     columns = map_columns(frame) | layer_columns(frame, LAYERS)
     for name, result in analyses.items():
         columns |= result_columns(name, frame, result)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
+from dataclasses import fields
 from html import escape
 from io import BytesIO
 from pathlib import Path
@@ -99,6 +100,9 @@ def still_picture(view: LiveView, found: EscapeMap) -> bytes:
 
 def to_live_html(shown: EscapeMap | MapSpec, *, palette: str = DEFAULT_PALETTE, **options: Any) -> str:
     """Return the HTML of a live figure, as described in `engine.maps.result.EscapeMap.to_html`."""
+    legal = ("palette", *(each.name for each in fields(LiveView) if each.name not in {"spec", "palette"}))
+    if unknown := [name for name in options if name not in legal]:
+        raise TypeError(f"{unknown[0]}: no such option; a live figure has {', '.join(legal)}")
     spec = shown if isinstance(shown, MapSpec) else shown.spec
     view = LiveView(spec, palette=find_palette(palette), **options)
     return live_figure(view, compute_map(shown) if isinstance(shown, MapSpec) else shown)

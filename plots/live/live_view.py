@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 from engine import CASES, POTENTIALS, MapSpec, Potential, System
-from engine.foundations.validation import checked_number
+from engine.foundations.validation import check_type, checked_choice, checked_number, short_repr
 from engine.systems.catalogue.entry import EnergyRange
 from engine.systems.review.potential_review import review_potential, review_system
 from plots.pictures.palette import DEFAULT_COLOURS, Palette
@@ -58,15 +59,16 @@ class LiveView:
     def __post_init__(self) -> None:
         if refusal := live_refusal(self.spec):
             raise ValueError(f"plane: {refusal}")
+        for name in ("caption", "link", "title"):
+            check_type(name, getattr(self, name), str)
         if self.energies is not None:
             _check_energies(self.energies, self.spec.common_energy)
+        check_type("starts", self.starts, Sequence)
         if len(self.starts) > len(self.palette.orbits):
             raise ValueError(f"starts: there are {len(self.starts)}; must be at most {len(self.palette.orbits)}")
         for start in self.starts:
-            for number in start:
-                checked_number("starts", number)
-        if self.picture not in LIVE_PICTURES:
-            raise ValueError(f"picture={self.picture!r}: must be one of {', '.join(LIVE_PICTURES)}")
+            _checked_pair("starts", start)
+        checked_choice("picture", self.picture, LIVE_PICTURES)
         if self.link and not self.link.startswith(("http://", "https://")):
             raise ValueError(f"link={self.link!r}: must begin with http:// or https://")
 
@@ -117,7 +119,15 @@ def _suggested_energies(potential: Potential) -> EnergyRange:
     return review_system(System(name)).energies if is_known else review_potential(potential).energies
 
 
+def _checked_pair(name: str, value: Any) -> tuple[float, float]:
+    try:
+        first, second = value
+    except (TypeError, ValueError):
+        raise ValueError(f"{name}={short_repr(value)}: must be a pair of numbers") from None
+    return checked_number(name, first), checked_number(name, second)
+
+
 def _check_energies(energies: tuple[float, float], energy: float | None) -> None:
-    low, high = (checked_number("energies", each) for each in energies)
+    low, high = _checked_pair("energies", energies)
     if not low < high or (energy is not None and not low <= energy <= high):
         raise ValueError(f"energies={energies}: must rise, with the energy of the map between them")

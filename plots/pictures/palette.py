@@ -276,7 +276,7 @@ def find_palette(palette: str | Mapping[int, Any], outcomes: Sequence[Outcome] =
     """
     if isinstance(palette, Mapping):
         return _recolour(DEFAULT_COLOURS, palette, outcomes)
-    if palette not in PALETTES:
+    if palette not in tuple(PALETTES):
         raise ValueError(f"palette={palette!r}: must be one of {', '.join(PALETTES)}, or a mapping from fates to colours")
     return PALETTES[palette]
 
@@ -286,11 +286,11 @@ def _recolour(palette: Palette, colours: Mapping[int, Any], outcomes: Sequence[O
     of_fates, count = dict(palette.of_fates), len(outcomes) or MOST_CHANNELS
     for fate, colour in colours.items():
         code = _hex_code(fate, colour)
-        if fate in range(1, count + 1):
-            outcome = outcome_of(fate, outcomes)
-            of_kind = of_kinds[outcome.kind.key]
+        is_code = hasattr(fate, "__index__") and not isinstance(fate, bool)
+        if is_code and fate in range(1, count + 1):
+            of_kind = of_kinds[(outcome := outcome_of(fate, outcomes)).kind.key]
             of_kind[min(outcome.number, len(of_kind)) - 1] = code
-        elif fate in of_fates:
+        elif is_code and fate in of_fates:
             of_fates[Fate(fate)] = code
         else:
             raise ValueError(f"palette: fate={fate!r}: must be a Fate, or the number of an outcome, 1 to {count}")

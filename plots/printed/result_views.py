@@ -8,10 +8,14 @@ from functools import partial, singledispatch
 from typing import Any
 
 import numpy as np
+from matplotlib import colormaps
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.colors import Colormap, Normalize
+from matplotlib.scale import get_scale_names
 
 from engine import MEASURES, EscapeMap, LyapunovOrbit, Orbit, OrbitFamily, PeriodicOrbit, Potential, Result, Window
+from engine.foundations.validation import checked_choice, checked_count, short_repr
 from engine.results import (
     DecayLaws,
     EscapeStatistics,
@@ -47,6 +51,8 @@ from plots.studies.sweep_charts import CURVE_PANELS, SHARES, sweep_charts
 _LOG_FLOOR = 1e-16
 # Largest number of points of a line with markers.
 _MOST_MARKERS = 60
+# Names of a colour map and of a scale, for error messages.
+_SCALE_EXAMPLES = {"cmap": "viridis", "norm": "log"}
 # Labels of the axes of paths.
 _PATH_LABELS = "x", "y"
 
@@ -176,22 +182,22 @@ def _plane_view(picture: PlanePicture, cmap: Any, norm: Any) -> View:
     )
 
 
-def _plate_view(result: Sweep, measure: str | None, outcome: int, cmap: Any, norm: Any) -> View:
+def _plate_view(result: Sweep, measure: str | None, outcome: int | None, cmap: Any, norm: Any) -> View:
     """Return the view of a measure of a sweep with two axes, as an image; of the shares, that of one outcome."""
     drawn = {one.name: next(iter(one.labels)) for one in CURVE_PANELS if set(one.labels) <= set(result.dataset)}
     if "share" in result.dataset:
         drawn = {SHARES.name: "share", **drawn}
     if not (drawn and result.values.size):
         raise NoPictureError("a sweep without numbers against the energy or a parameter has no picture")
-    name = next(iter(drawn)) if measure is None else measure
-    if name not in drawn:
-        raise ValueError(f"measure={measure!r}: must be one of {', '.join(drawn)}")
+    _check_scale(cmap, norm, has_scale=True)
+    name = next(iter(drawn)) if measure is None else checked_choice("measure", measure, drawn)
     values, title = result[drawn[name]], MEASURES[name].title
     if name == SHARES.name:
         labels = ["bounded", *(each.label for each in result.outcomes)]
-        if outcome not in range(len(labels)):
-            raise ValueError(f"outcome={outcome!r}: must be a number from 0 to {len(labels) - 1}")
-        values, title = values[..., outcome], f"Share: {labels[outcome]}"
+        shown = checked_count("outcome", 0 if outcome is None else outcome, 0, len(labels) - 1)
+        values, title = values[..., shown], f"Share: {labels[shown]}"
+    else:
+        _check_no_outcome(outcome)
 
     def draw(axes: Axes) -> list[Artist]:
         return [axes.pcolormesh(*map(result.__getitem__, result.axes), values.T, shading="nearest", cmap=cmap, norm=norm)]
@@ -201,9 +207,20 @@ def _plate_view(result: Sweep, measure: str | None, outcome: int, cmap: Any, nor
 
 
 def _check_scale(cmap: Any, norm: Any, *, has_scale: bool) -> None:
-    for name, value in {"cmap": cmap, "norm": norm}.items():
-        if value is not None and not has_scale:
+    """Raise TypeError for a scale that a picture does not have, and ValueError for one that Matplotlib does not know."""
+    for name, value, kind, names in (("cmap", cmap, Colormap, colormaps), ("norm", norm, Normalize, get_scale_names())):
+        if value is None:
+            continue
+        if not has_scale:
             raise TypeError(f"{name}={value!r}: must be None for a picture without a colour scale")
+        if not isinstance(value, kind) and not (isinstance(value, str) and value in names):
+            legal = f"a {kind.__name__} of Matplotlib or the name of one, such as {_SCALE_EXAMPLES[name]!r}"
+            raise ValueError(f"{name}={short_repr(value)}: must be {legal}")
+
+
+def _check_no_outcome(outcome: int | None) -> None:
+    if outcome is not None:
+        raise TypeError(f"outcome={outcome!r}: must be None for a picture that is not of the share of one outcome")
 
 
 @view_of.register
@@ -215,6 +232,7 @@ def _map_view(result: EscapeMap, palette: Palette, *, picture: str = "basins", c
 def _orbit_view(result: Orbit, palette: Palette, *, show: str = "path") -> View:
     if result.potential is None:
         raise NoPictureError("this orbit has no potential, so its exits are unknown")
+    checked_choice("show", show, ("path", "crossings", *(each.name for each in ORBIT_QUANTITIES)))
     if show == "crossings":
         points = result.find_section_crossings().T
         return View(
@@ -226,10 +244,7 @@ def _orbit_view(result: Orbit, palette: Palette, *, show: str = "path") -> View:
     if show == "path":
         draw = partial(draw_paths_and_exits, potential=result.potential, orbits=[curves], palette=palette)
         return View(_PATH_LABELS, draw, curves.window.ranges, "Path", is_plane=True, is_equal=True)
-    quantity = next((each for each in ORBIT_QUANTITIES if each.name == show), None)
-    if quantity is None:
-        legal = ", ".join(each.name for each in ORBIT_QUANTITIES)
-        raise ValueError(f"show={show!r}: must be one of path, crossings, {legal}")
+    quantity = next(each for each in ORBIT_QUANTITIES if each.name == show)
     logarithmic, limits = quantity_axes(quantity, [curves])
     draw = partial(draw_histories, quantity=quantity, orbits=[curves], palette=palette)
     return View(("t", quantity.label), draw, limits, quantity.title, logarithmic=logarithmic)
@@ -298,15 +313,14 @@ def _review_view(result: PotentialReview, palette: Palette) -> View:
 
 @view_of.register
 def _sweep_view(
-    result: Sweep, palette: Palette, *, measure: str | None = None, outcome: int = 0, cmap: Any = None, norm: Any = None
+    result: Sweep, palette: Palette, *, measure: str | None = None, outcome: int | None = None, cmap: Any = None, norm: Any = None
 ) -> View:
     if len(result.axes) > 1:
         return _plate_view(result, measure, outcome, cmap, norm)
     _check_scale(cmap, norm, has_scale=False)
+    _check_no_outcome(outcome)
     charts = {chart.frame.name: chart for chart in charts_of(result, palette)}
     if not charts:
         raise NoPictureError("a sweep without numbers against the energy or a parameter has no picture")
-    if measure is not None and measure not in charts:
-        raise ValueError(f"measure={measure!r}: must be one of {', '.join(charts)}")
     # By default, the first measure.
-    return _chart_view(charts[measure or next(iter(charts))])
+    return _chart_view(charts[next(iter(charts)) if measure is None else checked_choice("measure", measure, charts)])

@@ -19,6 +19,7 @@ from matplotlib.legend import Legend
 
 from engine import EscapeMap, Result
 from engine.foundations.extras import require_package
+from engine.foundations.validation import checked_flag, short_repr
 from engine.maps.pixels import PixelAnalysis
 from engine.results import Drawing, Sweep
 from plots.pictures.charts import Limits
@@ -37,6 +38,8 @@ _BELOW_AXES = 3.6
 _SIDE_BY_SIDE = "display:flex;gap:1em;flex-wrap:wrap;align-items:flex-start"
 # Options of pictures of all results, for error messages.
 _COMMON_OPTIONS = ("palette", "legend", "colorbar")
+# Name in Matplotlib of the projection of axes in which results are drawn, which are not polar or three-dimensional.
+_PROJECTION = "rectilinear"
 # Number of parameters of each function of `view_of` before its options: the result and the palette.
 _FIXED_PARAMETERS = 2
 # Labels of the axes in which each artist was drawn.
@@ -59,8 +62,11 @@ def plot_result(
     if unknown := [name for name in options if name not in legal_options]:
         options_text = f"the picture of {type(result).__name__} has {', '.join([*_COMMON_OPTIONS, *legal_options])}"
         raise TypeError(f"{unknown[0]}: no such option; {options_text}")
-    if not isinstance(ax, Axes | None):
-        raise TypeError(f"ax={ax!r}: must be Matplotlib axes or None")
+    if ax is not None and getattr(ax, "name", None) != _PROJECTION:
+        raise TypeError(f"ax={short_repr(ax)}: must be Matplotlib axes or None, and not polar or three-dimensional")
+    for name, flag in {"legend": legend, "colorbar": colorbar}.items():
+        if flag is not None:
+            checked_flag(name, flag)
     view = view_of(result, find_palette(palette, _outcomes_of(result)), **options)
     if colorbar and not view.has_scale:
         raise TypeError("colorbar=True: must be False or None for a picture without a colour scale")

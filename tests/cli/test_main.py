@@ -78,13 +78,24 @@ INVALID = {
     "sweep of an energy and of a range": ("sweep", "I", "--energy", 0.2, "--low", 0.13, "--store", "store.zarr"),
     "sweep on (x, h)": ("sweep", "I", "--energy", 0.2, "--plane", "x_h", "--store", "store.zarr"),
     "sweep without energies": ("sweep", "I", "--store", "store.zarr"),
+    "sweep up to infinity": ("sweep", "I", "--low", 0.13, "--high", "inf", "--count", 3, "--store", "store.zarr"),
+    "sweep along one axis twice": ("sweep", "I", "--axis", "h=0.1:0.2:3", "--axis", "h=0.1:0.2:3", "--store", "store.zarr"),
+    "store of a map in a missing folder": ("map", "I", "--energy", 0.2, "--store", "no/map.nc"),
+    "fixed value of a named plane": ("map", "I", "--energy", 0.2, "--fix", "y=0.1"),
+    "start not finite": ("orbit", "I", "--energy", 0.2, "--start", 0.1, "nan"),
+    "start of a live figure not finite": ("live", "I", "--energy", 0.2, "--start", "0.1,nan"),
+    "energy of a study not finite": ("study", "plate", "I", "--energy", "nan"),
+    "study of a family at rest": ("study", "family", "III", "--state", 0, 0, 0, 0, "--t-max", 10),
+    "search among more values than maps": (
+        "where", "I", "--quantity", "s_b", "--value", 0.5, "--low", 0.15, "--high", 0.2, "--count", 9, "--most-maps", 5,
+    ),
     "threads and a cluster": ("map", "I", "--energy", 0.2, "--threads", 2, "--local-cluster", 2),
     "unknown figure": ("reproduce", "I-xh", "IV-xh", "--output", "new"),
     "figures in a missing folder": ("reproduce", "I-xh", "--output", "no/such"),
     "port below 1": ("serve", "--port", 0),
     "port above 65535": ("serve", "--port", 70000),
     "map too small to measure": ("measures", "I", "--energy", 0.2, "--resolution", 3, "--t-max", 10),
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("name", INVALID)

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import xarray as xr
 from matplotlib.figure import Figure
 
 import engine
@@ -28,6 +29,7 @@ from engine import (
     compute_map,
     compute_statistics,
     compute_sweep,
+    find_periodic_orbits,
     integrate_orbit,
     judge_orbit,
     open_result,
@@ -40,6 +42,11 @@ from engine.slices.slice_text import read_slice
 from engine.systems.outcomes import Centre
 
 LONGEST = 400
+# A sweep along two axes.
+PLATE = SweepSpec(
+    CASES["I"], Plane.X_PX, ((0.2, 0.3), (0.8, 1.0)), (6, 6), t_max=10.0, measures=("shares",),
+    along=("h", ParameterAxis("epsilon", 0.8, 1.2, CASES["I"])),
+)  # fmt: skip
 
 
 @functools.cache
@@ -57,7 +64,11 @@ def names() -> dict[str, Any]:
         "sw": SweepSpec(case, Plane.X_PX, (0.3, 0.4), (10, 10), t_max=20.0),
         "other": compute_sweep(SweepSpec(case, Plane.X_PX, (0.4,), (12, 12), t_max=30.0)),
         "well": parse_formula("x² + y²"), "Centre": Centre, "np": np, "threading": threading, "axes": Figure().subplots(),
-        "EPSILON": ParameterAxis("epsilon", 0.5, 2.0, System("I")), "read_slice": read_slice,
+        "EPSILON": ParameterAxis("epsilon", 0.5, 2.0, System("I")), "read_slice": read_slice, "replace": replace,
+        "Figure": Figure, "plate": PLATE, "pair": compute_sweep(PLATE),
+        "other_shares": compute_sweep(replace(PLATE, along="h", values=(0.2, 0.3))),
+        "many_values": replace(PLATE, along="h", values=np.linspace(0.2, 0.4, 50)),
+        "found": find_periodic_orbits(MapSpec(case, Plane.X_PX, 0.3, (8, 8), t_max=50.0)),
     }  # fmt: skip
 
 
@@ -81,7 +92,7 @@ WRONG_CALLS = (
     ("MapSpec(III, Plane.X_PX, (0.1, 0.2))", "energy=(0.1, 0.2): must be one finite number on (x, px), at most 1e+09 in"),
     ("MapSpec(III, Plane.X_PX, 0.45, (10, 4097))", "resolution=(10, 4097): must be (columns, rows), each from 1 to 4096"),
     ("MapSpec(III, Plane.X_PX, 0.45, t_max=2e8)", "t_max=200000000.0: must be above 0 and at most 1e+08"),
-    ("MapSpec(III, Plane.X_PX, 0.45, window=(None, 1.0, 0.0, 1.0))", "window=(None, 1.0, 0.0, 1.0): must be (x_low, x_high,"),
+    ("MapSpec(III, Plane.X_PX, 0.45, window=(None, 1.0, 0.0, 1.0))", "window x edge=None: must be a finite number,"),
     (
         "MapSpec(III, Plane.X_PX, 0.45, window=(0.3, 0.3 + 1e-14, 0.2, 0.2 + 1e-14)).find_window()",
         "window=…: double precision ends here;",
@@ -312,6 +323,87 @@ WRONG_CALLS = (
         'parse_formula("x + y²; well (0, 0)")',
         "formula, character 9: potential=x + y²: V must have a minimum to which its axes can be moved",
     ),
+    ('SweepSpec("III", Plane.X_PX, (3.0,), along="jacobi")', "potential='III': must be a Potential"),
+    ('SweepSpec(III, Plane.X_PX, ("0.3", "0.4"))', "values=('0.3', '0.4'): must be a sequence of finite numbers, at most 1e+09"),
+    ("SweepSpec(III, Plane.X_PX, (True, False))", "values=(True, False): must be a sequence of finite numbers"),
+    ("replace(plate, values=(0.1, 0.2))", "values[0]=0.1: must be a sequence of finite numbers"),
+    ("replace(plate, values=((0.2,), ()))", "values[1]=(): must be 1 to 10000 different numbers"),
+    ("replace(plate, values=((0.2,), (0.8, 5000.0)))", "epsilon=5000.0: must be from 0.01 to 100"),
+    (
+        'replace(plate, along=("h", "jacobi"))',
+        "along=h, jacobi: must be one axis, or a pair of different axes of which at most one",
+    ),
+    ("replace(plate, along=(EPSILON, EPSILON), energy=0.2)", "along=epsilon, epsilon: must be one axis, or a pair of different"),
+    ("compute_sweep(plate, earlier=other)", "earlier: holds another request, with axis='h'; must have axis='h, epsilon'"),
+    ("compute_sweep(plate, measure=lambda point: 3)", "measure: returned 3; must return an xarray.Dataset"),
+    ('compute_sweep(sw, "a\\0b")', "store='a\\x00b': must be the path of a file or folder, without a null character"),
+    ('find_where(plate, "share_bounded", 0.1)', "spec: has the axes h and epsilon; must have one axis"),
+    ('find_where(many_values, "share_bounded", 0.1)', "spec: has 50 values; must have from 2 to most_maps=40 values"),
+    ('find_where(sw, "share_bounded", 0.1, last="yes")', "last='yes': must be True or False"),
+    ('find_where(sw, "s_β", 0.1)', "quantity='s_β': must be one of direct_share,"),
+    ('find_where(sw, "share_bounded", True)', "value=True: must be a finite number, at most 1e+09 in magnitude"),
+    ('compute_map(spec, store="")', "store='': must be the path of a file or folder"),
+    ('compute_map(spec, store=tmp / "no" / "map.nc")', "store=…/map.nc: the folder …/no does not exist; make it first"),
+    ("MapSpec(III, Plane.X_PX, 0.45, (True, 10))", "resolution=(True, 10): must be (columns, rows), each from 1 to 4096"),
+    ('MapSpec(III, Plane.X_PX, 0.45, window="0101")', "window x edge='0': must be a finite number, at most 1e+09 in magnitude"),
+    ("MapSpec(III, Plane.X_PX, 0.45, window=(False, True, 0, 1))", "window x edge=False: must be a finite number"),
+    ("compute_regularity(m, on_frame=3)", "on_frame=3: must be a function or None"),
+    ("compute_trust(m, on_frame=3)", "on_frame=3: must be a function or None"),
+    ("compute_lagrangian_descriptor(m, on_frame=3)", "on_frame=3: must be a function or None"),
+    ('compute_returns(spec, on_frame="x")', "on_frame='x': must be a function or None"),
+    ("find_periodic_orbits(spec, on_frame=3)", "on_frame=3: must be a function or None"),
+    ("find_symmetric_families(spec, on_frame=3)", "on_frame=3: must be a function or None"),
+    ("continue_family(found[0], 0.4, on_frame=3)", "on_frame=3: must be a function or None"),
+    (
+        "continue_family(found[0], (0.4, 0.2))",
+        "until=(0.4, 0.2): must be a value of h below 0.3 or above 0.3, or (low, high) around",
+    ),
+    ('compute_uncertainty_exponent(spec, work=float("inf"))', "work=inf: must be above 0 and at most 1e+12"),
+    ("compute_uncertainty_exponent(spec, work=True)", "work=True: must be above 0 and at most 1e+12"),
+    (
+        "classify_orbits(POTENTIALS['Hill'], None, [(0.0, 0.0, 0.0, 1.0)])",
+        "states: row 0 has energy -inf; must have a finite energy",
+    ),
+    (
+        "start_states(III, Plane.X_PX, np.array([0.4, 0.5]), np.zeros(1), np.zeros(1))",
+        "energy of shape (2,): must be a number, or shaped like x, (1,)",
+    ),
+    ('start_states(III, Plane.X_PX, float("nan"), 0.1, 0.2)', "energy=nan: must be a finite number, at most 1e+09 in magnitude"),
+    ('start_states(CASES["I"], Slice(C.X, EPSILON), 0.2, 0.1, 1.0)', "plane: is on (x, ε); must be on a slice of one potential"),
+    ("III.energy((0.0, 0.0, 0.1))", "states of shape (3,): must be (…, 4) with x, y, px, py"),
+    ('System("I", "x²")', "formula='x²': must be empty for I, which has a formula"),
+    ('System("I", parameters={"epsilon": "2"})', "epsilon='2': must be a finite number, at most 1e+09 in magnitude"),
+    ('parse_formula("½r² − a x y²", parameters={"a": [1.0]})', "a=[1.0]: must be a finite number, at most 1e+09 in magnitude"),
+    ('parse_formula("½r² − a x y²", parameters={"a": 1.0, None: 2.0})', "parameters=None: must be text"),
+    ('ParameterAxis("a", 0.5, float("nan"), parse_formula("½r² − a x y²"))', "parameter a=nan: must be a finite number"),
+    ("m.save(3)", "path=3: must be text or a path"),
+    ('m.save("a\\0.nc")', "path='a\\x00.nc': must be the path of a file or folder, without a null character"),
+    ('open_result("")', "path='': must be the path of a file or folder, without a null character"),
+    ("spec.to_html(3)", "path=3: must be text or a path"),
+    ('m.to_html(tmp / "a.html", energies=0.3)', "energies=0.3: must be a pair of numbers"),
+    ('m.to_html(tmp / "a.html", starts=(0.1, 0.2))', "starts=0.1: must be a pair of numbers"),
+    ('m.to_html(tmp / "a.html", starts=3)', "starts=3: must be a Sequence"),
+    ('m.to_html(tmp / "a.html", caption=3)', "caption=3: must be text"),
+    ('m.to_html(tmp / "a.html", link=3)', "link=3: must be text"),
+    ('m.plot(axes, legend="below")', "legend='below': must be True or False"),
+    ("m.plot(axes, colorbar=1)", "colorbar=1: must be True or False"),
+    ('m.plot(axes, picture="times", cmap="virids")', "cmap='virids': must be a Colormap of Matplotlib or the name of one"),
+    ('m.plot(axes, picture="times", norm=(0, 1))', "norm=(0, 1): must be a Normalize of Matplotlib or the name of one"),
+    (
+        'm.plot(axes, picture=["basins"])',
+        "picture=['basins']: must be one of curves, basins, times, crossings, characters, origin",
+    ),
+    ('m.plot(axes, palette=["red"])', "palette=['red']: must be one of paper, safe, or a mapping from fates to colours"),
+    ('m.plot(axes, palette={1.0: "red"})', "palette: fate=1.0: must be a Fate, or the number of an outcome, 1 to 4"),
+    ('m.plot(axes, palette={True: "red"})', "palette: fate=True: must be a Fate, or the number of an outcome, 1 to 4"),
+    ('m.plot(Figure().add_subplot(projection="polar"))', "ax=…: must be Matplotlib axes or None, and not polar"),
+    ('m.plot(Figure().add_subplot(projection="3d"))', "ax=…: must be Matplotlib axes or None, and not polar"),
+    ("pair.plot(axes, outcome=True)", "outcome=True: must be an integer from 0 to 2"),
+    ("pair.plot(axes, outcome=1.0)", "outcome=1.0: must be an integer from 0 to 2"),
+    ('pair.plot(axes, cmap="virids")', "cmap='virids': must be a Colormap of Matplotlib or the name of one, such as 'viridis'"),
+    ('pair.plot(axes, measure=["shares"])', "measure=['shares']: must be one of shares"),
+    ("other_shares.plot(axes, outcome=1)", "outcome=1: must be None for a picture that is not of the share of one outcome"),
+    ('read_slice("x_px", "y=0.1", System("I"))', "fix='y=0.1': must be left out for x_px; give two axes such as x,py instead"),
     ('read_slice("x", "", System("I"))', "axes='x': must be one of x_y, x_px, x_h, y_py, tangential, or two axes such as x,py"),
     ('read_slice("x,z", "", System("I"))', "axes='z': must be one of x, y, px, py, theta, beta, h, omega_1, omega_2,"),
     ('read_slice("x,epsilon=a:2", "", System("I"))', "axes='epsilon=a:2': 'a' must be a number"),
@@ -375,6 +467,30 @@ def test_a_file_that_cannot_be_opened_is_named(tmp_path: Path) -> None:
     (tmp_path / "text.nc").write_text("no numbers")
     with pytest.raises(OSError, match=r"^path=.*text\.nc: cannot be read as a NetCDF file: [^\n]*$"):
         open_result(tmp_path / "text.nc")
+
+
+def test_files_that_hold_no_whole_result_are_named(tmp_path: Path) -> None:
+    path, whole = tmp_path / "part.nc", names()["m"].to_xarray()
+    empty = xr.Dataset({"a": ("x", [1.0, 2.0])})
+    parts = [empty.assign_attrs(result=name) for name in ("EscapeMap", "Sweep", "Orbit", "Potential", "RegularityMap", "Islands")]
+    for part in (*parts, whole.drop_vars("fate"), whole.assign_attrs(t_max="long")):
+        part.to_netcdf(path)
+        with pytest.raises(ValueError, match=rf"^path={path}: cannot be read as a result .*; must hold what this library has wr"):
+            open_result(path)
+    whole.drop_vars("fate").to_netcdf(path)
+    with pytest.raises(ValueError, match=rf"^store={path}: cannot be read as a result .*fate"):
+        compute_map(names()["spec"], store=path)
+
+
+def test_periodic_orbits_of_a_map_backward_in_time_are_those_of_the_map() -> None:
+    spec = MapSpec(CASES["III"], Plane.X_PX, 0.45, (10, 10), t_max=50.0)
+    assert find_periodic_orbits(replace(spec, backward=True)).identical(find_periodic_orbits(spec))
+
+
+def test_no_pixel_contains_a_place_that_is_not_a_number() -> None:
+    spec: MapSpec = names()["spec"]
+    assert spec.pixel_at(float("nan"), 0.0) is None
+    assert spec.pixel_at(0.0, 0.0) is not None
 
 
 def test_too_many_arguments_are_answered_as_by_python() -> None:

@@ -82,7 +82,7 @@ class DescriptorMap(PixelAnalysis):
 
 
 @shows_progress("Lagrangian descriptor")
-@checks_types(execution=Execution)
+@checks_types(on_frame=(Callable, type(None)), execution=Execution)
 def compute_lagrangian_descriptor(
     escape_map: MapLike,
     *,

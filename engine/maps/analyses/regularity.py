@@ -79,7 +79,7 @@ class RegularityMap(PixelAnalysis):
 
 
 @shows_progress("regularity")
-@checks_types(execution=Execution)
+@checks_types(on_frame=(Callable, type(None)), execution=Execution)
 def compute_regularity(
     escape_map: MapLike,
     *,

@@ -104,7 +104,7 @@ class TrustMap(PixelAnalysis):
 
 
 @shows_progress("trust")
-@checks_types(execution=Execution)
+@checks_types(on_frame=(Callable, type(None)), execution=Execution)
 def compute_trust(
     escape_map: MapLike,
     *,

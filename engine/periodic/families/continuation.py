@@ -29,7 +29,12 @@ _GROWTH = 1.1
 
 
 @shows_progress("family")
-@checks_types(orbit=(PeriodicOrbit, LyapunovOrbit, OrbitFamily), along=(str, NoneType), execution=Execution)
+@checks_types(
+    orbit=(PeriodicOrbit, LyapunovOrbit, OrbitFamily),
+    along=(str, NoneType),
+    execution=Execution,
+    on_frame=(Callable, NoneType),
+)
 def continue_family(
     orbit: PeriodicOrbit | LyapunovOrbit | OrbitFamily,
     until: Any,

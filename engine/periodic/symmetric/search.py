@@ -30,7 +30,7 @@ _COLUMNS = ("curve", "returns", "abscissa", "ordinate", *STATE_COLUMNS, "period"
 
 
 @shows_progress("families")
-@checks_types(spec=MapSpec, execution=Execution)
+@checks_types(spec=MapSpec, on_frame=(Callable, type(None)), execution=Execution)
 def find_symmetric_families(
     spec: MapSpec,
     returns: int = 1,

@@ -198,7 +198,7 @@ def test_a_measure_is_drawn_as_an_image_with_numbers(whole: Sweep) -> None:
     shares = whole.plot(Figure().subplots(), outcome=2, cmap="magma", norm=LogNorm(0.01, 1.0)).image
     assert shares is not None
     np.testing.assert_array_equal(np.ma.filled(shares.get_array(), np.nan), whole["share"][..., 2].T)
-    with pytest.raises(ValueError, match=r"^outcome=3: must be a number from 0 to 2$"):
+    with pytest.raises(ValueError, match=r"^outcome=3: must be an integer from 0 to 2$"):
         whole.plot(Figure().subplots(), outcome=3)
     with pytest.raises(ValueError, match=r"^measure='wada': must be one of shares, escape_times, basin_entropy$"):
         whole.plot(Figure().subplots(), measure="wada")
@@ -208,9 +208,9 @@ def test_a_measure_is_drawn_as_an_image_with_numbers(whole: Sweep) -> None:
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"values": (0.8, 1.2)}, "values=0.8: must be a sequence of finite numbers"),
+        ({"values": (0.8, 1.2)}, r"values\[0\]=0.8: must be a sequence of finite numbers"),
         ({"values": ((0.8, 1.2),)}, r"values=\(\(0.8, 1.2\),\): must be a pair of sequences along a pair of axes"),
-        ({"values": ((0.8, 1.2), ())}, r"values=\(\): must be 1 to 10000 different numbers"),
+        ({"values": ((0.8, 1.2), ())}, r"values\[1\]=\(\): must be 1 to 10000 different numbers"),
         ({"along": (EPSILON, EPSILON)}, "along=.*: must be one axis, or a pair of different axes"),
         (
             {"along": ("h", "jacobi")},
