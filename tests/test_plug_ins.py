@@ -63,6 +63,7 @@ def use_library(folder: Path) -> None:
     spec = SweepSpec(POTENTIALS["Quartic"], "x_px", (0.26, 0.3), (20, 20), t_max=50.0, measures=("mean_crossings",))
     found = compute_sweep(spec)
     print(before, list(MEASURES)[-1], found.axes, (found["mean_crossings"] > 0.0).tolist())  # noqa: T201
+    print(found.plot(measure="mean_crossings").ax.get_ylabel())  # noqa: T201
 
 
 def open_file(folder: Path) -> None:
@@ -105,7 +106,7 @@ def open_page(folder: Path) -> None:
 
 
 def test_the_library_has_the_system_and_the_measure_and_imports_the_package_when_it_is_used(folder: Path) -> None:
-    assert run(folder, use_library, folder) == Finished(0, "False mean_crossings ('h',) [True, True]\n", "")
+    assert run(folder, use_library, folder) == Finished(0, "False mean_crossings ('h',) [True, True]\ncrossings\n", "")
 
 
 def test_files_of_the_results_of_a_package_are_opened(folder: Path) -> None:

@@ -53,6 +53,8 @@ _LOG_FLOOR = 1e-16
 _MOST_MARKERS = 60
 # Names of a colour map and of a scale, for error messages.
 _SCALE_EXAMPLES = {"cmap": "viridis", "norm": "log"}
+# Why a sweep is not drawn.
+_NO_CURVES = "a sweep without values, or whose measures have no curves, has no picture"
 # Labels of the axes of paths.
 _PATH_LABELS = "x", "y"
 
@@ -188,7 +190,7 @@ def _plate_view(result: Sweep, measure: str | None, outcome: int | None, cmap: A
     if "share" in result.dataset:
         drawn = {SHARES.name: "share", **drawn}
     if not (drawn and result.values.size):
-        raise NoPictureError("a sweep without numbers against the energy or a parameter has no picture")
+        raise NoPictureError(_NO_CURVES)
     _check_scale(cmap, norm, has_scale=True)
     name = next(iter(drawn)) if measure is None else checked_choice("measure", measure, drawn)
     values, title = result[drawn[name]], MEASURES[name].title
@@ -321,6 +323,6 @@ def _sweep_view(
     _check_no_outcome(outcome)
     charts = {chart.frame.name: chart for chart in charts_of(result, palette)}
     if not charts:
-        raise NoPictureError("a sweep without numbers against the energy or a parameter has no picture")
+        raise NoPictureError(_NO_CURVES)
     # By default, the first measure.
     return _chart_view(charts[next(iter(charts)) if measure is None else checked_choice("measure", measure, charts)])
