@@ -10,6 +10,8 @@ escape-explorer study energies III --against epsilon --energy 0.3 --output study
 
 escape-explorer study periodic III --energy 0.3 --output periodic.png
 
+escape-explorer study plate III --against epsilon --output plate.png
+
 escape-explorer study family III --energy 0.2 --start 0 0 --output family.pdf
 """
 

@@ -50,7 +50,7 @@ def _sentence(curves: Sweep) -> str:
     energy = f" at h = {format_number(request['energy'], 6)}" if "energy" in request else ""
     values = f"values of {curves.symbol} on {request['plane']}{energy}"
     if curves.complete:
-        return f"{request['count']} {values}. Click a curve to open the map there."
+        return f"{request['count']} {values}."
     return f"{curves.values.size} of {request['count']} {values}"
 
 
@@ -72,6 +72,7 @@ AGAINST = Study(
     function=compute_sweep,
     progress=sweep_progress,
     sentence=_sentence,
+    invitation=lambda curves: "Click a curve to open the map there.",
     frames=(measure_frame(SHARES), *map(measure_frame, CURVE_PANELS)),
     charts=lambda curves, palette, settings: sweep_charts(curves, palette),
     changes=lambda subject, axis, curves, click: changes_at(subject, axis, curves.values, click.x),

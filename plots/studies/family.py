@@ -169,7 +169,7 @@ def _sentence(family: OrbitFamily) -> str:
     if not family.complete:
         return f"{family.describe()}{special}"
     ends = f" Lower end: {family.ends[0]}. Upper end: {family.ends[1]}."
-    return f"{family.describe()}{special}{ends}{' Click a curve to open a member.' if len(family) > 1 else ''}"
+    return f"{family.describe()}{special}{ends}"
 
 
 def _name(family: OrbitFamily, point: SpecialPoint) -> str:
@@ -188,6 +188,7 @@ FAMILY_STUDY = Study(
     job=_job,
     progress=lambda family: 1.0 if family.complete else 0.0,
     sentence=_sentence,
+    invitation=lambda family: "Click a curve to open a member." if len(family) > 1 else "",
     frames=(_RETURNS, _INDEX, _PERIOD, _ACTION),
     charts=family_charts,
     changes=_changes,

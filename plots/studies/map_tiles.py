@@ -21,6 +21,9 @@ from plots.studies.study import Click
 TILES_ASPECT = 0.76
 """Width of a chart of as many rows as columns with its title over its height, at which the maps are about as high as wide."""
 
+OPEN_MAP = "Click a map to open it."
+"""What a click on a tile does."""
+
 # Distance between the left edges of neighbouring maps of side 1, and between their lower edges.
 _STEPS = 1.08, 1.36
 # Margin beside and below the maps.

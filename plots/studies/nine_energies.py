@@ -15,7 +15,7 @@ from plots.pictures.setting import Settings
 from plots.studies.against import sweep_caption, sweep_progress
 from plots.studies.axes import ENERGY, changes_at, spaced_values, swept_slice
 from plots.studies.escape_charts import ESCAPES, ESCAPES_BY_CROSSINGS, PROBABILITIES_BY_ENERGY, crossing_charts, escapes_chart
-from plots.studies.map_tiles import BESIDE, TILES_ASPECT, TileGrid
+from plots.studies.map_tiles import BESIDE, OPEN_MAP, TILES_ASPECT, TileGrid
 from plots.studies.study import Changes, Click, Study, Subject
 
 ENERGIES = 9
@@ -95,7 +95,7 @@ def _sentence(found: Sweep) -> str:
     x_low, x_high, low, high = (format_number(edge, 4) for edge in request["window"])
     maps = f"maps on {request['plane']}, {x_low} to {x_high} × {low} to {high}"
     if found.complete:
-        return f"{found.values.size} {maps}. Click a map to open it."
+        return f"{found.values.size} {maps}."
     return f"{found.values.size} of {request['count']} {maps}"
 
 
@@ -108,6 +108,7 @@ NINE_ENERGIES = Study(
     function=compute_sweep,
     progress=sweep_progress,
     sentence=_sentence,
+    invitation=lambda found: OPEN_MAP,
     frames=(TILES, ESCAPES, ESCAPES_BY_CROSSINGS, PROBABILITIES_BY_ENERGY),
     charts=nine_energies_charts,
     changes=_changes,

@@ -13,7 +13,7 @@ from plots.pictures.charts import Chart, Frame, Series, Shape
 from plots.pictures.palette import Palette
 from plots.pictures.periodic_marks import RETURNS, STABILITY_COLOURS, periodic_job
 from plots.pictures.setting import NO_SETTINGS, Setting, Settings
-from plots.studies.section import start_through
+from plots.studies.section import FOLLOW_POINT, start_through
 from plots.studies.study import Changes, Click, Study, Subject
 
 FRAME = Frame(
@@ -29,8 +29,8 @@ FRAME = Frame(
     aspect=1.0,
 )
 
-FOLLOW = " Click a point to follow its orbit. On an unstable one, rounding errors grow until the path leaves it."
-"""What a click on a return does."""
+# What a click on a return does.
+_FOLLOW = f"{FOLLOW_POINT} On an unstable one, rounding errors grow until the path leaves it."
 
 UP_TO = Setting(
     name="periodic_returns",
@@ -75,9 +75,8 @@ def _changes(subject: Subject, axis: str, found: PeriodicOrbits, click: Click) -
     return {} if point is None else start_through(found.section, subject.potential, found.states[point], subject.energy)
 
 
-def _sentence(found: PeriodicOrbits) -> str:
-    can_click = found.complete and len(found) and found.section.plane is not None
-    return f"{found.describe()}{FOLLOW if can_click else ''}"
+def _invite(found: PeriodicOrbits) -> str:
+    return _FOLLOW if len(found) and found.section.plane is not None else ""
 
 
 PERIODIC_STUDY = Study(
@@ -87,7 +86,8 @@ PERIODIC_STUDY = Study(
     hint=f"The periodic orbits with up to {RETURNS} returns to the section, and whether they are stable: a few seconds.",
     job=_job,
     progress=lambda found: 1.0 if found.complete else 0.0,
-    sentence=_sentence,
+    sentence=PeriodicOrbits.describe,
+    invitation=_invite,
     frames=(FRAME,),
     charts=periodic_charts,
     changes=_changes,

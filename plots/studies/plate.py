@@ -12,7 +12,7 @@ from plots.pictures.palette import Palette
 from plots.pictures.setting import Settings
 from plots.studies.against import sweep_caption, sweep_progress
 from plots.studies.axes import ENERGY, parameter_axis, spaced_values, swept_slice
-from plots.studies.map_tiles import BESIDE, TILES_ASPECT, TileGrid
+from plots.studies.map_tiles import BESIDE, OPEN_MAP, TILES_ASPECT, TileGrid
 from plots.studies.study import Changes, Click, Study, Subject
 
 PLATE_GRID = TileGrid(columns=5, rows=5)
@@ -91,7 +91,8 @@ PLATE_STUDY = Study(
     job=_job,
     function=compute_sweep,
     progress=sweep_progress,
-    sentence=lambda found: f"{found.describe()}{' Click a map to open it.' if found.complete else ''}",
+    sentence=Sweep.describe,
+    invitation=lambda found: OPEN_MAP,
     frames=(PLATE,),
     charts=plate_charts,
     changes=_changes,

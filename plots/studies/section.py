@@ -117,6 +117,10 @@ def density_colours() -> tuple[str, ...]:
     return value_colours(len(DENSITIES))
 
 
+FOLLOW_POINT = "Click a point to follow its orbit."
+"""What a click on a point of a section does."""
+
+
 def _density_label(k: int) -> str:
     """Return the range of a class of `DENSITIES`. The first label also says what is counted."""
     low, high = DENSITIES[k], (*DENSITIES[1:], None)[k]
@@ -143,9 +147,9 @@ def start_through(section: Section, potential: Potential, state: np.ndarray, ene
     return {"plane": plane, "energy": energy, "start": place}
 
 
-def _sentence(found: Returns) -> str:
-    can_click = found.complete and bool(found.count.any()) and found.spec.section.plane is not None
-    return f"{found.describe()}{' Click a point to follow its orbit.' if can_click else ''}"
+def _invite(found: Returns) -> str:
+    can_click = bool(found.count.any()) and found.spec.section.plane is not None
+    return FOLLOW_POINT if can_click else ""
 
 
 SECTION_STUDY = Study(
@@ -155,7 +159,8 @@ SECTION_STUDY = Study(
     hint=f"The points at which many orbits cross the surface of section, up to {RETURNS} of each orbit.",
     job=_job,
     progress=lambda found: 1.0 if found.complete else 0.0,
-    sentence=_sentence,
+    sentence=Returns.describe,
+    invitation=_invite,
     frames=(FRAME,),
     charts=section_charts,
     changes=_changes,

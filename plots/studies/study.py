@@ -106,6 +106,8 @@ class Study[Found: Result]:
         Whether the study takes so little time that it is computed for each map while its tab is open, without a button.
     sentence
         Describes a result, complete or not.
+    invitation
+        What a click does, in a sentence, on the page; empty for a result without places to click.
     frames
         The charts, in order. Each has a help text.
     charts
@@ -133,6 +135,7 @@ class Study[Found: Result]:
     files: str
     figure: str
     caption: Callable[[Found], str]
+    invitation: Callable[[Found], str] = lambda found: ""
     axes: Callable[[System], Sequence[str]] = lambda system: ()
     function: Callable[..., Found] | None = None
     progress: Callable[[Found], float] = lambda found: 1.0

@@ -33,7 +33,9 @@ def test_a_study_is_printed_and_written(run: Run, tmp_path: Path) -> None:
 
 def test_the_charts_of_a_study_are_drawn(run: Run, tmp_path: Path) -> None:
     _, out, _ = run("study", "periods", "II", "--output", tmp_path / "found.svg")
-    assert "The periods of the Lyapunov orbits at 9 energies" in out
+    assert "The periods of the Lyapunov orbits at 9 energies." in out
+    # What a click does is a sentence for the page.
+    assert "Click" not in out
     assert "Periods of the Lyapunov orbits" in (tmp_path / "found.svg").read_text()
 
 

@@ -141,7 +141,7 @@ class StudyView:
         """Return what the charts show. For an incomplete result, estimate the time left from the time since the start."""
         sentence, share = self._study.sentence(found), self._study.progress(found)
         if self._study.is_complete(found):
-            return sentence
+            return f"{sentence} {self._study.invitation(found)}".rstrip()
         seconds = time.monotonic() - self._start_time
         return f"{sentence} …{f' about {format_duration(seconds * (1.0 - share) / share)} left' if share else ''}"
 

@@ -138,7 +138,7 @@ def test_a_click_starts_the_orbit_of_the_point_in_every_direction(text: str) -> 
     found = run_job(SECTION_STUDY.job(replace(SUBJECT, section=read_section(text)), ""), Execution(), {})
     states = found.states[np.isfinite(found.time)][::97]
     (chart,) = SECTION_STUDY.charts(found, PAPER, NO_SETTINGS)
-    assert "Click" in SECTION_STUDY.sentence(found)
+    assert "Click" in SECTION_STUDY.invitation(found)
     assert "Click" in chart.frame.text
     for state in states:
         changes = SECTION_STUDY.changes(SUBJECT, "", found, Click("", *found.spec.section.axes.points(state)))
@@ -150,5 +150,5 @@ def test_points_that_are_no_starts_of_a_slice_cannot_be_clicked() -> None:
     found = run_job(SECTION_STUDY.job(replace(SUBJECT, section=read_section("x + 0.3 px = 0")), ""), Execution(), {})
     assert found.count.any()
     (chart,) = SECTION_STUDY.charts(found, PAPER, NO_SETTINGS)
-    assert "Click" not in SECTION_STUDY.sentence(found) + chart.frame.text
+    assert "Click" not in SECTION_STUDY.invitation(found) + chart.frame.text
     assert SECTION_STUDY.changes(SUBJECT, "", found, Click("", 0.0, 0.0)) == {}

@@ -40,6 +40,7 @@ def test_there_are_no_axes_before_the_first_curves() -> None:
     for energies in ((0.2, 0.3), (0.1,)):
         view.show(curves(*energies), "h")
         assert plots.visible
+        assert view.text.object.endswith("values of h on (x, px). Click a curve to open the map there.")
         figures = [pane.object for column in plots.objects for pane in column.objects if isinstance(pane, FigurePane)]
         assert len(figures) == len(AGAINST.frames)
         assert all(figure.y_range.start < figure.y_range.end for figure in figures)
