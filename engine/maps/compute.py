@@ -147,7 +147,10 @@ def _check_resumable(spec: MapSpec, resume: EscapeMap) -> None:
             raise ValueError(f"resume: a map with another {', '.join(different_fields)}; must be equal for more than 2²⁰ pixels")
         return
     if resume.batch is None:
-        raise ValueError("resume: this map has no integration state; must be a map returned by compute_map, not a frame")
+        raise ValueError(
+            "resume: frames and maps from files have no integration state; must be a map returned by compute_map, "
+            "or use store to continue from a file"
+        )
     if different_fields not in ([], ["t_max"]) or resume.spec.t_max > spec.t_max:
         raise ValueError(f"resume: a map with another {', '.join(different_fields)}; must be equal but for a smaller t_max")
 

@@ -72,6 +72,12 @@ def test_a_large_map_is_resumed_from_a_frame_of_the_same_request() -> None:
         compute_map(replace(spec, t_max=2.0 * spec.t_max), resume=frames[0])
 
 
+def test_a_map_from_a_file_is_not_resumed_and_the_message_names_store(tmp_path: Path) -> None:
+    compute_map(SPECS[0]).save(tmp_path / "map.nc")
+    with pytest.raises(ValueError, match=r"maps from files have no integration state; .*, or use store to continue from a file"):
+        compute_map(SPECS[0], resume=open_result(tmp_path / "map.nc", EscapeMap))
+
+
 def test_a_large_map_is_computed_in_blocks_which_keep_no_states() -> None:
     columns = 1024
     rows = LARGEST_RUN // columns + 1
