@@ -114,7 +114,10 @@ def _draw_paths(axes: Axes, orbits: Sequence[OrbitCurves], window: Window, colou
         else:
             # `draw_pixels` takes row 0 on top.
             pixels = curves.shaded(colour)[::-1]
-            artists.append(draw_pixels(axes, pixels.view(np.uint8).reshape(*pixels.shape, 4), curves.window))
+            image = draw_pixels(axes, pixels.view(np.uint8).reshape(*pixels.shape, 4), curves.window)
+            # Like lines, above a map that is drawn later.
+            image.set_zorder(2)
+            artists.append(image)
     return artists
 
 
