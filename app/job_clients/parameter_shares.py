@@ -75,19 +75,10 @@ class ParameterShares:
         Shows the values so far, under the session's lock.
     locked
         Wraps callbacks to run under the session's lock.
-    is_crowded
-        Whether the server is crowded. Then nothing is computed.
     """
 
-    def __init__(
-        self,
-        state: ViewState,
-        jobs: JobSubmitter,
-        show: Callable[[SliderShares], None],
-        locked: Locked,
-        is_crowded: Callable[[], bool] = lambda: False,
-    ) -> None:
-        self._state, self._show, self._is_crowded = state, show, is_crowded
+    def __init__(self, state: ViewState, jobs: JobSubmitter, show: Callable[[SliderShares], None], locked: Locked) -> None:
+        self._state, self._show = state, show
         self._shares = SliderShares("", "", ())
         self._spec: MapSpec | None = None
         # The places along the slider with the values of the parameter, the present one first.
@@ -107,7 +98,7 @@ class ParameterShares:
         """
         self.cancel()
         state = self._state
-        if state.plane.energy_axis is not None or state.plane.parameter is not None or self._is_crowded():
+        if state.plane.energy_axis is not None or state.plane.parameter is not None:
             return
         t_max = _HORIZON * state.potential.units.time
         self._spec = replace(state.map_spec(), resolution=(_SIDE, _SIDE), t_max=t_max)

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 from app.job_clients.latest_request import LatestRequest
 from app.job_clients.parameter_shares import CHANGES, ParameterShares
-from app.runtime.process_state import process_state
 from app.session.context import History, SessionContext
 from app.state.system_review import PageReview, is_known, review_catalogue_entry, review_job
 from app.views.analysis.potential_panel import NEW_INTEGRATOR, PotentialPanel
@@ -66,9 +65,7 @@ class PotentialPresenter:
         self._last_review: PageReview | None = None
         self.panel = PotentialPanel(state.reviewed, context.locked(self._take), context.locked(self._request_shares))
         self._is_open = False
-        self._shares = ParameterShares(
-            state, context.jobs, self.panel.sliders.show_shares, context.locked, process_state().is_crowded
-        )
+        self._shares = ParameterShares(state, context.jobs, self.panel.sliders.show_shares, context.locked)
         state.param.watch(lambda *events: self._end_shares(), list(CHANGES))
         self._request = LatestRequest(context.jobs, self._show, self._on_failure, context.locked)
         # The potential of the latest sketch. If it cannot be drawn, the picture stays.

@@ -83,7 +83,10 @@ STRIP = """(slider, place) => {
 def test_a_slider_shows_the_shares_of_the_outcomes_while_the_view_is_at_rest(explorer: ExplorerPage) -> None:
     open_box(explorer)
     slider = explorer.page.get_by_role("slider", name="ω₁", exact=True)
-    expect(slider).to_have_attribute("title", re.compile("^Shares of coarse maps against ω₁ at h = 0.19, t = 100;"))
+    # The slider that was moved last has the picture.
+    slider.press("ArrowRight")
+    explorer.wait_for_view("omega_1=1.01&")
+    expect(slider).to_have_attribute("title", re.compile("^Shares of coarse maps against ω₁ at h = .*, t = 100;"))
     explorer.page.wait_for_function(
         f"slider => [0.1, 0.25, 0.5, 0.99].every(place => ({STRIP})(slider, place).every(colour => colour[3] > 0))",
         arg=slider.element_handle(),
@@ -91,7 +94,8 @@ def test_a_slider_shows_the_shares_of_the_outcomes_while_the_view_is_at_rest(exp
     # A value of which the strip has a column.
     place, low, high = 0.25, 0.2, 2.0
     potential = System("I").with_parameter("omega_1", low + place * (high - low)).potential
-    fate = compute_map(MapSpec(potential, Plane.X_PX, 0.19, (24, 24), t_max=100.0)).fate
+    energy = float(linked(explorer, "h") or "nan")
+    fate = compute_map(MapSpec(potential, Plane.X_PX, energy, (24, 24), t_max=100.0)).fate
     allowed = fate[~np.isin(fate, (Fate.FORBIDDEN, Fate.OUTSIDE))]
     colours = [tuple(colour) for colour in slider.evaluate(STRIP, place)]
     for channel, colour in enumerate(DEFAULT_COLOURS.channels[:2], 1):
