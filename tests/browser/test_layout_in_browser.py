@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from html import escape, unescape
 
 import pytest
@@ -206,6 +206,60 @@ def test_a_window_that_is_made_narrow_has_the_layout_of_a_phone(open_explorer: O
     explorer.page.set_viewport_size({"width": 420, "height": 900})
     explorer.pick(SHORT_TITLES["times"])
     explorer.page.wait_for_function(f"() => {{ const shown = ({_FIGURES})(); return shown.times && !shown.basins }}")
+
+
+@pytest.fixture(params=[(932, 430), (860, 420), (640, 360)], ids=lambda size: f"{size[0]} × {size[1]}")
+def turned(phone: ExplorerPage, request: pytest.FixtureRequest) -> Iterator[ExplorerPage]:
+    """Yield the page on a phone that lies on its side, and turn the phone back."""
+    width, height = request.param
+    phone.page.set_viewport_size({"width": width, "height": height})
+    phone.page.wait_for_function(f"() => ({_FIGURES})().basins[3] <= {height}")
+    yield phone
+    phone.page.set_viewport_size({"width": 420, "height": 900})
+    phone.page.wait_for_function(f"() => ({_FIGURES})().basins[2] === 420")
+
+
+def test_on_a_phone_on_its_side_the_picture_is_whole_and_stays_beside_the_other_parts(turned: ExplorerPage) -> None:
+    before = figures(turned)["basins"]
+    assert before[4] >= 0.5 * turned.page.evaluate("innerHeight")
+    assert abs(before[4] - before[5]) <= 1
+    expect(turned.page.locator(".foot[data-picture=basins]")).to_be_in_viewport(ratio=1)
+    slider = turned.page.get_by_role("slider", name="Energy h").bounding_box()
+    assert slider is not None
+    assert slider["x"] >= before[2] - 8
+    assert slider["y"] < before[1] + 60
+    turned.page.evaluate("scrollTo(0, 300)")
+    assert figures(turned)["basins"] == before
+    turned.page.evaluate("scrollTo(0, 0)")
+
+
+def test_on_a_phone_on_its_side_neither_messages_nor_drawers_cover_the_picture(turned: ExplorerPage) -> None:
+    right = figures(turned)["basins"][2]
+    assert turned.page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+    turned.page.touchscreen.tap(*turned.point("basins", 0.1, 0.05))
+    notice = turned.page.locator(".notice", has_text="Escapes through exit 1 at t")
+    expect(notice).to_be_visible()
+    turned.press("Share")
+    drawer = turned.page.locator(".drawer")
+    expect(drawer).to_be_visible()
+    expect(turned.page.get_by_role("slider", name="Energy h")).to_be_in_viewport(ratio=1)
+    for part in (notice, drawer):
+        box = part.bounding_box()
+        assert box is not None
+        assert box["x"] >= right - 1
+    turned.page.keyboard.press("Escape")
+    notice.get_by_role("button", name="Close").click()
+    turned.return_home()
+
+
+@pytest.mark.parametrize("width", [420, 320])
+def test_the_title_of_the_page_is_whole_on_a_phone(phone: ExplorerPage, width: int) -> None:
+    phone.page.set_viewport_size({"width": width, "height": 900})
+    for size in ("", "200%"):
+        phone.page.evaluate("size => { document.documentElement.style.fontSize = size }", size)
+        assert phone.page.locator("h1").evaluate("title => title.scrollWidth <= title.clientWidth + 1")
+    phone.page.evaluate("document.documentElement.style.fontSize = ''")
+    phone.page.set_viewport_size({"width": 420, "height": 900})
 
 
 @pytest.mark.parametrize(("page", "width"), [("wide", 1600), ("middling", 1280), ("phone", 420)])

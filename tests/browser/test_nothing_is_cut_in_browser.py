@@ -12,7 +12,7 @@ from playwright.sync_api import TimeoutError as PlaywrightTimeout
 from tests.browser.conftest import QUICK
 from tests.conftest import TIMEOUT_MS
 
-WIDTHS = ((1600, 1000), (1280, 720), (1024, 768), (768, 1024), (420, 860))
+WIDTHS = ((1600, 1000), (1280, 720), (1024, 768), (768, 1024), (420, 860), (860, 420))
 LETTERS = (16, 32)
 """Sizes of letters in the settings of the browser, in pixels; the first is usual."""
 
@@ -22,6 +22,7 @@ LINKS = {
     "closed exit": "?potential=0.5(x^2%2By^2)%2B1.2x^2y-y^3/3&t_max=100&resolution=112",
     "statistics": "?case=Hill&t_max=100&resolution=112&analysis=statistics",
     "measures": "?case=III&plane=x_px&h=0.45&t_max=1000&resolution=112&analysis=measures",
+    "rotating frame": "?case=Earth-Moon&plane=x,y&fix=beta=-1.5707963267948966&h=-1.095&t_max=100&resolution=112",
     "layers": "?case=III&plane=x_px&h=0.3&t_max=100&resolution=112&regularity=yes&origins=yes&descriptor=yes",
 }
 

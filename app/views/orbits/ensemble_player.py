@@ -38,8 +38,8 @@ button.play { min-width: 11.5rem; font-weight: 600 }
 .close { display: none }
 /* Where the results are below the pictures, this line stays in the window. */
 @media (max-width: 74.99em) {
-  .line.watched { position: fixed; z-index: 80; inset: auto 0 0; flex-wrap: nowrap; margin: 0; padding: 6px 10px;
-    border-top: 1px solid var(--ui-edge); background: var(--ui-surface); box-shadow: var(--ui-shadow-l) }
+  .line.watched { position: fixed; z-index: 80; inset: auto 0 0 var(--maps-width, 0px); flex-wrap: nowrap; margin: 0;
+    padding: 6px 10px; border-top: 1px solid var(--ui-edge); background: var(--ui-surface); box-shadow: var(--ui-shadow-l) }
   .line.watched > .play { min-width: 6rem }
   .line.watched > .close { display: block; flex: none; width: var(--ui-control); padding: 0 }
 }
