@@ -19,7 +19,7 @@ LETTERS = (16, 32)
 LINKS = {
     "case I": QUICK,
     "deep": "?case=I&plane=x_px&h=0.19&t_max=1000&resolution=112&window=0.1149126434,0.1149126436,0.0001,0.0003",
-    "closed exit": "?potential=0.5(x^2%2By^2)%2B1.2x^2y-y^3/3&t_max=100&resolution=112",
+    "closed exit": "?V=0.5(x^2%2By^2)%2B1.2x^2y-y^3/3&t_max=100&resolution=112",
     "statistics": "?case=Hill&t_max=100&resolution=112&analysis=statistics",
     "measures": "?case=III&plane=x_px&h=0.45&t_max=1000&resolution=112&analysis=measures",
     "rotating frame": "?case=Earth-Moon&plane=x,y&fix=beta=-1.5707963267948966&h=-1.095&t_max=100&resolution=112",
