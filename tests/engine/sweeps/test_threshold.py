@@ -73,7 +73,7 @@ def test_progress_ends_at_1() -> None:
         ({}, "share_bounded", 0.9, r"^value=0\.9: is not reached between two values of h, where the measure is 0\.0"),
         ({}, "share", 0.1, r"^quantity='share': must be one of .*s_b.*share_bounded, share_exit_1, share_exit_2$"),
         ({}, "s_b", float("nan"), r"^value=nan: must be a finite number"),
-        ({"values": (0.2,)}, "s_b", 0.4, r"^spec: has 1 values of h; must have two or more"),
+        ({"values": (0.2,)}, "s_b", 0.4, r"^spec: has 1 value; must have from 2 to most_maps=40"),
     ],
 )
 def test_what_cannot_be_found_is_refused(changes: dict[str, object], quantity: str, wanted: float, message: str) -> None:
