@@ -72,7 +72,7 @@ def start_states(
     potential
         The potential.
     plane
-        The slice, such as a `Plane`, of one potential.
+        The slice, such as a `Plane`.
     energy
         h, finite, a number or (n,); ignored on a slice with an axis h.
     x, ordinate
@@ -86,7 +86,7 @@ def start_states(
     Raises
     ------
     ValueError
-        If a parameter is of a wrong type, an axis is a parameter, an energy is not finite, or the coordinates differ in shape.
+        If a parameter is of a wrong type, an energy is not finite, or the coordinates differ in shape.
 
     Examples
     --------
@@ -99,10 +99,11 @@ def start_states(
     xs, ordinates = checked_array("x", x), checked_array("ordinate", ordinate)
     if xs.shape != ordinates.shape:
         raise ValueError(f"ordinate of shape {ordinates.shape}: must be shaped like x, {xs.shape}")
-    energies = np.asarray(checked_finite("energy", energy))
-    if energies.ndim and energies.shape != xs.shape:
-        raise ValueError(f"energy of shape {energies.shape}: must be a number, or shaped like x, {xs.shape}")
     checked = checked_slice(plane)
-    checked.check_one_potential("plane")
+    energies = (
+        checked_array("energy", energy) if checked.energy_axis is not None else np.asarray(checked_finite("energy", energy))
+    )
+    if checked.energy_axis is None and energies.ndim and energies.shape != xs.shape:
+        raise ValueError(f"energy of shape {energies.shape}: must be a number, or shaped like x, {xs.shape}")
     # [()] turns an array without dimensions into a number.
     return checked.states(potential, energies[()], xs[()], ordinates[()])

@@ -369,7 +369,6 @@ WRONG_CALLS = (
         "energy of shape (2,): must be a number, or shaped like x, (1,)",
     ),
     ('start_states(III, Plane.X_PX, float("nan"), 0.1, 0.2)', "energy=nan: must be a finite number, at most 1e+09 in magnitude"),
-    ('start_states(CASES["I"], Slice(C.X, EPSILON), 0.2, 0.1, 1.0)', "plane: is on (x, ε); must be on a slice of one potential"),
     ("III.energy((0.0, 0.0, 0.1))", "states of shape (3,): must be (…, 4) with x, y, px, py"),
     ('System("I", "x²")', "formula='x²': must be empty for I, which has a formula"),
     ('System("I", parameters={"epsilon": "2"})', "epsilon='2': must be a finite number, at most 1e+09 in magnitude"),
