@@ -36,7 +36,7 @@ def open_map_store(path: Path, spec: MapSpec) -> Iterator[MapStore]:
         raise ValueError(f"store={path}: must end in .nc")
     if spec.plane.parameter is not None:
         raise ValueError(f"store={path}: must be None for a map along a parameter; compute_sweep stores maps at its values")
-    if not path.absolute().parent.is_dir():
+    if not path.absolute().parent.exists():
         raise ValueError(f"store={path}: the folder {path.parent} does not exist; make it first")
     with hold_lock(path):
         # No other process writes this file, so these are left over from killed processes.

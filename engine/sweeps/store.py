@@ -53,7 +53,7 @@ def open_store(path: Path, attributes: Mapping[str, Any]) -> Iterator[SweepStore
         If another process has locked the store.
     """
     require_package("zarr", "files")
-    if not path.absolute().parent.is_dir():
+    if not path.absolute().parent.exists():
         raise ValueError(f"store={path}: the folder {path.parent} does not exist; make it first")
     with hold_lock(path):
         yield SweepStore(path, attributes)
