@@ -23,7 +23,7 @@ FRAME = Frame("points", "Points", ("x", "y"), help="Three points.")
 POINTS = Series("points", "#123456", np.array([5.0, 6.0, np.nan]), np.array([10.0, 20.0, 30.0]), Shape.POINTS)
 BARS = (np.array([9.0, 18.0, 28.0]), np.array([11.0, 22.0, 32.0]))
 EDGES = (np.array([0.5, 1.5]), np.array([1.5, 2.5]))
-TILE = Tile(np.array([[0, 1], [1, 0]], np.uint8), 0.5, 0.25, "a map")
+TILE = Tile(np.array([[0, 1], [1, 0]], np.uint8), 0.5, 0.25, "h = 0.2", "a map")
 CHARTS = {
     "fitted": Chart(FRAME, [POINTS]),
     "fitted to error bars": Chart(FRAME, [replace(POINTS, bars=BARS)]),
