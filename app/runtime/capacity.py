@@ -27,7 +27,8 @@ CROWDED = 0.5
 PAGES_PER_SECOND = 0.17
 """Number of pages whose making takes as much processor time as an active visitor uses in a second.
 
-Both run mostly Python code, so this number changes little from machine to machine.
+It was found with `benchmarks.load`: with a smaller number, more visitors are admitted and wait for the maps of others. It must be
+found again when the making of a page, or a map, becomes faster or slower.
 """
 
 FIRST_CORES_PER_PAGE = 0.04

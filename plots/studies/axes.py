@@ -80,9 +80,12 @@ def changes_at(subject: Subject, axis: str, values: np.ndarray, x: float) -> Cha
     if not values.size:
         return {}
     value = float(values[np.argmin(np.abs(values - x))])
-    plane = swept_slice(subject)
-    along = parameter_axis(subject, axis)
-    if along is None:
-        return {"energy": value, "plane": plane}
-    system = subject.system.with_parameter(along.key, value)
-    return {"system": system, "energy": subject.energy, "plane": plane, "window": None, "starts": (), "chosen": 0}
+    if axis == ENERGY:
+        return {"energy": value, "plane": swept_slice(subject)}
+    return system_changes(subject, axis, value, subject.energy)
+
+
+def system_changes(subject: Subject, axis: str, value: float, energy: float) -> Changes:
+    """Return the changes that open the map at a value of a parameter and at an energy."""
+    system = subject.system.with_parameter(axis, value)
+    return {"system": system, "energy": energy, "plane": swept_slice(subject), "window": None, "starts": (), "chosen": 0}

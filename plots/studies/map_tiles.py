@@ -1,4 +1,4 @@
-"""Small maps as the tiles of a chart, in rows, with a text of two lines above each."""
+"""Small maps as the tiles of a chart, in rows, with a text above each."""
 
 from __future__ import annotations
 
@@ -60,14 +60,14 @@ class TileGrid:
         row, column = divmod(place, self.columns)
         return column * _STEPS[0], -row * _STEPS[1]
 
-    def place_at(self, click: Click) -> int | None:
-        """Return the place whose map is under a click; None between the maps."""
+    def map_at(self, click: Click, maps: Mapping[int, tuple[int, ...]]) -> tuple[int, ...] | None:
+        """Return the indices of the map under a click, given those of each map by its place; None beside the maps."""
         column, row = math.floor(click.x / _STEPS[0]), -math.floor(click.y / _STEPS[1])
         if not (0 <= column < self.columns and 0 <= row < self.rows):
             return None
         place = row * self.columns + column
         left, bottom = self.corner(place)
-        return place if click.x <= left + 1.0 and click.y <= bottom + 1.0 else None
+        return maps.get(place) if click.x <= left + 1.0 and click.y <= bottom + 1.0 else None
 
     def chart(
         self,

@@ -84,8 +84,7 @@ def _changes(subject: Subject, axis: str, found: Sweep, click: Click) -> Changes
         return changes_at(subject, ENERGY, found.values, click.x)
     if click.chart != TILES.name:
         return {}
-    place = _GRID.place_at(click)
-    index = None if place is None else _places(found).get(place)
+    index = _GRID.map_at(click, _places(found))
     return {} if index is None else {"energy": float(found.values[index]), "plane": swept_slice(subject), "window": None}
 
 

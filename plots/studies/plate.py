@@ -11,7 +11,7 @@ from plots.pictures.charts import Chart, Frame
 from plots.pictures.palette import Palette
 from plots.pictures.setting import Settings
 from plots.studies.against import sweep_caption, sweep_progress
-from plots.studies.axes import ENERGY, parameter_axis, spaced_values, swept_slice
+from plots.studies.axes import ENERGY, parameter_axis, spaced_values, swept_slice, system_changes
 from plots.studies.map_tiles import BESIDE, OPEN_MAP, TILES_ASPECT, TileGrid
 from plots.studies.study import Changes, Click, Study, Subject
 
@@ -72,13 +72,10 @@ def _places(found: Sweep) -> dict[int, tuple[int, ...]]:
 
 def _changes(subject: Subject, axis: str, found: Sweep, click: Click) -> Changes:
     """Return the changes that open the map of a click; none between the maps and for maps that are not computed."""
-    place = PLATE_GRID.place_at(click)
-    index = None if place is None else _places(found).get(place)
+    index = PLATE_GRID.map_at(click, _places(found))
     if index is None:
         return {}
-    system = subject.system.with_parameter(axis, float(found[axis][index[1]]))
-    energy, plane = float(found.values[index[0]]), swept_slice(subject)
-    return {"system": system, "energy": energy, "plane": plane, "window": None, "starts": (), "chosen": 0}
+    return system_changes(subject, axis, float(found[axis][index[1]]), float(found.values[index[0]]))
 
 
 PLATE_STUDY = Study(

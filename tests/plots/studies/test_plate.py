@@ -30,8 +30,9 @@ def found() -> Sweep:
 def test_energies_increase_to_the_right_and_the_parameter_upward(found: Sweep) -> None:
     tiles = PLATE_STUDY.charts(found, PAPER, NO_SETTINGS)[0].tiles
     assert len(tiles) == PLATE_GRID.columns * PLATE_GRID.rows
+    lefts, bottoms = (sorted({getattr(tile, edge) for tile in tiles}) for edge in ("left", "bottom"))
     for tile in tiles:
-        k, row = round(tile.left / 1.08), round(tile.bottom / 1.36) + PLATE_GRID.rows - 1
+        k, row = lefts.index(tile.left), bottoms.index(tile.bottom)
         assert tile.name == f"h = {found.values[k]:g}, ω1 = {found['omega_1'][row]:g}"
 
 
