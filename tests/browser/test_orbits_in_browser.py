@@ -27,6 +27,15 @@ _WATCH_SHIFTS = """() => {
 }"""
 _PAINTED = "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(performance.now()))))"
 _SHIFTS = "([since, bottom]) => window.shifts.filter(({time, top}) => time > since && top < bottom).map(({text}) => text)"
+# Counts the frames that the page asks for, apart from those of this test.
+_COUNT_FRAMES = """() => {
+    const ask = window.requestAnimationFrame.bind(window)
+    Object.assign(window, {frames: 0, framesBefore: -1})
+    window.requestAnimationFrame = paint => { window.frames++; return ask(paint) }
+}"""
+# Whether the page has asked for no frame since the last call.
+_IS_AT_REST = "() => { const before = window.framesBefore; window.framesBefore = window.frames; return before === window.frames }"
+_BETWEEN_CALLS_MS = 1000
 # Classes of the parts of the inspector.
 PARTS = ("orbit-list", "verdict", "player", "sali", "exponent", "r2")
 
@@ -117,15 +126,40 @@ def test_nothing_moves_with_further_orbits_messages_and_the_player(open_explorer
     assert explorer.page.evaluate(_SHIFTS, [begin, end_of_histories]) == []
 
 
+def ends_of_line(explorer: ExplorerPage) -> list[float]:
+    """Return the coordinates on the screen of both ends of the line from a start to its orbit."""
+    line = explorer.page.locator(".start-line line")
+    expect(line).to_be_visible()
+    return [float(line.get_attribute(name) or "nan") for name in ("x1", "y1", "x2", "y2")]
+
+
+def places_of_orbit(explorer: ExplorerPage) -> list[float]:
+    """Return the coordinates on the screen of the only start on the basins and of the point of its orbit in the well."""
+    places = [(picture, explorer.model_data(source)) for picture, source in (("basins", "starts"), ("well", "points"))]
+    return [coordinate for picture, data in places for coordinate in explorer.point(picture, data["x"][0], data["y"][0])]
+
+
+def wait_until_at_rest(explorer: ExplorerPage) -> None:
+    """Wait until the page asks for no frames."""
+    explorer.page.evaluate(_COUNT_FRAMES)
+    explorer.page.wait_for_function(_IS_AT_REST, polling=_BETWEEN_CALLS_MS)
+
+
+def test_a_page_with_an_orbit_at_rest_asks_for_no_frames_and_its_line_follows_pictures_that_move(explorer: ExplorerPage) -> None:
+    explorer.click("basins", 0.1, 0.05)
+    explorer.wait_for_data("paths", "data.xs.length == 1")
+    wait_until_at_rest(explorer)
+    before = ends_of_line(explorer)
+    explorer.page.set_viewport_size({"width": 1280, "height": 720})
+    wait_until_at_rest(explorer)
+    assert ends_of_line(explorer) != before
+    assert ends_of_line(explorer) == pytest.approx(places_of_orbit(explorer), abs=1.0)
+
+
 def test_a_line_joins_the_chosen_start_with_its_orbit_and_the_path_has_the_colour_of_its_exit(explorer: ExplorerPage) -> None:
     explorer.click("basins", 0.1, 0.05)
     explorer.wait_for_data("paths", "data.xs.length == 1")
-    places = [(picture, explorer.model_data(source)) for picture, source in (("basins", "starts"), ("well", "points"))]
-    line = explorer.page.locator(".start-line line")
-    expect(line).to_be_visible()
-    ends = [float(line.get_attribute(name) or "nan") for name in ("x1", "y1", "x2", "y2")]
-    expected = [explorer.point(picture, data["x"][0], data["y"][0]) for picture, data in places]
-    assert ends == pytest.approx([coordinate for point in expected for coordinate in point], abs=1.0)
+    assert ends_of_line(explorer) == pytest.approx(places_of_orbit(explorer), abs=1.0)
     assert explorer.model_data("paths")["colour"] == [DEFAULT_COLOURS.channels[0]]
 
 

@@ -1,11 +1,13 @@
 // @ts-check
 /** The tour of the page: a box with the text of each step, beside the parts of the page that the step is about. */
 
+import {follow} from "../painting/motion.js"
 import {mapPictures, wellPicture} from "../painting/pictures.js"
 
 /** @typedef {{title: string, text: string, about: string[]}} Step */
 /** @typedef {{left: number, top: number, right: number, bottom: number}} Box */
 /** @typedef {{width: number, height: number}} Size */
+/** @typedef {{index: number, parts: DOMRect[], size: Size, isNarrow: boolean, window: number[]}} Seen  the size is that of the box */
 
 /** Space around the box, in pixels. */
 const GAP = 8
@@ -85,15 +87,16 @@ class Tour {
     document.body.append(this.#box)
     this.#show(0)
     this.#next.focus({preventScroll: true})
-    this.#follow()
+    this.#ignoreMoves = follow(
+      () => this.#look(),
+      seen => this.#place(seen),
+    )
   }
 
   #steps
   #opener
   #index = 0
-  #request = 0
-  /** The boxes of the last placement, as text. */
-  #placed = ""
+  #ignoreMoves
   #box = make("section", {className: "tour"})
   #title = make("h2", {id: "tour-title"})
   #text = make("p", {id: "tour-text"})
@@ -122,23 +125,19 @@ class Tour {
     if (this.#back.disabled) this.#next.focus()
     // All parts are at the top of the page.
     window.scrollTo(0, 0)
-    this.#placed = ""
   }
 
-  /** Place box and frames before each repaint of the screen, as `onMoved` does: no event reports all moves. */
-  #follow = () => {
+  /** Return what determines the places of box and frames. @returns {Seen} */
+  #look() {
     const isNarrow = matchMedia(NARROW).matches
     const {about} = this.#steps[this.#index]
-    const boxes = (isNarrow ? about.slice(0, 1) : about).map(name => PARTS[name]()).filter(box => box !== undefined)
+    const parts = (isNarrow ? about.slice(0, 1) : about).map(name => PARTS[name]()).filter(box => box !== undefined)
     const {offsetWidth: width, offsetHeight: height} = this.#box
-    const key = JSON.stringify([boxes, width, height, innerWidth, innerHeight])
-    if (key !== this.#placed) this.#place(boxes, {width, height}, isNarrow)
-    this.#placed = key
-    this.#request = requestAnimationFrame(this.#follow)
+    return {index: this.#index, parts, size: {width, height}, isNarrow, window: [innerWidth, innerHeight]}
   }
 
-  /** @param {DOMRect[]} boxes  of the parts @param {Size} size  of the box @param {boolean} isNarrow */
-  #place(boxes, size, isNarrow) {
+  /** @param {Seen} seen */
+  #place({parts: boxes, size, isNarrow}) {
     const top = document.querySelector(".frame-header")?.getBoundingClientRect().bottom ?? 0
     const area = {left: 0, top, right: document.documentElement.clientWidth, bottom: innerHeight}
     const parts = boxes.map(box => insideOf(area.right, area.bottom, box)).filter(box => box.top < box.bottom)
@@ -164,7 +163,7 @@ class Tour {
 
   /** Remove the tour from the page, and return the focus. */
   end() {
-    cancelAnimationFrame(this.#request)
+    this.#ignoreMoves()
     document.removeEventListener("keydown", this.#endAtEscape, true)
     for (const element of [this.#box, ...this.#frames]) element.remove()
     // The card that began the tour is hidden once there are orbits.

@@ -1,6 +1,8 @@
 // @ts-check
 /** The places of the pictures on the screen. */
 
+import {follow} from "./motion.js"
+
 /**
  * A picture on the page: the view of Bokeh, and the box of its frame on the screen.
  *
@@ -36,22 +38,8 @@ function withBox(view) {
 /**
  * Call a function whenever the well or the first map has moved, or the theme has changed.
  *
- * No event reports all causes: windows, layers and panels change the layout, and Bokeh follows later. Therefore the boxes are
- * compared before each repaint of the screen.
- *
  * @param {() => void} call
  * @returns {() => void} a function that ends the calls
  */
-export function onMoved(call) {
-  let request = 0
-  let lastState = ""
-  const compare = () => {
-    const boxes = [wellPicture()?.box, mapPictures()[0]?.box]
-    const state = JSON.stringify([boxes, devicePixelRatio, document.documentElement.dataset.theme])
-    if (state !== lastState) call()
-    lastState = state
-    request = requestAnimationFrame(compare)
-  }
-  request = requestAnimationFrame(compare)
-  return () => cancelAnimationFrame(request)
-}
+export const onMoved = call =>
+  follow(() => [wellPicture()?.box, mapPictures()[0]?.box, devicePixelRatio, document.documentElement.dataset.theme], call)

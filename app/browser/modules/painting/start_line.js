@@ -1,6 +1,7 @@
 // @ts-check
 /** The line from a start on a map to the point of its orbit in the well. */
 
+import {follow, wake} from "./motion.js"
 import {mapPictures, wellPicture} from "./pictures.js"
 
 /** Style of the line, which is over the pictures and the card, and below drawers. */
@@ -35,36 +36,30 @@ export class StartLine {
     for (const [name, value] of Object.entries(DOTS)) this.#line.setAttribute(name, value)
     svg.append(this.#line)
     el.append(svg)
-    this.#draw()
+    follow(
+      () => this.#pointed ?? this.#chosen(),
+      line => this.#draw(line),
+    )
   }
 
   #isCovered
   #line
   /** The line of the start under the pointer; null for none. @type {Line | null} */
   #pointed = null
-  #drawn = ""
 
   /** Draw a line for the start under the pointer; null for none. @param {Line | null} line */
   point(line) {
     this.#pointed = line
+    wake()
   }
 
-  /** Draw the line before each repaint of the screen, because no event reports all moves of pictures; see `onMoved`. */
-  #draw = () => {
-    const line = this.#pointed ?? this.#chosen()
-    const state = JSON.stringify(line)
-    if (state !== this.#drawn) {
-      this.#drawn = state
-      this.#line.style.display = line ? "" : "none"
-      if (line) this.#set(line)
-    }
-    requestAnimationFrame(this.#draw)
-  }
-
-  /** @param {Line} line */
-  #set({from, to, colour}) {
-    const [[x1, y1], [x2, y2]] = [from, to]
-    for (const [name, value] of Object.entries({x1, y1, x2, y2, stroke: colour})) this.#line.setAttribute(name, String(value))
+  /** @param {Line | null} line */
+  #draw(line) {
+    this.#line.style.display = line ? "" : "none"
+    if (!line) return
+    const [[x1, y1], [x2, y2]] = [line.from, line.to]
+    const attributes = {x1, y1, x2, y2, stroke: line.colour}
+    for (const [name, value] of Object.entries(attributes)) this.#line.setAttribute(name, String(value))
   }
 
   /** Return the line of the chosen start; null unless both ends are on the screen. @returns {Line | null} */
