@@ -142,11 +142,6 @@ class System:
         return System(TYPED, self.entry.formula, {**self.entry.parameters, **self.parameters})
 
     @property
-    def well_parameters(self) -> dict[str, float]:
-        """The values of ω1, ω2 and ε that differ from their defaults."""
-        return {name: value for name, value in self.parameters.items() if name in WELL_PARAMETERS and name != ROTATION}
-
-    @property
     def letter_parameters(self) -> dict[str, float]:
         """The values of letters that differ from their defaults."""
         return {name: value for name, value in self.parameters.items() if name not in WELL_PARAMETERS}
