@@ -10,7 +10,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from engine.exits.closed_orbit import ClosedOrbit, Nodes, stability_index
-from engine.exits.exit_shapes import line_points, mirrored_curve
+from engine.exits.exit_lines import line_points
+from engine.exits.exit_shapes import mirrored_curve
 from engine.exits.saddle_orbits.orbit_parts import monodromy_of_brake_orbit
 from engine.integrator.kernels import exit_geometry as geometry
 from engine.systems.landscape.mirror_images import Signs

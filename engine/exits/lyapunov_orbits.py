@@ -1,7 +1,7 @@
 """Search for the Lyapunov orbits, the unstable periodic orbits over the open saddles, from which the exits are made.
 
 In a frame that does not rotate, the path of such an orbit across its channel is the exit. In a rotating frame, an orbit is a
-closed curve, and the exit is a parabola across the channel just outside the orbit (`exit_shapes.line_across`).
+closed curve, and the exit is a parabola across the channel just outside the orbit (`exit_lines.line_across`).
 """
 
 from __future__ import annotations
@@ -15,9 +15,11 @@ from dataclasses import replace
 import numpy as np
 
 from engine.exits.beyond_exits import find_extent, returning_share
-from engine.exits.exit_shapes import closes_channel, curve_along, find_reach, line_across, paths_meet
+from engine.exits.exit_lines import line_across
+from engine.exits.exit_shapes import curve_along, find_reach
 from engine.exits.lyapunov_orbit import LyapunovOrbit
 from engine.exits.mirrored_orbits import Images, OrbitSearchError, find_with_images, image_exits, meets_image
+from engine.exits.path_crossings import closes_channel, paths_meet
 from engine.exits.saddle_orbits.brake_orbits import (
     BrakeOrbit,
     chord_axes,

@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from engine.exits.exit_shapes import paths_meet
 from engine.exits.lyapunov_orbit import LyapunovOrbit
+from engine.exits.path_crossings import paths_meet
 from engine.systems.landscape.mirror_images import MIRROR_X, Signs, find_images
 from engine.systems.potential import Potential
 

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from engine import POTENTIALS, classify_orbits, find_lyapunov_orbits, parse_formula
+from engine.exits.exit_lines import line_points
 from engine.exits.exit_rows import exit_curves
-from engine.exits.exit_shapes import exit_gates, line_points
+from engine.exits.exit_shapes import exit_gates
 from engine.exits.exit_tables import LARGEST_ERROR, tabulate_exits
 from engine.integrator.kernels.exit_geometry import exit_distance
 from engine.systems.outcomes import Centre

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from engine import CASES, find_lyapunov_orbits, parse_formula
-from engine.exits.exit_shapes import closes_channel
+from engine.exits.path_crossings import closes_channel
 from engine.exits.saddle_orbits.brake_orbits import find_directly
 from engine.systems.known_potentials import POTENTIALS
 from tests.peers.symmetric_wells import VALLEYS
