@@ -19,8 +19,7 @@ def default_solved(axes: tuple[Axis, Axis], used: Sequence[Coordinate]) -> Coord
     """Return the coordinate that the energy determines by default."""
     if any(angle in used for angle in ANGLES):
         return Coordinate.SPEED
-    components = {c for axis in axes if isinstance(axis, Direction) for c in axis.components}
-    return Coordinate.PX if Coordinate.PY in {*used, *components} else Coordinate.PY
+    return Coordinate.PX if Coordinate.PY in {*used, *_oblique_coordinates(axes)} else Coordinate.PY
 
 
 def check_coordinates(
@@ -32,26 +31,41 @@ def check_coordinates(
     """
     if decided not in (*MOMENTA, Coordinate.SPEED):
         raise ValueError(f"solved={decided.key}: must be px, py or v")
-    all_names = ", ".join(coordinate.key for coordinate in Coordinate if coordinate is not Coordinate.SPEED)
-    names = ", ".join([*(axis.key for axis in axes), *(c.key for c, _ in fixed), decided.key])
+    if problem := _repetition(axes, used, fixed, decided) or _contradiction(axes, used, decided):
+        names = ", ".join([*(axis.key for axis in axes), *(c.key for c, _ in fixed), decided.key])
+        raise ValueError(f"slice of {names}: {problem}")
+
+
+def _repetition(
+    axes: tuple[Axis, Axis], used: Sequence[Coordinate], fixed: Sequence[tuple[Coordinate, float]], decided: Coordinate
+) -> str:
+    """Return which rule a coordinate breaks that is used twice, or in a place where it cannot be; empty if there is none."""
     if Coordinate.SPEED in used:
-        raise ValueError(f"slice of {names}: must have no axis and no fixed value of v, which only the energy decides")
-    is_repeated = len({*used, decided}) <= len(used)
-    if is_repeated or any(c is Coordinate.H for c, _ in fixed):
-        raise ValueError(f"slice of {names}: each of {all_names} must be used at most once")
+        return "must have no axis and no fixed value of v, which only the energy decides"
+    if len({*used, decided}) <= len(used) or any(c is Coordinate.H for c, _ in fixed):
+        all_names = ", ".join(coordinate.key for coordinate in Coordinate if coordinate is not Coordinate.SPEED)
+        return f"each of {all_names} must be used at most once"
     if len({axis.key for axis in axes}) < 2 or sum(isinstance(axis, ParameterAxis) for axis in axes) > 1:
-        raise ValueError(f"slice of {names}: the axes must be different ones, at most one of them a parameter")
-    components = {c for axis in axes if isinstance(axis, Direction) for c in axis.components}
-    all_used = {*used, *components}
+        return "the axes must be different ones, at most one of them a parameter"
+    return ""
+
+
+def _contradiction(axes: tuple[Axis, Axis], used: Sequence[Coordinate], decided: Coordinate) -> str:
+    """Return which rule the axes break together with the determined coordinate, or with each other; empty if there is none."""
+    all_used = {*used, *_oblique_coordinates(axes)}
     angle_count = sum(angle in used for angle in ANGLES)
     if decided is Coordinate.SPEED and (any(momentum in all_used for momentum in MOMENTA) or angle_count > 1):
-        raise ValueError(
-            f"slice of {names}: with an angle the energy decides the speed; px, py and another angle must be left out"
-        )
+        return "with an angle the energy decides the speed; px, py and another angle must be left out"
     if decided is not Coordinate.SPEED and (angle_count or decided in all_used):
-        raise ValueError(f"slice of {names}: {decided.key}, which the energy decides, must not be set by an axis or an angle")
+        return f"{decided.key}, which the energy decides, must not be set by an axis or an angle"
     if np.linalg.matrix_rank(_axis_directions(axes)) < sum(isinstance(axis, Direction) or axis in STATE for axis in axes):
-        raise ValueError(f"slice of {names}: the directions of the axes must not be parallel")
+        return "the directions of the axes must not be parallel"
+    return ""
+
+
+def _oblique_coordinates(axes: tuple[Axis, Axis]) -> set[Coordinate]:
+    """Return the coordinates that change along oblique axes."""
+    return {coordinate for axis in axes if isinstance(axis, Direction) for coordinate in axis.components}
 
 
 def _axis_directions(axes: tuple[Axis, Axis]) -> np.ndarray:
