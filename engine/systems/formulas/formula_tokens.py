@@ -21,8 +21,18 @@ BASE_KINDS = ("number", "fraction", "name", "letter", "open", "function", "root"
 """Kinds of tokens with which a factor can begin."""
 # A token. The kind of a token is the name of its group.
 _TOKEN = re.compile(
-    r"(?P<function>sin|cos|exp|log|ln|sqrt)|(?P<number>(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)|(?P<name>[xyr])|(?P<letter>[A-DF-UW-Za-df-qs-wzΑ-Ωα-ω][0-9₀-₉]?)|(?P<superscript>⁻?[⁰¹²³⁴⁵⁶⁷⁸⁹]+)|(?P<power>\^|\*\*)"
-    r"|(?P<fraction>[½⅓⅔¼¾⅕⅙⅛⅒])|(?P<sign>[+\-−–])|(?P<operator>[*·×⋅∗/÷∕⁄])|(?P<root>√)|(?P<open>\()|(?P<close>\))"
+    "(?P<function>sin|cos|exp|log|ln|sqrt)"
+    r"|(?P<number>(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)"
+    "|(?P<name>[xyr])"
+    "|(?P<letter>[A-DF-UW-Za-df-qs-wzΑ-Ωα-ω][0-9₀-₉]?)"
+    "|(?P<superscript>⁻?[⁰¹²³⁴⁵⁶⁷⁸⁹]+)"
+    r"|(?P<power>\^|\*\*)"
+    "|(?P<fraction>[½⅓⅔¼¾⅕⅙⅛⅒])"
+    r"|(?P<sign>[+\-−–])"
+    "|(?P<operator>[*·×⋅∗/÷∕⁄])"
+    "|(?P<root>√)"
+    r"|(?P<open>\()"
+    r"|(?P<close>\))"
 )
 # Names that would otherwise be read as letters or products, such as momenta, velocities, a third coordinate and time.
 _UNKNOWN = re.compile("sinh|cosh|tanh?|abs|pi|[pv][xyz]|z(?![0-9₀-₉])|t")
