@@ -30,9 +30,6 @@ from engine.systems.well_units import WellUnits
 if TYPE_CHECKING:
     from engine.systems.system import System
 
-# Default of `centres` and `escape_radius`, which leaves `ends` unchanged.
-_AS_IN_ENDS: Any = ...
-
 # Default t_max if bounded orbits are integrated to the end, in units of 1/|Ω|, or of 1 without rotation.
 _SHORT_TIME = 1000.0
 
@@ -59,18 +56,14 @@ class Potential(Motion):
         most 1e90 in magnitude, and each (i, j) only once. `parse_formula` makes the forms of other formulas.
     rotation
         Ω, counterclockwise for Ω > 0, at most 1e9 in magnitude, dimensionless.
-    centres
-        Bodies with which orbits collide.
-    escape_radius
-        Distance from the origin beyond which orbits have escaped, 1e-6 to 1e6, dimensionless; None for exits over saddles.
+    ends
+        Ends of orbits other than exits, such as a `Centre`, see `with_outcomes`.
     origin
         (x, y) of the origin of the axes in the coordinates of the formula, see `at_minimum`. It has no influence on any result.
     lineage
         The way in which the well of the potential is found.
     system
         The `System` that made this potential; None without one.
-    ends
-        Ends of orbits other than exits, such as a `Centre`. `centres` and `escape_radius` replace ends of their kinds.
     exit_names
         Names of the exits in channel order, such as ("L2", "L1"). They have no influence on any result, and are used if there are
         as many exits as names.
@@ -113,22 +106,15 @@ class Potential(Motion):
         name: str,
         form: Form | Terms | Expression,
         rotation: float = 0.0,
-        centres: Sequence[Centre] = _AS_IN_ENDS,
-        escape_radius: float | None = _AS_IN_ENDS,
-        origin: tuple[float, float] = (0.0, 0.0),
-        lineage: Lineage = SEARCHED,
         *,
         ends: Sequence[End] = (),
+        origin: tuple[float, float] = (0.0, 0.0),
+        lineage: Lineage = SEARCHED,
         system: System | None = None,
         exit_names: Sequence[str] = (),
         mass: float = 1.0,
     ) -> None:
         check_type("name", name, str)
-        if centres is not _AS_IN_ENDS:
-            ends = [*(end for end in ends if not isinstance(end, Centre)), *checked_items("centres", centres, Centre)]
-        if escape_radius is not _AS_IN_ENDS:
-            circles = [] if escape_radius is None else [EscapeCircle(escape_radius)]
-            ends = [*(end for end in ends if not isinstance(end, EscapeCircle)), *circles]
         values = {
             "name": name,
             "form": as_form(form),
@@ -268,8 +254,18 @@ class Potential(Motion):
         return self._copy_with(form=self.form.moved(*nearest), ends=ends, origin=origin, exit_names=())
 
     def with_outcomes(self, centres: Sequence[Centre] = (), escape_radius: float | None = None) -> Potential:
-        """Return the potential with other centres and another escape radius. The parameters are those of `Potential`."""
-        return self._copy_with(centres=centres, escape_radius=escape_radius)
+        """Return the potential with other centres and another escape radius.
+
+        Parameters
+        ----------
+        centres
+            Bodies with which orbits collide.
+        escape_radius
+            Distance from the origin beyond which orbits have escaped, 1e-6 to 1e6, dimensionless; None for exits over saddles.
+        """
+        others = [end for end in self.ends if not isinstance(end, Centre | EscapeCircle)]
+        circles = [] if escape_radius is None else [EscapeCircle(escape_radius)]
+        return self._copy_with(ends=[*others, *checked_items("centres", centres, Centre), *circles])
 
     def checked_t_max(self, t_max: Any, longest: float = LONGEST_TIME, *, name: str = "t_max") -> float:
         """Return `t_max`, above 0, as a float. If the time unit of the well exceeds 1, the limit `longest` is in this unit.

@@ -271,7 +271,7 @@ WRONG_CALLS = (
     ('System("Hill", parameters={"rotation": 2.0})', "parameters: 'rotation' is not a parameter of Hill; it has none"),
     ('System("HH", parameters={"omega": 1})', "parameters: 'omega' is not a parameter of HH; it has omega_1, omega_2, epsilon,"),
     ('System("typed", "½r² − a x y²", {"b": 2.0}).potential', "parameters: 'b' is not a letter of the formula; its letters"),
-    ('Potential("p", III.form, centres=3)', "centres=3: must be a sequence"),
+    ("III.with_outcomes(3)", "centres=3: must be a sequence"),
     ('Potential("p", ((2, 0, 1.0), (2, 0, 2.0)))', "terms=((2, 0, 1.0), (2, 0, 2.0)): each pair of exponents must occur only"),
     ('Potential("p", ((-1, 0, 1.0),))', "terms: exponent of x=-1: must be an integer from 0 to 12"),
     ('Potential("p", ((1, 0, float("nan")),))', "terms: coefficient=nan: must be a finite number, at most 1e+90 in magnitude"),

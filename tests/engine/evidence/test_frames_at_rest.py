@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -35,8 +34,8 @@ from engine.trajectories.unstable_manifold import UnstableManifold
 
 ROTATING = parse_formula("½(x² + y²) + ½(x² + y²) - x² y").in_rotating_frame(0.5)
 ENERGY = 1.2 * ROTATING.escape_energy
-WITH_CENTRE = replace(CASES["I"], centres=(Centre(0.3, 0.0, 0.01),))
-WITH_RADIUS = replace(CASES["I"], escape_radius=3.0)
+WITH_CENTRE = CASES["I"].with_outcomes([Centre(0.3, 0.0, 0.01)])
+WITH_RADIUS = CASES["I"].with_outcomes(escape_radius=3.0)
 
 
 @pytest.mark.parametrize(
