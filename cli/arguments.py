@@ -26,6 +26,7 @@ from engine import (
     Potential,
     Section,
     Slice,
+    SweepSpec,
     System,
     read_section,
     review_potential,
@@ -36,6 +37,7 @@ from engine.slices.slice_text import AXIS_NAMES, read_slice
 from engine.slices.window import GivenWindow
 from engine.sweeps.axes import SweepAxis
 from engine.sweeps.spec import MOST_VALUES
+from engine.systems.parameters import WELL_PARAMETERS
 from engine.systems.system import TYPED
 from plots.pictures.palette import DEFAULT_PALETTE, PALETTES, Palette, find_palette
 from plots.pictures.setting import Settings
@@ -44,6 +46,9 @@ from plots.texts.accepted_potentials import page_refusal
 PLANE_HELP = (
     f"Slice of starts: {', '.join(plane.key for plane in Plane)}, or two axes such as x,theta: {', '.join(AXIS_NAMES)}, or a "
     "parameter with its range, x,epsilon=0.5:2; theta is the angle of the velocity, and beta its angle from the radius."
+)
+AGAINST_HELP = (
+    f"{', '.join(axis.key for axis in EnergyAxis)}, or a parameter: {', '.join(WELL_PARAMETERS)} or a letter of the formula."
 )
 PALETTE_HELP = f"Colours: {', '.join(f'{key} ({palette.name})' for key, palette in PALETTES.items())}."
 
@@ -256,6 +261,27 @@ def swept_axis(name: str, low: float, high: float, system: System) -> SweepAxis:
     return energies[name] if name in energies else ParameterAxis(name, low, high, system)
 
 
+def read_sweep(
+    *,
+    system: System,
+    potential: Potential,
+    low: Annotated[float, DocumentedBy(space_values)],
+    high: Annotated[float, DocumentedBy(space_values)],
+    count: Annotated[int, DocumentedBy(space_values)],
+    against: Annotated[str, typer.Option(help=AGAINST_HELP)] = "h",
+    energy: Annotated[float | None, typer.Option(help="h of all maps along a parameter.")] = None,
+    plane: Slice,
+    resolution: Annotated[tuple[int, int], DocumentedBy(SweepSpec)] = (112, 112),
+    t_max: Annotated[float, DocumentedBy(SweepSpec)],
+    section: Section,
+) -> SweepSpec:
+    """Return the request of a sweep along one axis, with the shares as its only measure."""
+    values, along = space_values(low, high, count), swept_axis(against, low, high, system)
+    return SweepSpec(
+        potential, plane, values, resolution, t_max=t_max, measures=("shares",), along=along, energy=energy, section=section
+    )
+
+
 READERS: Mapping[Any, Callable[..., Any]] = {
     System: find_system,
     Potential: find_potential,
@@ -268,6 +294,7 @@ READERS: Mapping[Any, Callable[..., Any]] = {
     Palette: read_palette,
     LayerOptions: read_layers,
     Settings: read_study_settings,
+    SweepSpec: read_sweep,
 }
 """Functions that make values from options, by type of the value. A parameter of a function may also have a type listed here."""
 

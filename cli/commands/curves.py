@@ -13,30 +13,26 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from cli.arguments import Case, Slow, check_measures, file_name_part, space_values, swept_axis
+from cli.arguments import Case, Slow, check_measures, file_name_part
 from cli.commands.study import study_content
 from cli.execution import THREADS_ONLY, Place
 from cli.option_marks import DocumentedBy
 from cli.options import with_options
 from cli.output_files import Stem, name_files, reserve_output, write_files
 from cli.printing import AsJson, Table, list_rows, print_result
-from engine import EnergyAxis, Potential, Section, Slice, SweepSpec, System, compute_sweep
+from engine import SweepSpec, compute_sweep
 from engine.measures.table import curve_names
 from engine.results import Sweep
-from engine.systems.parameters import WELL_PARAMETERS
 from plots.printed.figure_style import FigureFormat, FigureStyle
 from plots.studies.against import AGAINST
 from plots.texts.exports import stem_of
 
-AGAINST_HELP = (
-    f"{', '.join(axis.key for axis in EnergyAxis)}, or a parameter: {', '.join(WELL_PARAMETERS)} or a letter of the formula."
-)
-ENERGY_HELP = "h of all maps along a parameter."
 MEASURE_HELP = f"{', '.join(curve_names())}; all by default. Can be repeated."
 
 # Names of the columns that are only in files and JSON, not in the printed table.
@@ -47,18 +43,8 @@ _ERROR_BAR = re.compile(r"_(low|high)(_|$)|_error$")
 def run(
     *,
     case: Case,
-    system: System,
-    potential: Potential,
-    low: Annotated[float, DocumentedBy(space_values)],
-    high: Annotated[float, DocumentedBy(space_values)],
-    count: Annotated[int, DocumentedBy(space_values)],
-    against: Annotated[str, typer.Option(help=AGAINST_HELP)] = "h",
-    energy: Annotated[float | None, typer.Option(help=ENERGY_HELP)] = None,
+    spec: SweepSpec,
     refine: Annotated[int, DocumentedBy(SweepSpec)],
-    plane: Slice,
-    resolution: Annotated[tuple[int, int], DocumentedBy(SweepSpec)] = (112, 112),
-    t_max: Annotated[float, DocumentedBy(SweepSpec)],
-    section: Section,
     measure: Annotated[list[str] | None, typer.Option(help=MEASURE_HELP)] = None,
     exponent: Slow = True,
     style: FigureStyle,
@@ -67,19 +53,9 @@ def run(
     as_json: AsJson = False,
 ) -> None:
     """Compute, write and print the measures."""
-    spec = SweepSpec(
-        potential,
-        plane,
-        space_values(low, high, count),
-        resolution,
-        t_max=t_max,
-        measures=check_measures(measure, curve_names()) or curve_names(slow=exponent),
-        along=swept_axis(against, low, high, system),
-        energy=energy,
-        refine=refine,
-        section=section,
-    )
-    stem = Path(stem_of(f"curves-{file_name_part(case)}-{spec.plane.key}", section))
+    measures = check_measures(measure, curve_names()) or curve_names(slow=exponent)
+    spec = replace(spec, measures=measures, refine=refine)
+    stem = Path(stem_of(f"curves-{file_name_part(case)}-{spec.plane.key}", spec.section))
     paths = name_files(output, ["nc", "csv", *FigureFormat], ["nc", "csv"], stem)
     with reserve_output(output or stem):
         with place.run() as context:

@@ -14,54 +14,29 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated
 
-import typer
-
-from cli.arguments import space_values, swept_axis
-from cli.commands.curves import AGAINST_HELP, ENERGY_HELP
 from cli.execution import THREADS_ONLY, Place
-from cli.option_marks import DocumentedBy
+from cli.option_marks import DocumentedBy, OptionChanges
 from cli.options import with_options
 from cli.output_files import Content, Stem, name_files, reserve_output, write_files
 from cli.printing import AsJson, Table, list_rows, print_result
-from engine import Potential, Section, Slice, SweepSpec, System, find_where
+from engine import SweepSpec, find_where
 from plots.texts.exports import dataset_bytes, table_csv
 
 
 @with_options
 def run(
     *,
-    system: System,
-    potential: Potential,
+    spec: Annotated[SweepSpec, OptionChanges(defaults={"count": 2})],
     quantity: Annotated[str, DocumentedBy(find_where)],
     value: Annotated[float, DocumentedBy(find_where)],
-    low: Annotated[float, DocumentedBy(space_values)],
-    high: Annotated[float, DocumentedBy(space_values)],
-    count: Annotated[int, DocumentedBy(space_values)] = 2,
-    against: Annotated[str, typer.Option(help=AGAINST_HELP)] = "h",
-    energy: Annotated[float | None, typer.Option(help=ENERGY_HELP)] = None,
     tolerance: Annotated[float | None, DocumentedBy(find_where)] = None,
     most_maps: Annotated[int, DocumentedBy(find_where)] = 40,
     last: Annotated[bool, DocumentedBy(find_where)] = False,
-    plane: Slice,
-    resolution: Annotated[tuple[int, int], DocumentedBy(SweepSpec)] = (112, 112),
-    t_max: Annotated[float, DocumentedBy(SweepSpec)],
-    section: Section,
     output: Stem = None,
     place: Annotated[Place, THREADS_ONLY],
     as_json: AsJson = False,
 ) -> None:
     """Find the place, and write and print the measures of all maps."""
-    spec = SweepSpec(
-        potential,
-        plane,
-        space_values(low, high, count),
-        resolution,
-        t_max=t_max,
-        measures=("shares",),
-        along=swept_axis(against, low, high, system),
-        energy=energy,
-        section=section,
-    )
     paths = name_files(output, ["nc", "csv"], ["nc", "csv"])
     with reserve_output(output):
         with place.run() as context:
@@ -78,7 +53,7 @@ def run(
         files = write_files({path: contents[ending] for ending, path in paths.items()})
     maps = list_rows(found.columns())
     rows = [(f"{row['value']:.6g}", f"{row['measured']:.6g}", _interval(row)) for row in maps]
-    table = Table((against, quantity, "95 % interval"), rows)
+    table = Table((found.axis, quantity, "95 % interval"), rows)
     print_result(as_json, found.numbers() | {"points": maps}, table, found.describe(), files=files)
 
 
