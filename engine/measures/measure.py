@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any
 
+from engine.measures.measured_map import MeasuredMap, SweepPoint
+
 Variables = Mapping[str, Any]
 """Variables of a dataset by name, in the form of xarray: dimensions, values and attributes."""
 
@@ -137,7 +139,7 @@ class Measure[Found]:
     name: str
     title: str
     meaning: str
-    compute: Callable[[Any], Found | None]
+    compute: Callable[[MeasuredMap], Found | None]
     quantities: tuple[Quantity[Found], ...] = ()
     help: str = ""
     curve: Curve = NO_CURVE
@@ -145,7 +147,7 @@ class Measure[Found]:
     slow: bool = False
     place: str = ""
     terms: Mapping[str, str] = field(default_factory=dict)
-    other_variables: Callable[[Any, Found], Variables] | None = None
+    other_variables: Callable[[SweepPoint, Found], Variables] | None = None
 
     @property
     def labels(self) -> Mapping[str, str]:
@@ -157,7 +159,7 @@ class Measure[Found]:
         """Meaning of the error bars of the curves, which is the same for all of them."""
         return next((quantity.bars for quantity in self.quantities if quantity.label), Bars.NONE)
 
-    def variables(self, point: Any, result: Found | None) -> Variables:
+    def variables(self, point: SweepPoint, result: Found | None) -> Variables:
         """Return the variables of the measure in the dataset of a sweep; numbers are NaN if `result` is None."""
         variables = {} if self.other_variables is None or result is None else dict(self.other_variables(point, result))
         for quantity in self.quantities:
