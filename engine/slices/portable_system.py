@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -19,6 +18,7 @@ from engine.integrator.source.recurrence import ROWS, TOLERANCE
 from engine.integrator.source.series import ORDER
 from engine.slices.planes import ENERGY_SURFACE, SPACE
 from engine.slices.sections.section import Section
+from engine.systems.forms.expression_form import Form
 from engine.systems.forms.polynomial_form import PolynomialForm
 from engine.systems.potential import Potential
 from engine.systems.well_units import WellUnits
@@ -66,12 +66,12 @@ class PortableSystem:
             "layout": {
                 "order": ORDER,
                 "rows": ROWS,
-                "lanes_together": VECTOR_LANES,
+                "lanesTogether": VECTOR_LANES,
                 "tolerance": TOLERANCE,
                 "heap": HEAP_CELL,
                 "beforeExit": BEFORE_EXIT,
                 "functions": list(FUNCTIONS),
-                "fates": {"bounded": events.BOUNDED, "not_computed": events.NOT_COMPUTED},
+                "fates": {"bounded": events.BOUNDED, "notComputed": events.NOT_COMPUTED},
                 "exits": _EXIT_COLUMNS,
             },
             "table": self.table.tolist(),
@@ -116,7 +116,7 @@ def _end_exits(potential: Potential) -> list[dict[str, object]]:
     ]
 
 
-def _polynomial_data(form: Any) -> dict[str, object] | None:
+def _polynomial_data(form: Form) -> dict[str, object] | None:
     """Return a polynomial V as the interior test takes it, with lists in place of arrays; None for an expression."""
     if not isinstance(form, PolynomialForm):
         return None

@@ -48,7 +48,7 @@ function startFrames({longest, undecided} = {}) {
   /** @type {any[]} */
   const shown = []
   const frames = new Frames(pool, 1, given => shown.push(given), longest)
-  frames.setSystem({...system, layout: {fates: {not_computed: undecided}}}, /** @type {any} */ (null))
+  frames.setSystem({...system, layout: {fates: {notComputed: undecided}}}, /** @type {any} */ (null))
   return {frames, asked, shown, pool}
 }
 

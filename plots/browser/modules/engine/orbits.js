@@ -23,13 +23,13 @@ const MOST_STEPS = 2 ** 31 - 1
  */
 export function makeOrbits(integrator, states) {
   const [count] = states.shape
-  const {not_computed} = integrator.system.layout.fates
+  const {notComputed} = integrator.system.layout.fates
   return {
     state: states,
     t: integrator.array("float64", [count]),
     crossings: integrator.array("int64", [count]),
     lastCrossings: integrator.array("int64", [count]),
-    fate: integrator.array("int8", [count], new Int8Array(count).fill(not_computed)),
+    fate: integrator.array("int8", [count], new Int8Array(count).fill(notComputed)),
     pending: integrator.array("int8", [count], new Int8Array(count).fill(1)),
     remainder: integrator.array("float64", [count, 2]),
   }
@@ -46,10 +46,10 @@ export function makeOrbits(integrator, states) {
  */
 export function propagate(integrator, orbits, exits, rows, {horizon, tolerance, steps}) {
   const {step, jets} = integrator.address
-  const {lanes_together} = integrator.system.layout
+  const {lanesTogether} = integrator.system.layout
   const orbitIndices = integrator.integers(Array.from({length: orbits.t.shape[0]}, (_, orbit) => orbit))
   // A step of one orbit counts as the steps of all lanes that are computed together.
-  const budget = steps ? lanes_together * steps.shape[0] : MOST_STEPS
+  const budget = steps ? lanesTogether * steps.shape[0] : MOST_STEPS
   const exitsAndOrbits = [exits.gates, exits.curves, rows, ...Object.values(orbits)]
   // The horizon is final: orbits that are still inside are bounded.
   const isFinal = 1

@@ -28,12 +28,12 @@
  * @typedef {object} Layout
  * @property {number} order  of the series
  * @property {number} rows  numbers in the state of an orbit between two steps
- * @property {number} lanes_together  smallest number of orbits (lanes) for which a step is computed
+ * @property {number} lanesTogether  smallest number of orbits (lanes) for which a step is computed
  * @property {number} tolerance  largest norm of the last coefficients of a step on the server
  * @property {number} beforeExit  time before the exit at which orbits at the edge of tubes start
  * @property {number} heap  address at which the start address of the free memory is stored
  * @property {string[]} functions  names of the functions of a system, in the order of their addresses
- * @property {Record<"bounded" | "not_computed", number>} fates
+ * @property {Record<"bounded" | "notComputed", number>} fates
  * @property {ExitColumns} exits
  *
  * Number of columns of an exit, the column of its shape, and the codes of shapes.

@@ -160,7 +160,7 @@ export class Frames {
    */
   #lengthen(view, {fate}) {
     const horizon = Math.min(2 * view.horizon, this.#longest)
-    if (horizon > view.horizon && this.#system && fate.includes(this.#system.layout.fates.not_computed)) {
+    if (horizon > view.horizon && this.#system && fate.includes(this.#system.layout.fates.notComputed)) {
       const longer = {...view, horizon}
       this.#computeResting(longer, pixels => this.#lengthen(longer, pixels))
     } else this.#computeExtra()
