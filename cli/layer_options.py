@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import Annotated, Any
@@ -58,33 +58,22 @@ def read_layers(**values: Any) -> LayerOptions:
     return LayerOptions(values)
 
 
+_STUDY_SETTINGS = {setting.name: setting for study in STUDIES.values() for setting in study.settings}
+
+
 def read_study_settings(**values: Any) -> Settings:
     """Return the settings of the studies from the values of options."""
     return {name: setting.choices[values[name]] for name, setting in _STUDY_SETTINGS.items()}
 
 
-def _list_options(layers: Iterable[Layer[Any]]) -> list[inspect.Parameter]:
-    """Return the options of the layers and of their settings, as parameters."""
-    options = []
-    for layer in layers:
-        options.append(_option(layer.name, *_layer_option(layer)))
-        options += [_option(setting.name, *_setting_option(setting)) for setting in layer.settings if setting.help]
-    return options
-
-
-def _option(name: str, kind: Any, default: Any) -> inspect.Parameter:
-    return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=kind)
-
-
-def _layer_option(layer: Layer[Any]) -> tuple[Any, Any]:
-    """Return the type and the default of the option that switches a layer on."""
+def _options_of(layer: Layer[Any]) -> list[inspect.Parameter]:
+    """Return the option that switches a layer on, and those of its settings."""
     if layer.count is None:
-        return Annotated[bool, typer.Option(help=layer.help)], False
-    return Annotated[int, typer.Option(help=layer.help, metavar=layer.count.metavar, min=0, max=layer.count.most)], 0
-
-
-def _setting_option(setting: Setting) -> tuple[Any, Any]:
-    return Annotated[type(setting.default), typer.Option(help=setting.help)], setting.default
+        switch = _option(layer.name, bool, False, help=layer.help)
+    else:
+        switch = _option(layer.name, int, 0, help=layer.help, metavar=layer.count.metavar, min=0, max=layer.count.most)
+    settings = [setting for setting in layer.settings if setting.help]
+    return [switch, *(_option(each.name, type(each.default), each.default, help=each.help) for each in settings)]
 
 
 def _choice_option(setting: Setting) -> inspect.Parameter:
@@ -92,13 +81,19 @@ def _choice_option(setting: Setting) -> inspect.Parameter:
     # Typer lists the members of an enumeration in the help.
     names = StrEnum("names", list(setting.choices))  # type: ignore[misc]
     (default,) = (name for name in names if setting.choices[name] == setting.default)
-    return _option(setting.name, Annotated[names, typer.Option(help=setting.help)], default)
+    return _option(setting.name, names, default, help=setting.help)
 
 
-_STUDY_SETTINGS = {setting.name: setting for study in STUDIES.values() for setting in study.settings}
+def _option(name: str, kind: Any, default: Any, **marks: Any) -> inspect.Parameter:
+    """Return an option as a parameter, given its type, its default and the arguments of `typer.Option`."""
+    annotation = Annotated[kind, typer.Option(**marks)]
+    return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=annotation)
+
 
 # `cli.options` makes options from these signatures.
-read_layers.__signature__ = inspect.Signature(_list_options(LAYERS.values()))  # type: ignore[attr-defined]
+read_layers.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
+    [option for layer in LAYERS.values() for option in _options_of(layer)]
+)
 read_study_settings.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
     [_choice_option(setting) for setting in _STUDY_SETTINGS.values()]
 )
