@@ -28,7 +28,7 @@ def measure_map(escape_map: EscapeMap, name: str, box: Window | None = None, *, 
 
 
 def compute_point(
-    point: SweepPoint, *, escape_map: EscapeMap | None = None, execution: Execution = DEFAULT_EXECUTION
+    point: SweepPoint, escape_map: EscapeMap | None = None, *, execution: Execution = DEFAULT_EXECUTION
 ) -> xr.Dataset:
     """Measure the map at one value of a sweep.
 

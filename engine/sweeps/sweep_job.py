@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 from engine.foundations.execution import Execution
 from engine.jobs.job import Job
 from engine.maps.map_jobs import map_job, members_job
-from engine.maps.result import EscapeMap
 from engine.measures.compute import compute_point
 from engine.measures.measured_map import SweepPoint
 from engine.sweeps.spec import SweepSpec
@@ -21,11 +20,6 @@ if TYPE_CHECKING:
 def sweep_job(spec: SweepSpec) -> Job[Sweep]:
     """Return the job of a sweep; the measures at each value are cached separately."""
     return Job(_compute_sweep, (spec,))
-
-
-def _measure_point(point: SweepPoint, escape_map: EscapeMap, *, execution: Execution) -> xr.Dataset:
-    """Return the measures at one value of a sweep. The job manager passes the map in place of its job."""
-    return compute_point(point, escape_map=escape_map, execution=execution)
 
 
 def _compute_sweep(
@@ -43,6 +37,6 @@ def _compute_sweep(
             find_result(members)
 
     def measure(point: SweepPoint) -> xr.Dataset:
-        return find_result(Job(_measure_point, (point, map_job(point.map_spec))))
+        return find_result(Job(compute_point, (point, map_job(point.map_spec))))
 
     return compute_sweep(spec, on_frame=on_frame, execution=execution, measure=measure)
