@@ -34,7 +34,7 @@ STILL = FigureStyle(width=14.0, dpi=80.0, font_size=10.0)
 _MODULES = Path(__file__).parents[1] / "browser" / "modules"
 
 
-def live_figure(view: LiveView, found: EscapeMap, execution: Execution = DEFAULT_EXECUTION) -> str:
+def live_figure(view: LiveView, found: EscapeMap) -> str:
     """Return the HTML of a live figure in one file, which needs no server and makes no request.
 
     Parameters
@@ -43,8 +43,6 @@ def live_figure(view: LiveView, found: EscapeMap, execution: Execution = DEFAULT
         The request.
     found
         The map of the request, complete.
-    execution
-        How the tables of the exits are computed.
 
     Raises
     ------
@@ -59,21 +57,21 @@ def live_figure(view: LiveView, found: EscapeMap, execution: Execution = DEFAULT
         "still": png_address(still_picture(view, found)),
         "back": "",
     }
-    return _page(view, found, place, execution)
+    return _page(view, found, place, DEFAULT_EXECUTION)
 
 
-def linked_live_figure(
-    view: LiveView, found: EscapeMap, links: Mapping[str, str], execution: Execution = DEFAULT_EXECUTION
-) -> str:
+def linked_live_figure(view: LiveView, found: EscapeMap, links: Mapping[str, str], execution: Execution) -> str:
     """Return the HTML of a live figure beside other files of its folder.
 
     Parameters
     ----------
-    view, found, execution
+    view, found
         As in `live_figure`.
     links
         Names of the files ``script``, with the `live_script`, and ``still``, with the `still_picture`, and the element ``back``
         above the figure.
+    execution
+        How the tables of the exits are computed.
     """
     script = f'<script src="{links["script"]}"></script>'
     place = {**links, "policy": _policy("'self'", "data: 'self'"), "script": script}
