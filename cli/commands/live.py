@@ -20,11 +20,12 @@ import typer
 
 from cli.arguments import Case, file_name_part
 from cli.execution import Place
+from cli.map_analyses import compute_whole_map
 from cli.option_marks import DocumentedBy
 from cli.options import with_options
 from cli.output_files import Stem, add_ending, reserve_output, split_ending, write_files
 from cli.printing import AsJson, print_result
-from engine import MapSpec, compute_map
+from engine import MapSpec
 from plots.live.live_figure import live_figure
 from plots.live.live_view import LiveView
 from plots.pictures.palette import Palette
@@ -77,6 +78,6 @@ def run(
         stem, _ = split_ending(output, ["html"], ["html"])
     with reserve_output(stem):
         with place.run() as context:
-            page = live_figure(view, compute_map(spec, execution=context.start_stage("map")))
+            page = live_figure(view, compute_whole_map(spec, context))
         files = write_files({add_ending(stem, "html"): page})
     print_result(as_json, {"request": spec.provenance(), "bytes": len(page.encode())}, files=files)

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import json
 import re
+import signal
+from functools import partial
 from pathlib import Path
 
+from cli.main import INTERRUPTED
 from tests.cli.conftest import Run
 
 
@@ -27,3 +30,13 @@ def test_a_slice_along_a_parameter_is_refused(run: Run) -> None:
     code, _, error = run("live", "I", "--energy", 0.2, "--plane", "x,epsilon=0.5:2")
     assert code == 2
     assert "along ε each orbit belongs to another system" in error
+
+
+def test_ctrl_c_ends_the_command_without_a_file(run_in_terminal: Run, tmp_path: Path) -> None:
+    # The map takes minutes.
+    request = ("III", "--energy", 0.26, "--resolution", 300, "--t-max", 1e7)
+    interrupt = partial(signal.raise_signal, signal.SIGINT)
+    code, out, line = run_in_terminal("map", interrupt, "live", *request, "--output", tmp_path / "figure")
+    assert (code, out) == (INTERRUPTED, "")
+    assert "escape-explorer: interrupted" in line
+    assert not any(tmp_path.iterdir())
