@@ -68,7 +68,7 @@ class PotentialPresenter:
         self._shares = ParameterShares(state, context.jobs, self.panel.sliders.show_shares, context.locked)
         state.param.watch(lambda *events: self._end_shares(), list(CHANGES))
         self._request = LatestRequest(context.jobs, self._show, self._on_failure, context.locked)
-        # The potential of the latest sketch. If it cannot be drawn, the picture stays.
+        # The potential of the latest sketch, which ends with a text that cannot be used.
         self._sketched: Potential | None = None
         self._show_sketch = show_sketch
         self._sketch_request = LatestRequest(context.jobs, show_sketch, lambda sentence: None, context.locked)
@@ -166,7 +166,11 @@ class PotentialPresenter:
         return next((known for known in reviews if known is not None and known.system == system), None)
 
     def _on_failure(self, sentence: str) -> None:
-        self._finish(lambda proposal: self.panel.say(sentence) if proposal.refuse is None else proposal.refuse(sentence))
+        self._finish(lambda proposal: self._say(sentence) if proposal.refuse is None else proposal.refuse(sentence))
+
+    def _say(self, sentence: str) -> None:
+        self.panel.say(sentence)
+        self._end_sketch()
 
     def _show(self, reviewed: PageReview) -> None:
         self._last_review = reviewed
@@ -177,6 +181,7 @@ class PotentialPresenter:
             proposal.use(reviewed)
         elif proposal.refuse is None:
             self.panel.show(reviewed)
+            self._end_sketch()
         else:
             proposal.refuse(reviewed.problem)
 

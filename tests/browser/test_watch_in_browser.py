@@ -76,6 +76,22 @@ def test_a_slice_of_several_energies_says_why_there_is_nothing_to_watch(explorer
     expect(explorer.page.get_by_role("button", name="Watch them leave")).to_be_disabled()
 
 
+def test_below_the_slider_no_result_of_an_earlier_energy_stays(explorer: ExplorerPage) -> None:
+    explorer.pick("Watch")
+    expect(explorer.page.get_by_role("cell", name="inside:")).to_be_visible()
+    explorer.type_number("Exact h", "0.05")
+    expect(explorer.text("Choose a slice of one energy")).to_be_visible()
+    expect(explorer.page.get_by_role("cell", name="inside:")).to_be_hidden()
+    expect(explorer.page.locator("canvas.survival")).to_be_hidden()
+
+
+def test_the_results_are_in_a_small_window(open_explorer: OpenExplorer) -> None:
+    explorer = open_explorer(1280, 720, f"{QUICK}&analysis=watch&watch=well,1000,1,-2")
+    expect(explorer.page.get_by_role("button", name="Watch them leave")).to_be_enabled()
+    for result in (explorer.page.locator("canvas.survival"), explorer.page.get_by_role("cell", name="exit 2:")):
+        expect(result).to_be_in_viewport(ratio=1)
+
+
 @pytest.mark.slow
 def test_the_time_runs_backwards_until_all_are_inside_again(open_explorer: OpenExplorer) -> None:
     explorer = open_explorer(link=f"{QUICK}&analysis=watch&watch=well,1000,1,-2")

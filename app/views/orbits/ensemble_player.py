@@ -54,7 +54,7 @@ tr { display: flex; flex-wrap: wrap; gap: 4px 14px }
 td { padding-left: 1em; position: relative }
 td::before { content: ""; position: absolute; left: 0; top: 0.3em; width: 0.7em; height: 0.7em; border-radius: 2px;
   background: var(--colour, var(--ui-quiet)) }
-.survival { display: block; width: 100%; height: 170px; margin-top: 6px }
+.survival { display: block; width: 100%; height: 150px; margin-top: 6px }
 """
 
 

@@ -83,6 +83,14 @@ def test_the_well_of_a_text_that_is_not_used_yet_is_drawn_until_the_text_is_that
     session.wait_for(lambda: session.sketches[-1] is None)
 
 
+@pytest.mark.parametrize("text", ["-x^2 - y^2", "½(x² +"])
+def test_the_well_of_a_text_is_not_drawn_beside_a_later_text_that_cannot_be_used(session: Session, text: str) -> None:
+    session.type(NEW, enter=False)
+    session.wait_for(lambda: bool(session.sketches))
+    session.type(text, enter=False)
+    session.wait_for(lambda: session.sketches[-1] is None)
+
+
 def test_a_text_is_used_while_it_is_typed_unless_it_needs_another_integrator(session: Session) -> None:
     newer = {"value": WEAKER, "count": 2, "done": False}
     watcher = session.state.param.watch(lambda event: send(session.panel.formula, newer), "system")

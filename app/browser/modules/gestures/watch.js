@@ -4,7 +4,7 @@
 import {Ensemble, Outcomes} from "../../../../plots/browser/modules/engine/ensemble.js"
 import {Integrator} from "../../../../plots/browser/modules/engine/integrator.js"
 import {drawStarts} from "../../../../plots/browser/modules/engine/random_starts.js"
-import {energyAxis} from "../../../../plots/browser/modules/engine/starts.js"
+import {energyAxis, windowAt} from "../../../../plots/browser/modules/engine/starts.js"
 import {count as whole, number} from "../../../../plots/browser/modules/numbers.js"
 import {Particles} from "../painting/particles.js"
 import {onMoved} from "../painting/pictures.js"
@@ -162,6 +162,8 @@ class EnsemblePlayer {
   #makeEnsemble({system, modules}, scene) {
     const {where, count, seed, radius, point, box} = this.#model
     const integrator = (this.#integrator = new Integrator(system, modules))
+    // Without the window of the well, its picture cannot show orbits.
+    if (!windowAt(integrator, "x_y", scene.energy)) return
     const isMissing = (where === "disc" && !point.length) || (where === "box" && !box.length)
     const request = {where: isMissing ? "view" : where, count, seed, point, box, radius: 10 ** radius}
     const states = drawStarts(request, scene, integrator)
@@ -245,7 +247,9 @@ class EnsemblePlayer {
   #draw() {
     const [ensemble, integrator, shown, controls] = [this.#ensemble, this.#integrator, present(), this.#controls]
     controls.labelPlay(this.#playFrame !== 0)
-    for (const control of [controls.play, controls.step, controls.film, controls.time]) control.disabled = !ensemble?.count
+    const isEmpty = !ensemble?.count
+    for (const control of [controls.play, controls.step, controls.film, controls.time]) control.disabled = isEmpty
+    controls.results.hidden = isEmpty
     controls.note.textContent = this.#explain()
     if (!ensemble || !integrator || !shown) return this.#particles.hide()
     const time = this.#time * shown.system.units.time

@@ -58,6 +58,7 @@ export class WatchControls {
   counters = makeElement("table")
   growth = makeElement("p", {className: "quiet"})
   chart = makeElement("canvas", {className: "survival"})
+  results = makeElement("div", {}, this.chart, this.counters, this.growth)
   /** The controls that a window in which the results are below the pictures shows beside these, while orbits are watched. */
   line = makeElement("div", {className: "row line"}, this.play, this.time, this.timeOutput, this.close)
 
@@ -75,6 +76,7 @@ export class WatchControls {
       makeRow(this.where, this.count, this.otherStarts),
       makeElement("label", {className: "row radius"}, "Radius ", this.radius, this.radiusOutput),
       this.line,
+      this.results,
       makeRow(
         this.step,
         this.film,
@@ -83,9 +85,6 @@ export class WatchControls {
         makeElement("label", {}, this.loop, " loop"),
       ),
       this.note,
-      this.counters,
-      this.growth,
-      this.chart,
     )
   }
 

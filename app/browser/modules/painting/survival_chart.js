@@ -38,8 +38,8 @@ export function drawSurvival(canvas, {escapeTime, count, time}, {longest, unit, 
     context.fillRect(LEFT, placeY(share), width - LEFT - RIGHT, 0.5)
   }
   context.textAlign = "left"
-  const law = rate > 0 ? "; dashed: flux over volume" : ""
-  context.fillText(`Inside until t = ${number(longest * unit, 3)}${law}`, LEFT, height - 4, width - LEFT)
+  const law = rate > 0 ? "; dashed: mixed motion" : ""
+  context.fillText(`Share inside until t = ${number(longest * unit, 3)}${law}`, LEFT, height - 4, width - LEFT)
   const pastTimes = escapeTime.filter(each => each <= time).sort()
   const drawLine = (/** @type {(t: number) => number} */ shareAt, /** @type {number} */ end) => {
     context.beginPath()
