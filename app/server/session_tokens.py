@@ -25,7 +25,7 @@ from bokeh.util.token import (
 )
 from tornado.httputil import HTTPServerRequest
 
-from app.state.permalink import PARAMETERS
+from app.state.permalink import PARAMETERS, unknown_parameters
 
 # WebSocket subprotocol of Bokeh.
 _SUBPROTOCOL = "bokeh"
@@ -54,14 +54,15 @@ def issue_token(
     application
         The server's web application.
     request
-        The request for the page. The token contains its link parameters and, with a login, its cookies. The session needs
-        nothing else of the request.
+        The request for the page. The token contains its link parameters, the names of some unknown parameters and, with a
+        login, its cookies. The session needs nothing else of the request.
     extra
         Additional entries of the token's payload.
     clock
         Monotonic clock, in seconds.
     """
     arguments = {name: request.arguments[name][:1] for name in PARAMETERS if name in request.arguments}
+    arguments |= {name: [b""] for name in unknown_parameters(request.arguments)}
     has_login = bool(application.auth_provider.endpoints)
     cookies = {name: morsel.value for name, morsel in request.cookies.items()} if has_login else {}
     key = _signing_key(application)

@@ -17,10 +17,12 @@ from app.state.permalink import (
     EMBED,
     LINKED,
     fit_to_system,
+    ignored_parameters,
     linked_view,
     read_link,
     refused_comparison,
     refused_link,
+    unknown_parameters,
     without_system,
     write_link,
 )
@@ -51,6 +53,7 @@ class LinkPresenter:
     def __init__(self, document: Document, parameters: Mapping[str, str]) -> None:
         self._document = document
         self._link, self._problems = read_link(parameters)
+        self._unknown = unknown_parameters(parameters)
         self._is_navigating = False
         # None until the other parts of the page are made. Problems that are found earlier are shown when the view begins.
         self._notice: Notice | None = None
@@ -130,8 +133,12 @@ class LinkPresenter:
         self._show_problems()
 
     def _show_problems(self) -> None:
+        """Show the problems of the link until the view changes, or else its unknown parameters for a few seconds."""
         if self._problems:
             self._warn(" ".join(self._problems))
+        elif self._unknown and self._notice is not None:
+            self._notice.show(ignored_parameters(self._unknown))
+        self._unknown = ()
 
     def _warn(self, sentence: str) -> None:
         if self._notice is not None:

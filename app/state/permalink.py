@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from itertools import islice
 from typing import Any
 from urllib.parse import parse_qsl, urlencode
 
@@ -29,6 +30,7 @@ from plots.links.link_system import SYSTEM_FORMATS, write_system
 from plots.links.map_link import (
     ENERGY,
     FIX,
+    LONGEST_QUOTE,
     MAP_FORMATS,
     MAP_PARAMETERS,
     PLANE,
@@ -36,6 +38,7 @@ from plots.links.map_link import (
     read_layers,
     read_parts,
     read_view,
+    safe_text,
     sides_in_links,
 )
 from plots.links.map_view import SETTINGS
@@ -48,6 +51,8 @@ EMBED = "embed"
 _DEFAULT_PICTURE = "basins"
 _JACOBI = "C"
 _SECTION = MAP_PARAMETERS["section"]
+# The parameters that a message names.
+_MAIN_PARAMETERS = ", ".join((*SYSTEM_FORMATS, PLANE, ENERGY))
 # Prefix of the parameters of the view with which the state is compared.
 _COMPARED = "with_"
 # Names of the parameters of system, slice, energy and section.
@@ -85,6 +90,12 @@ _FORMATS: dict[str, Format] = {
 PARAMETERS = (*_FORMATS, PLANE, FIX, *(f"{_COMPARED}{name}" for name in _VIEW_PARAMETERS))
 """Names of the parameters of a link."""
 
+MOST_UNKNOWN = 3
+"""Largest number of unknown parameters of a link that the page names."""
+
+# Prefix of the parameters of Bokeh, which loads a page in another page.
+_OF_BOKEH = "bokeh-"
+
 LINKED = ("system", "plane", "energy", *_LINKED, "layers", "settings", "compared")
 """Attributes of the view state that a link contains."""
 
@@ -118,7 +129,8 @@ def read_link(parameters: Mapping[str, str], prefix: str = "") -> tuple[dict[str
     Parameters
     ----------
     parameters
-        Names and values of the query string. Unknown names are ignored: other sites append their own.
+        Names and values of the query string. Unknown names are ignored, because other sites append their own; see
+        `unknown_parameters`.
     prefix
         Prefix of the names in messages.
 
@@ -146,6 +158,17 @@ def read_link(parameters: Mapping[str, str], prefix: str = "") -> tuple[dict[str
         values |= more_values
         problems += more_problems
     return values, problems
+
+
+def unknown_parameters(names: Iterable[str]) -> tuple[str, ...]:
+    """Return the first names of a query string, at most `MOST_UNKNOWN`, that are no parameters of a link and not very long."""
+    unknown = (name for name in names if name not in PARAMETERS and not name.startswith(_OF_BOKEH))
+    return tuple(islice((name for name in unknown if len(name) <= LONGEST_QUOTE), MOST_UNKNOWN))
+
+
+def ignored_parameters(names: Sequence[str]) -> str:
+    """Return the message about unknown parameters of a link."""
+    return f"Ignored {', '.join(map(safe_text, names))}: the parameters of a link are {_MAIN_PARAMETERS} and others."
 
 
 def linked_view(values: Mapping[str, Any]) -> View:

@@ -32,8 +32,8 @@ LONGEST_VALUE = LONGEST_TEXT
 PLANE, FIX, ENERGY = "plane", "fix", "h"
 """Names of the parameters of the slice and its energy."""
 
-# Longest part of a value that a message repeats, in characters.
-_LONGEST_QUOTE = 40
+LONGEST_QUOTE = 40
+"""Longest part of a text of a link that a message repeats, in characters."""
 
 
 def sides_in_links(resolutions: Mapping[str, int]) -> dict[str, int]:
@@ -142,10 +142,10 @@ def read_view(parameters: Mapping[str, str], parts: Mapping[str, Any], prefix: s
 def quoted(name: str, text: str) -> str:
     """Return the name and the text of a value for messages."""
     # A message with "nan" would look like a result of the page.
-    return name if "nan" in text.lower() else f"{name}={_safe_text(text)}"
+    return name if "nan" in text.lower() else f"{name}={safe_text(text)}"
 
 
-def _safe_text(text: str) -> str:
+def safe_text(text: str) -> str:
     """Return text from a link for messages: truncated, and without markup characters."""
-    safe = "".join(c if c.isascii() and (c.isalnum() or c in " .,+-") else "?" for c in text[:_LONGEST_QUOTE])
-    return safe + " …" if len(text) > _LONGEST_QUOTE else safe
+    safe = "".join(c if c.isascii() and (c.isalnum() or c in " .,+-") else "?" for c in text[:LONGEST_QUOTE])
+    return safe + " …" if len(text) > LONGEST_QUOTE else safe

@@ -90,11 +90,13 @@ def test_tokens_in_other_places_are_refused(offered: str | None, application: Bo
     assert not has_signed_token(application, request("/app/ws", **headers))
 
 
-def test_token_contains_the_parameters_of_the_link_only(application: BokehTornado) -> None:
-    asked = request("/app?h=0.2&h=0.3&theme=dark&bytes=1&bokeh-absolute-url=x", Cookie="a=b", User_Agent="browser")
+def test_token_contains_the_parameters_of_the_link_and_the_names_of_few_others(application: BokehTornado) -> None:
+    others = "theme=dark&bytes=1&c=2&d=3&bokeh-absolute-url=x"
+    asked = request(f"/app?{'n' * 200}=1&h=0.2&h=0.3&{others}", Cookie="a=b", User_Agent="browser")
     payload = get_token_payload(issue_token(application, asked, {"app_path": "/app"}))
     del payload["session_expiry"], payload["issued"]
-    assert payload == {"headers": {}, "cookies": {}, "arguments": {"h": [b"0.2"]}, "app_path": "/app"}
+    arguments = {"h": [b"0.2"], "theme": [b""], "bytes": [b""], "c": [b""]}
+    assert payload == {"headers": {}, "cookies": {}, "arguments": arguments, "app_path": "/app"}
 
 
 @pytest.mark.parametrize(("age", "fresh"), [(0.0, True), (299.0, True), (300.0, False), (-1.0, False)])

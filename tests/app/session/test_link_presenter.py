@@ -33,3 +33,13 @@ def test_a_comparison_that_is_refused_before_the_page_is_made_is_named_when_the_
     links.connect(unused, unused, unused, notice)
     links.begin(lambda: None)
     assert "Ignored the view in the link with which to compare: The formula ends too soon." in notice.layout().object
+
+
+def test_unknown_parameters_of_a_link_are_named_once() -> None:
+    links, notice, unused = LinkPresenter(Document(), {"case": "I", "potential": "", "<b>": ""}), Notice(), cast("Any", None)
+    links.connect(unused, unused, unused, notice)
+    links.begin(lambda: None)
+    assert "Ignored potential, ?b?: the parameters of a link are case, V" in notice.layout().object
+    notice.clear()
+    links.begin(lambda: None)
+    assert not notice.layout().object
