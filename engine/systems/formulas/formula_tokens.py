@@ -19,9 +19,11 @@ SIGNS = {"+": "+", "-": "-", "−": "-", "–": "-"}
 OPERATORS = {"*": "*", "·": "*", "×": "*", "⋅": "*", "∗": "*", "/": "/", "÷": "/", "∕": "/", "⁄": "/"}
 BASE_KINDS = ("number", "fraction", "name", "letter", "open", "function", "root")
 """Kinds of tokens with which a factor can begin."""
+FUNCTIONS = ("sin", "cos", "exp", "log", "ln", "sqrt")
+"""Names of functions."""
 # A token. The kind of a token is the name of its group.
 _TOKEN = re.compile(
-    "(?P<function>sin|cos|exp|log|ln|sqrt)"
+    f"(?P<function>{'|'.join(FUNCTIONS)})"
     r"|(?P<number>(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)"
     "|(?P<name>[xyr])"
     "|(?P<letter>[A-DF-UW-Za-df-qs-wzΑ-Ωα-ω][0-9₀-₉]?)"
@@ -34,6 +36,8 @@ _TOKEN = re.compile(
     r"|(?P<open>\()"
     r"|(?P<close>\))"
 )
+# A word directly before a bracket.
+_WORD_OF_CALL = re.compile(r"(?<![A-Za-zΑ-Ωα-ω])[A-Za-zΑ-Ωα-ω]+[0-9₀-₉]?(?=\()")
 # Names that would otherwise be read as letters or products, such as momenta, velocities, a third coordinate and time.
 _UNKNOWN = re.compile("sinh|cosh|tanh?|abs|pi|[pv][xyz]|z(?![0-9₀-₉])|t")
 # What to write instead of names and characters that are not understood.
@@ -89,7 +93,7 @@ class Token:
 
 
 def tokenize(text: str) -> list[Token]:
-    """Split a text into tokens, and add a token of kind "end"; FormulaError for an unknown character."""
+    """Split a text into tokens, and add a token of kind "end"; FormulaError for an unknown character or function."""
     prefix = _PREFIX.match(text)
     position = prefix.end() if prefix else 0
     tokens: list[Token] = []
@@ -107,7 +111,17 @@ def tokenize(text: str) -> list[Token]:
             token_text = token_text.translate(_FROM_SUBSCRIPT)
         tokens.append(Token(str(match.lastgroup), token_text, position))
         position = match.end()
+    _check_calls(text, tokens)
     return [*tokens, Token("end", "", len(text))]
+
+
+def _check_calls(text: str, tokens: list[Token]) -> None:
+    """Raise FormulaError for a word of several letters that stands directly before a bracket and is no function."""
+    for match in _WORD_OF_CALL.finditer(text):
+        kinds = [token.kind for token in tokens if match.start() <= token.position < match.end()]
+        if kinds.count("letter") > 1 and kinds[-1] != "function":
+            problem = f"'{match.group()}' is not a function; functions are {', '.join(FUNCTIONS)}; a product needs * or spaces"
+            raise FormulaError(match.start(), problem)
 
 
 def read_number(token: Token) -> Fraction:

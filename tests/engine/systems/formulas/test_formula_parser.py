@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine import CASES, parse_formula
+from engine.systems.formulas.formula_parser import formula_letters, make_potential
 from engine.systems.formulas.formula_tokens import FormulaError
 from engine.systems.formulas.formula_writer import write_formula
 from engine.systems.potential import Potential
@@ -76,6 +77,9 @@ def test_operator_precedence(text: str, terms: tuple[tuple[int, int, float], ...
         ("", 0, "ends"),
         ("x + tan(x)", 4, "not understood; write sin(u)/cos(u) for tan(u)"),
         ("x + sinh(x)", 4, "'sinh' is not understood; write (exp(u) − exp(−u))/2 for sinh(u)"),
+        ("2foo(x) + y", 1, "'foo' is not a function; functions are sin, cos, exp, log, ln, sqrt; a product needs * or spaces"),
+        ("y + max(x)", 4, "'max' is not a function"),
+        ("V(x, y) = y + lg(x)", 14, "'lg' is not a function"),
         ("0,5x + y", 1, "',' is not understood; write decimals with a point, as in 0.5"),
         ("x\\y", 1, "'\\' is not understood; allowed are"),
         ("a x² + y²; a=1.2", 10, "the value of a is no part of the formula: delete it, and set the parameter a"),
@@ -206,6 +210,25 @@ def test_a_power_in_the_denominator_is_written_as_a_power(text: str, written: st
     potential, places = parse_formula(text), (np.array([0.3, -0.2]), np.array([0.1, 0.4]))
     assert potential.name == written
     np.testing.assert_allclose(potential.value(*places), function(*places), rtol=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("text", "product"),
+    [
+        ("x(y + 1)", "x*(y + 1)"),
+        ("2(x)", "2*x"),
+        ("a(x + y)", "a*(x + y)"),
+        ("axy(x + y)", "a*x*y*(x + y)"),
+        ("k1k2(x + y)", "k1*k2*(x + y)"),
+        ("a b (x + y)", "a*b*(x + y)"),
+        ("basin(x)", "b*a*sin(x)"),
+    ],
+)
+def test_letters_before_a_bracket_are_factors(text: str, product: str) -> None:
+    letters = {"a": 2.0, "b": 3.0, "k1": 5.0, "k2": 7.0}
+    values = {name: letters[name] for name in formula_letters(text)}
+    factors, expected = (make_potential(written, parameters=values) for written in (text, product))
+    assert factors.value(0.3, 0.7) == expected.value(0.3, 0.7)
 
 
 @pytest.mark.parametrize("text", ["½(x² + y²) − x²y² + z²", "½r² + pz", "½r² + vz"])
