@@ -25,11 +25,11 @@ from plots.pictures.palette import Palette
 # catalogue, and the reviews up to 4 s.
 _VALUES = 17
 _SIDE = 24
-# Integration time in units of the well, as in the picture on the slider of the energy.
-_HORIZON = 100.0
-
 # Fates of allowed starts that reach no outcome, in the order of a stack of shares.
 _FATES_INSIDE = (Fate.BOUNDED, Fate.NOT_COMPUTED, Fate.FAILED)
+
+SHARES_HORIZON = 100.0
+"""Integration time of the shares on all sliders, in units of the well."""
 
 CHANGES = ("system", "plane", "section", "energy", "window", "palette")
 """Names of the parts of the view state on which the shares depend."""
@@ -100,7 +100,7 @@ class ParameterShares:
         state = self._state
         if state.plane.energy_axis is not None or state.plane.parameter is not None:
             return
-        t_max = _HORIZON * state.potential.units.time
+        t_max = SHARES_HORIZON * state.potential.units.time
         self._spec = replace(state.map_spec(), resolution=(_SIDE, _SIDE), t_max=t_max)
         title = (
             f"Shares of coarse maps against {symbol} at h = {format_number(state.energy)}, t = {format_number(t_max)}; "

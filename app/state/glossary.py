@@ -45,6 +45,10 @@ GLOSSARY: Mapping[str, str] = MappingProxyType(
         ),
         "centre": "A body: an orbit that enters the disc around it has collided with it.",
         "escape radius": "A distance from the origin beyond which orbits have escaped, in place of exits over saddles.",
+        "shares on a slider": (
+            "The picture on the slider of the energy, or of the parameter moved last, shows how the starts in view divide among "
+            "the exits at each value. It counts the pixels of coarse maps, for a shorter time: grey is still inside."
+        ),
         "direct escapes": "Orbits that escape without a crossing of the section, of y = 0 upward by default.",
         **{term: meaning for measure in MEASURES.values() for term, meaning in measure.terms.items()},
     }

@@ -11,7 +11,7 @@ import param
 
 from app.browser.module_files import ADDRESS
 from app.job_clients.latest_request import LatestRequest, Locked
-from app.job_clients.parameter_shares import stack_colours
+from app.job_clients.parameter_shares import SHARES_HORIZON, stack_colours
 from app.job_clients.shown_results import ShownResults
 from app.state.view_state import ViewState
 from app.views.components.view_store import ViewStore
@@ -150,6 +150,7 @@ def describe_view(state: ViewState) -> dict[str, Any]:
         "energies": [state.energies.low, state.energies.high],
         "colours": colours,
         "stack": stack_colours(state.colours, outcomes),
+        "sharesHorizon": SHARES_HORIZON,
         "labels": [end.label for end in outcomes],
         "coding": {**pixel_coding(outcomes, state.section), "layers": list(LAYER_COLUMNS)},
     }

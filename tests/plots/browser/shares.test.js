@@ -12,7 +12,7 @@ function makeShares(limit) {
   /** @type {number[]} */
   const shown = []
   const sceneAt = (/** @type {number} */ energy) => (energy > limit ? null : {slice, energy, window, mostPixels: 224})
-  return {shares: new Shares(sceneAt, place => shown.push(place)), shown}
+  return {shares: new Shares(sceneAt, 50, place => shown.push(place)), shown}
 }
 
 /** Compute all maps, whose pixels have these fates. @param {Shares} shares @param {number[]} fate */
@@ -40,6 +40,7 @@ test("a map that was not finished is computed again, and a finer division comput
   shares.refine(1)
   assert.equal(shares.next()?.view.energy, 0)
   assert.equal(shares.next()?.view.energy, 0)
+  assert.equal(shares.next()?.view.horizon, 50)
   computeAll(shares, [1])
   shares.refine(2)
   computeAll(shares, [1])

@@ -26,6 +26,7 @@ import {LEAST_SIDE} from "../../../../plots/browser/modules/workers/frames.js"
  * @property {string[]} colours  of the outcomes, exits first
  * @property {string[]} labels  of the outcomes
  * @property {[number, string][]} stack  fates of allowed starts and their colours, in the order of a stack of shares
+ * @property {number} sharesHorizon  integration time of the shares on the slider, in units of the well
  * @property {import("../../../../plots/browser/modules/painting/columns.js").Coding} coding
  * @property {number} resolution  pixels along a side of the server's map
  */

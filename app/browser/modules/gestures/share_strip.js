@@ -3,7 +3,6 @@
 
 import {energyAxis} from "../../../../plots/browser/modules/engine/starts.js"
 import {paintShares} from "../painting/share_columns.js"
-import {RESTING_HORIZON} from "../../../../plots/browser/modules/workers/frames.js"
 import {Shares} from "../../../../plots/browser/modules/workers/shares.js"
 
 /** Largest width of the column of an energy, in pixels of the page. */
@@ -40,7 +39,7 @@ export class ShareStrip {
    * @param {import("./preview.js").ServerView} view
    * @param {import("../../../../plots/browser/modules/engine/system.js").System | null} system  of the engine
    */
-  follow({system: key, slice, window, energies, stack}, system) {
+  follow({system: key, slice, window, energies, stack, sharesHorizon}, system) {
     const isKnown = slice && energyAxis(slice) < 0 && system?.key === key
     const newKey = isKnown ? JSON.stringify([key, slice, window, energies]) : ""
     this.#stack = stack
@@ -50,10 +49,11 @@ export class ShareStrip {
       this.#shares = newKey
         ? new Shares(
             place => this.#sceneAt(low + (high - low) * place),
+            sharesHorizon,
             () => this.#paint(),
           )
         : null
-      const time = isKnown ? RESTING_HORIZON * system.units.time : 0
+      const time = isKnown ? sharesHorizon * system.units.time : 0
       this.#slider.title = isKnown ? `Shares of a coarse map at t = ${time}; grey: still inside` : ""
       this.#slider.toggleAttribute("data-pictured", !!newKey)
     }

@@ -23,7 +23,7 @@ export const LEAST_SIDE = 48
 /** Longest time while the view moves, in units of the well. */
 const MOVING_HORIZON = 30
 /** Longest time at rest, in units of the well. */
-export const RESTING_HORIZON = 100
+const RESTING_HORIZON = 100
 /** Pixels along a side of the pictures at rest. */
 const RESTING_SIDES = [112, 224]
 /** Time for computing pixels in a frame of the display, in ms. The rest of the frame is for painting. */

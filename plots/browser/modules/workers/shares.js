@@ -7,22 +7,23 @@
  * @typedef {Map<number, number>} Counts  number of pixels of each fate
  */
 
-import {RESTING_HORIZON} from "./frames.js"
-
 /** Pixels along a side of a map. */
 const SIDE = 32
 
 export class Shares {
   /**
    * @param {(place: number) => Scene | null} sceneAt  returns the scene at a place of the range, 0 to 1; null if it has none
+   * @param {number} horizon  integration time of the maps, in units of the well
    * @param {(place: number, counts: Counts) => void} show
    */
-  constructor(sceneAt, show) {
+  constructor(sceneAt, horizon, show) {
     this.#sceneAt = sceneAt
+    this.#horizon = horizon
     this.#show = show
   }
 
   #sceneAt
+  #horizon
   #show
   /** Places without counts, the next one last. @type {number[]} */
   #missing = []
@@ -52,7 +53,7 @@ export class Shares {
 
   /** @param {number} place @param {Scene} scene */
   #mapAt(place, scene) {
-    const view = {...scene, columns: SIDE, rows: SIDE, horizon: RESTING_HORIZON}
+    const view = {...scene, columns: SIDE, rows: SIDE, horizon: this.#horizon}
     const receive = (/** @type {import("../engine/pixels.js").Pixels} */ {fate}) => {
       this.#missing.pop()
       /** @type {Counts} */
