@@ -28,8 +28,8 @@ OPEN_MAP = "Click a map to open it."
 _STEPS = 1.08, 1.36
 # Margin beside and below the maps.
 _MARGIN = 0.03
-# Digits of the numbers above the maps.
-_DIGITS = 3
+# Digits of the measures above the maps, and of the values at which the maps are, which are rounded to few decimals.
+_DIGITS, _VALUE_DIGITS = 3, 6
 
 BESIDE = Setting(
     name="beside",
@@ -98,7 +98,7 @@ class TileGrid:
         tiles = []
         for place, index in maps.items():
             values = zip(found.symbols, found.axes, index, strict=True)
-            name = ", ".join(f"{symbol} = {found[axis][k]:g}" for symbol, axis, k in values)
+            name = ", ".join(f"{symbol} = {format_number(found[axis][k], _VALUE_DIGITS)}" for symbol, axis, k in values)
             measure = _measure_text(found, index, BESIDE.value_in(settings))
             codes = fate_codes(found["fate"][index], found.outcomes)
             tiles.append(Tile(codes, *self.corner(place), name, measure if axes else f"{name}\n{measure}"))
@@ -114,7 +114,7 @@ class TileGrid:
         """Return the ticks of both axes, at the middles of the maps."""
         x = [self.corner(column)[0] + 0.5 for column in range(self.columns)]
         y = [self.corner(row * self.columns)[1] + 0.5 for row in reversed(range(self.rows))]
-        labels = [[format_number(value, _DIGITS) for value in values] for values in (columns, rows)]
+        labels = [[format_number(value, _VALUE_DIGITS) for value in values] for values in (columns, rows)]
         return dict(zip(x, labels[0], strict=True)), dict(zip(y, labels[1], strict=True))
 
 

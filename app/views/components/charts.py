@@ -14,7 +14,7 @@ from bokeh.models import ColumnDataSource, Image, LinearColorMapper, MultiLine, 
 from bokeh.plotting import figure
 
 from app.views.components.plots import FigurePane, chart_hover, set_range, square_figure
-from app.views.components.texts import TextPane
+from app.views.components.texts import TextPane, plain_symbol
 from app.views.components.theme import theme_line
 from plots.pictures.charts import NO_TICKS, ONLY_POINTS, Chart, Frame, Limits, Series, Shape, Tile
 from plots.pictures.palette import THRESHOLD
@@ -180,7 +180,7 @@ class ChartView:
         if self.plot is None:
             return
         for axis, label, ticks in zip((*self.plot.below, *self.plot.left), self._labels, self._ticks, strict=True):
-            axis.axis_label = label
+            axis.axis_label = plain_symbol(label)
             if self.frame.has_tiles:
                 axis.update(visible=bool(ticks), ticker=[*ticks], major_label_overrides={**ticks}, axis_line_color=None)
 

@@ -17,7 +17,9 @@ from plots.texts.typeset import typeset
 
 # Spaces at an equals sign, after an operator and inside brackets, where lines of a formula must not break.
 _IN_TERM = re.compile(r"(?<=[=+−]) | (?==)| (?=[^()]*\))")
-_SUBSCRIPT_DIGITS = str.maketrans("12", "₁₂")
+# The digit of a symbol such as ω1.
+_INDEX = re.compile(r"(?<=\b[^\W\d_])\d\b")
+_SUBSCRIPT_DIGITS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 
 
 def breakable(formula: str) -> str:
@@ -25,9 +27,9 @@ def breakable(formula: str) -> str:
     return _IN_TERM.sub("\N{NO-BREAK SPACE}", formula)
 
 
-def plain_symbol(symbol: str) -> str:
-    """Return the symbol of a parameter with subscripts, for labels that are not HTML."""
-    return symbol.translate(_SUBSCRIPT_DIGITS)
+def plain_symbol(text: str) -> str:
+    """Return a label that is not HTML, such as the symbol of a parameter, with the digits of its symbols as subscripts."""
+    return _INDEX.sub(lambda match: match[0].translate(_SUBSCRIPT_DIGITS), text)
 
 
 def describe_outcomes(review: PotentialReview) -> str:

@@ -66,7 +66,7 @@ def test_axes_of_a_plate_name_its_values_and_no_line_marks_a_place_between_maps(
     values = (0.1, 0.2, 0.3, 0.4, 0.5), (0.5, 0.75, 1.0, 1.25, 1.5)
     view.show(compute_sweep(replace(spec, values=values, resolution=(8, 8), t_max=10.0)), "omega_1")
     (figure,) = [pane.object for column in view.build()[2].objects for pane in column.objects if isinstance(pane, FigurePane)]
-    for axis, label, numbers in zip((*figure.below, *figure.left), ("h", "ω1"), values, strict=True):
+    for axis, label, numbers in zip((*figure.below, *figure.left), ("h", "ω₁"), values, strict=True):
         assert axis.visible
         assert axis.axis_label == label
         assert [float(text) for text in axis.major_label_overrides.values()] == [*numbers]
