@@ -31,6 +31,7 @@ from engine.exits.saddle_orbits.brake_orbits import (
 from engine.exits.saddle_orbits.merged_orbits import axes_between, find_merged_orbits
 from engine.exits.saddle_orbits.rotating_orbits import find_orbit_in_rotating_frame
 from engine.foundations.validation import checked_number, checks_types
+from engine.foundations.wording import format_point
 from engine.integrator.kernels import exit_geometry as geometry
 from engine.systems.landscape.hill_component import Extent
 from engine.systems.merged_channels import MergedExit
@@ -220,7 +221,7 @@ def _describe_merged_exit(potential: Potential, merged: MergedExit) -> str:
     # The mergers are sorted by energy.
     lowest = next(merger for merger in potential.well.channel_mergers if set(merger.channels) <= set(merged.channels))
     units = potential.well.stated_units
-    position = f"({lowest.x * units.length:.6g}, {lowest.y * units.length:.6g})"
+    position = format_point(lowest.x * units.length, lowest.y * units.length)
     return f"channels {merged.name} are one exit above V = {lowest.energy * units.energy:.6g}, the maximum at {position}"
 
 

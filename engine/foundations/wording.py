@@ -46,6 +46,11 @@ def format_number(value: float, digits: int = 4) -> str:
     return _typeset(f"{value:.{digits}g}")
 
 
+def format_point(x: float, y: float, digits: int = 6) -> str:
+    """Return a point of the plane to `digits` significant digits: "(0, −0.383458)"."""
+    return f"({format_number(x, digits)}, {format_number(y, digits)})"
+
+
 def format_decimals(value: float, decimals: int) -> str:
     """Return a number to `decimals` decimals, with a typographic minus sign and without a negative zero."""
     return _typeset(f"{round(value, decimals) + 0.0:.{decimals}f}")

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 
 from engine.foundations.validation import check_type, checked_items, checked_number, checks_types, short_repr
+from engine.foundations.wording import format_number, format_point
 from engine.systems.catalogue.entry import CatalogueEntry
 from engine.systems.catalogue.table import CATALOGUE
 from engine.systems.formulas.formula_parser import LARGEST_VALUE, formula_letters, make_potential
@@ -149,7 +150,7 @@ class System:
     @property
     def title(self) -> str:
         """Name of the potential, with the parameters that differ from their defaults."""
-        changed = ", ".join(f"{symbol_of(name)} = {value:.6g}" for name, value in self.parameters.items())
+        changed = ", ".join(f"{symbol_of(name)} = {format_number(value, 6)}" for name, value in self.parameters.items())
         return f"{self.entry.title} with {changed}" if changed else self.entry.title
 
     @property
@@ -161,8 +162,7 @@ class System:
             return self.as_typed.formula
         potential = self.potential
         if any(potential.origin):
-            x, y = potential.origin
-            return f"{potential.name}, where x and y count from ({x:.6g}, {y:.6g})"
+            return f"{potential.name}, where x and y count from {format_point(*potential.origin)}"
         return write_formula(potential, SHOWN_DIGITS)
 
 

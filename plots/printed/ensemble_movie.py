@@ -19,6 +19,7 @@ from matplotlib.ticker import LogLocator
 
 from engine import Fate, Potential, compute_flux
 from engine.foundations.extras import require_package
+from engine.foundations.wording import format_number
 from engine.results import SampledOrbits
 from plots.pictures.orbit_curves import find_well_window
 from plots.pictures.palette import LIGHT, Palette
@@ -101,7 +102,7 @@ def _make_writer(format: MovieFormat) -> AbstractMovieWriter:
 
 def _draw_stage(potential: Potential, orbits: SampledOrbits, palette: Palette, style: FigureStyle) -> _Stage:
     energy = float(orbits.energy[0])
-    figure = new_figure(style, _HEIGHT * style.width, f"{potential.name}, h = {energy:.6g}")
+    figure = new_figure(style, _HEIGHT * style.width, f"{potential.name}, h = {format_number(energy, 6)}")
     well_axes, chart_axes = figure.subplots(1, 2, width_ratios=[1.15, 1.0])
     window = find_well_window(potential, energy)
     draw_well(well_axes, potential, energy, window, palette)

@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from engine import Potential, Window
+from engine.foundations.wording import format_number
 from engine.slices.planes import SPACE
 from plots.pictures.charts import Limits
 from plots.pictures.histories import ENVELOPE_ALPHA, History, has_log_time
@@ -71,7 +72,7 @@ def draw_well_figure(
 ) -> Figure:
     """Draw the well at an energy with equipotentials, exits, and the paths of orbits in the colours of their exits."""
     window = find_well_window(potential, energy)
-    figure = new_figure(style, style.width, f"The well at h = {energy:.6g}")
+    figure = new_figure(style, style.width, f"The well at h = {format_number(energy, 6)}")
     axes = figure.subplots()
     draw_well(axes, potential, energy, window, palette)
     _draw_paths(
@@ -83,7 +84,7 @@ def draw_well_figure(
 
 
 def _list_energies(orbits: Sequence[OrbitCurves]) -> list[str]:
-    return list(dict.fromkeys(f"{curves.orbit.energy:.6g}" for curves in orbits))
+    return list(dict.fromkeys(format_number(curves.orbit.energy, 6) for curves in orbits))
 
 
 def draw_path(

@@ -17,7 +17,7 @@ from app.views.components.collapsible_section import Build
 from app.views.components.texts import StatusPane, TextPane, describe_outcomes, plain_symbol
 from app.views.components.widgets import button, flex_row
 from engine import System
-from engine.foundations.wording import format_number
+from engine.foundations.wording import format_number, format_point
 from engine.systems.catalogue.table import CATALOGUE
 from engine.systems.formulas.formula_parser import LARGEST_VALUE, LONGEST_TEXT, formula_letters
 from engine.systems.parameters import WELL_PARAMETERS
@@ -110,7 +110,7 @@ class PotentialPanel:
         """Return the makers of a column's parts, parts of fixed height first: no part moves while the formula is typed."""
         buttons = flex_row(self.reset, self.use_well, gap="8px")
         views = [
-            *(self.known, self.formula, flex_row(*self.additions), self.typeset, self.message),
+            *(self.known, self.formula, self.typeset, self.message, flex_row(*self.additions)),
             *(self.definition, self.sliders, buttons, self.facts),
         ]
         return [partial(list, part) for part in batched(views, _VIEWS_OF_PART)]
@@ -274,7 +274,7 @@ def _accepted(review: PageReview, note: str) -> str:
 def _critical_points_table(review: PageReview) -> str:
     """Return a table of the critical points, exits first."""
     rows = "".join(
-        f"<tr><td>{point.kind.value}</td><td>({format_number(point.x)}, {format_number(point.y)})</td>"
+        f"<tr><td>{point.kind.value}</td><td>{format_point(point.x, point.y, 4)}</td>"
         f"<td>{format_number(point.energy)}</td><td>{point.channel or ''}</td></tr>"
         for point in sorted(review.critical_points, key=lambda point: point.channel or MOST_CHANNELS + 1)
     )

@@ -141,7 +141,7 @@ class Parser:
             position = mark.position
             exponent = read_number(mark)
         if abs(exponent) > LARGEST_EXPONENT:
-            raise FormulaError(position, f"an exponent must be a number from {-LARGEST_EXPONENT} to {LARGEST_EXPONENT}")
+            raise FormulaError(position, f"an exponent must be a number from −{LARGEST_EXPONENT} to {LARGEST_EXPONENT}")
         if self.token.kind in ("power", "superscript"):
             raise FormulaError(self.token.position, "a power of a power needs brackets, as in (x^2)^3")
         return exponent
@@ -149,7 +149,7 @@ class Parser:
     def _parse_exponent_value(self) -> Fraction:
         is_negative, token = self._parse_signs(), self.token
         if token.kind not in (*_NUMBER_KINDS, "letter", "open", "superscript"):
-            raise FormulaError(token.position, f"an exponent must be a number from {-LARGEST_EXPONENT} to {LARGEST_EXPONENT}")
+            raise FormulaError(token.position, f"an exponent must be a number from −{LARGEST_EXPONENT} to {LARGEST_EXPONENT}")
         if token.kind == "superscript":
             value: FormulaValue = exact_constant(read_number(self._next_token()))
         else:

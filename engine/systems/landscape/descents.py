@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from engine.foundations.wording import format_point
 from engine.systems.forms.expression_form import Form
 from engine.systems.forms.form import DescentError, Flow, hessian_matrix
 from engine.systems.landscape.mirror_images import Signs, find_images, mirrors_of
@@ -127,7 +128,7 @@ class Descents:
             if end is not None:
                 return end, np.array(places)
         x, y = self._points[saddle]
-        raise DescentError(f"The end of a line of steepest descent from the saddle ({x:.6g}, {y:.6g}) is not found.")
+        raise DescentError(f"The end of a line of steepest descent from the saddle {format_point(x, y)} is not found.")
 
     def _steady_flow(self, time: float, place: np.ndarray) -> np.ndarray:
         """Return the flow scaled to speed 1."""

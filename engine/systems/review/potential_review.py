@@ -12,6 +12,7 @@ import numpy as np
 
 from engine.foundations.result import Result
 from engine.foundations.validation import checks_types
+from engine.foundations.wording import format_point
 from engine.systems.catalogue.entry import EnergyRange
 from engine.systems.forms.polynomial_form import PolynomialForm
 from engine.systems.formulas.formula_writer import write_formula
@@ -26,7 +27,7 @@ from engine.systems.well import EQUAL_ENERGY_TOLERANCE
 # Number of cached reviews.
 _CACHE_SIZE = 256
 # Remark on moved axes.
-_SHIFT_REMARK = "x and y count from the well at ({:.6g}, {:.6g}) of the formula."
+_SHIFT_REMARK = "x and y count from the well at {} of the formula."
 # Distance within which a line of steepest descent ends at a minimum, in units of the distance of the minimum from the origin.
 _SAME_PLACE = 1e-2
 
@@ -169,7 +170,7 @@ def review_potential(potential: Potential) -> PotentialReview:
 
 def _remarks(potential: Potential, points: tuple[CriticalPoint, ...]) -> tuple[str, ...]:
     """Return the unusual properties of a potential that can be used, one sentence each."""
-    remarks = [_SHIFT_REMARK.format(*potential.origin)] if any(potential.origin) else []
+    remarks = [_SHIFT_REMARK.format(format_point(*potential.origin))] if any(potential.origin) else []
     if not potential.escapes_over_saddles:
         return tuple(remarks)
     energies, closed_energy = potential.well.saddle_energies, potential.well.closed_energy
@@ -190,7 +191,7 @@ def _remarks(potential: Potential, points: tuple[CriticalPoint, ...]) -> tuple[s
         remarks.append(f"Saddles that do not lead out of the well at the origin and are therefore not exits: {other_saddles}.")
     wells_beyond = _wells_beyond_exits(potential, points)
     if wells_beyond:
-        places = ", ".join(f"({point.x:.6g}, {point.y:.6g})" for point in wells_beyond)
+        places = ", ".join(format_point(point.x, point.y) for point in wells_beyond)
         remarks.append(f"Exits lead into other wells, at {places}: an orbit that enters one counts as escaped but may return.")
     if potential.well.channel_mergers:
         lowest = potential.well.channel_mergers[0]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from engine.foundations.wording import format_point
 from engine.systems.forms.form import DescentError, NotIsolatedError, UndecidedError
 from engine.systems.landscape.closed_energy import HIGHEST_TRIED
 from engine.systems.landscape.hill_component import Extent
@@ -93,7 +94,7 @@ def _degenerate_refusal(_potential: Potential, points: tuple[CriticalPoint, ...]
     for point in points:
         if point.kind is PointKind.DEGENERATE:
             return (
-                f"V has a degenerate critical point at ({point.x:.6g}, {point.y:.6g}), which is neither a saddle nor a minimum "
+                f"V has a degenerate critical point at {format_point(point.x, point.y)}, which is neither a saddle nor a minimum "
                 f"nor a maximum, so it is undefined whether orbits escape over it."
             )
     return None

@@ -6,6 +6,7 @@ import functools
 
 import numpy as np
 
+from engine.foundations.wording import format_point
 from engine.systems.potential import Potential
 
 # Radii of the sample points, in units of the escape radius.
@@ -43,7 +44,7 @@ def singularity_refusal(potential: Potential) -> str | None:
     for x, y in potential.form.singular_points.tolist():
         if not _is_beyond(potential, np.array([x]), np.array([y]))[0] and not _is_wall(potential, x, y):
             undefined = "The slope of V" if _is_bounded_near(potential, x, y) else "V"
-            return f"{undefined} is not defined at ({x:.6g}, {y:.6g}): there must be a centre with a radius of collision."
+            return f"{undefined} is not defined at {format_point(x, y)}: there must be a centre with a radius of collision."
     radius, angle = np.meshgrid(potential.escape_radius * _SCANNED_RADII, _SCANNED_ANGLES)
     x, y = radius * np.cos(angle), radius * np.sin(angle)
     curve_points = potential.form.points_on_singular_curves(x, y)
@@ -53,7 +54,7 @@ def singularity_refusal(potential: Potential) -> str | None:
     is_refused = ~is_defined & ~_is_beyond(potential, x, y)
     if not is_refused.any():
         return None
-    return f"V is not defined at ({x[is_refused][0]:.6g}, {y[is_refused][0]:.6g}), which is within the escape radius."
+    return f"V is not defined at {format_point(x[is_refused][0], y[is_refused][0])}, which is within the escape radius."
 
 
 def _is_wall(potential: Potential, x: float, y: float) -> bool:

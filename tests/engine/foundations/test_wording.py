@@ -9,6 +9,7 @@ from engine.foundations.wording import (
     format_decimals,
     format_duration,
     format_number,
+    format_point,
     format_share,
     format_share_range,
     format_time,
@@ -64,3 +65,8 @@ def test_percentages_have_a_unit_and_a_fixed_number_of_digits() -> None:
 
 def test_a_range_of_percentages_has_one_sign() -> None:
     assert format_share_range(0.0321, 0.034) == "3.21 to 3.40 %"
+
+
+def test_points_have_typographic_signs_and_six_digits_unless_others_are_asked_for() -> None:
+    assert format_point(0.0, -0.38345812) == "(0, −0.383458)"
+    assert format_point(-1.23456, 2.0, 3) == "(−1.23, 2)"

@@ -111,5 +111,5 @@ def test_the_letters_of_a_parsed_formula_can_be_varied() -> None:
 
 
 def test_where_axes_are_moved_the_formula_says_from_where_they_count() -> None:
-    shown = System(TYPED, "(x − 1)² + y² − (x − 1)² y²; well (1, 0)").formula_shown
-    assert shown.endswith(", where x and y count from (1, 0)")
+    shown = System(TYPED, "(x + 1.5)² + y² − (x + 1.5)² y²; well (-1.5, 0)").formula_shown
+    assert shown.endswith(", where x and y count from (−1.5, 0)")

@@ -80,9 +80,9 @@ def test_exits_that_are_not_known_are_not_said_to_be_missing() -> None:
 @pytest.mark.parametrize(
     ("formula", "wells"),
     [
-        ("½x² − 2/(1 + (y − 2)²) − 2/(1 + (y + 2)²); well (0, 2)", "(0, -3.97204)"),
+        ("½x² − 2/(1 + (y − 2)²) − 2/(1 + (y + 2)²); well (0, 2)", "(0, −3.97204)"),
         # Four of twelve wells are next to that at the origin.
-        ("sin(x)² + sin(y)²", "(0, -3.14159), (-3.14159, 0), (3.14159, 0), (0, 3.14159)"),
+        ("sin(x)² + sin(y)²", "(0, −3.14159), (−3.14159, 0), (3.14159, 0), (0, 3.14159)"),
         # The mirror image of the well is behind the wall x = 0.
         ("½log(x² + y²/0.81) + 0.02/x² − 0.05y⁴; well (0.2, 0)", ""),
     ],
