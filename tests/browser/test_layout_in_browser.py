@@ -396,6 +396,17 @@ def test_a_picture_fills_the_height_when_it_is_enlarged(middling: ExplorerPage) 
     explorer.return_home()
 
 
+def test_an_enlarged_picture_is_in_view_with_its_legend_below_the_lines_of_text(middling: ExplorerPage) -> None:
+    explorer = middling
+    explorer.page.set_viewport_size({"width": 1024, "height": 768})
+    explorer.press(f"Enlarge, or show all: {TITLES['times']}")
+    explorer.wait_for_view("focus=times")
+    expect(explorer.page.locator(".foot.picked[data-picture=times]")).to_be_in_viewport(ratio=1)
+    assert figures(explorer)["times"][4] > 0.5 * 768
+    explorer.return_home()
+    explorer.page.set_viewport_size({"width": 1280, "height": 720})
+
+
 def help_text(explorer: ExplorerPage, name: str) -> Locator:
     return explorer.page.locator(f"#help-{name}")
 

@@ -77,6 +77,19 @@ def test_the_tour_goes_forward_and_back_beside_what_each_step_is_about(
     expect(explorer.page.locator(".tour")).to_have_count(0)
 
 
+def test_with_large_letters_the_tour_of_a_phone_leaves_the_slider_of_the_energy_free(
+    open_explorer: Callable[..., ExplorerPage],
+) -> None:
+    explorer = open_explorer(390, 844, QUICK, touch=True)
+    explorer.page.evaluate("document.documentElement.style.fontSize = '200%'")
+    begin_from_help(explorer)
+    step = next(k for k, each in enumerate(TOUR, 1) if each.about == (TourPart.ENERGY,))
+    for _ in range(1, step):
+        explorer.press("Next")
+    expect(tour(explorer, step)).to_be_visible()
+    assert_beside_what_it_is_about(explorer)
+
+
 def test_frames_surround_the_pictures_of_a_step_and_follow_them(explorer: ExplorerPage) -> None:
     begin_from_help(explorer)
     assert TOUR[0].about == (TourPart.MAP,)

@@ -278,9 +278,9 @@ def _critical_points_table(review: PageReview) -> str:
         f"<td>{format_number(point.energy)}</td><td>{point.channel or ''}</td></tr>"
         for point in sorted(review.critical_points, key=lambda point: point.channel or MOST_CHANNELS + 1)
     )
-    names = ("critical point", "(x, y)", potential_symbol(review.potential), "exit")
+    names = ("point", "(x, y)", potential_symbol(review.potential), "exit")
     head = "".join(f"<th scope=col>{name}</th>" for name in names)
-    return f"<table><tr>{head}</tr>{rows}</table>" if rows else ""
+    return f"<table aria-label='critical points'><tr>{head}</tr>{rows}</table>" if rows else ""
 
 
 def _remark_paragraphs(review: PageReview) -> str:
