@@ -6,7 +6,7 @@ computed at the same time.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from dataclasses import dataclass, fields, replace
 from functools import partial
@@ -15,11 +15,10 @@ from typing import Any
 import numpy as np
 
 from engine.foundations.execution import SERIAL_EXECUTION, Execution, count_cores
-from engine.maps.pixels import PixelAnalysis
 from engine.maps.result import PIXEL_ARRAYS, EscapeMap, collect_map, empty_arrays, representative_indices
 from engine.maps.run import MapRun
 from engine.maps.spec import MapSpec
-from engine.maps.stages import OnChange, Stage, Staged, run_stages, run_to_frame
+from engine.maps.stages import OnChange, Stage, run_stages
 from engine.propagation.batch import OrbitBatch
 from engine.propagation.fates import Evidence, Fate, renumber
 from engine.slices.axes import HeldParameter, highest_energy
@@ -163,13 +162,13 @@ class LinewiseRun:
         """Integrate the orbits of some lines to a horizon."""
         continued_indices = [k for k in indices if _can_change(self._line_maps.get(k))]
         arguments = [(self._lines[k], horizon, self._line_maps.get(k)) for k in continued_indices]
-        with _create_coordinating_threads() as threads:
+        with create_coordinating_threads() as threads:
             if horizon <= self._first_horizon:
                 futures = [execution.submit(_compute_line, *each) for each in arguments]
             else:
                 silent_execution = replace(execution, on_progress=None)
                 futures = [threads.submit(_compute_line, *each, silent_execution) for each in arguments]
-            for k, line_map in _as_finished(dict(zip(futures, continued_indices, strict=True)), execution):
+            for k, line_map in as_finished(dict(zip(futures, continued_indices, strict=True)), execution):
                 self._store_line(k, line_map)
                 on_change(False)
         if not execution.is_cancelled:
@@ -218,88 +217,7 @@ class LinewiseRun:
         return replace(frame, batch=joined.take(np.argsort(np.concatenate(pixels))))
 
 
-def analyse_map[Analysis: PixelAnalysis](
-    escape_map: EscapeMap,
-    begin: Callable[[EscapeMap, Place], Staged[Analysis]],
-    kind: type[Analysis],
-    on_frame: Callable[[Analysis], None] | None,
-    execution: Execution,
-    **choices: Any,
-) -> Analysis:
-    """Analyse a complete map. A map along a parameter is analysed line by line.
-
-    Parameters
-    ----------
-    escape_map
-        The map.
-    begin
-        Returns the computation that analyses a map of one potential, or a line with its place.
-    kind
-        The class of the analysis, for a map along a parameter.
-    on_frame
-        Called with the analysis so far, see `run_stages`, and with the complete analysis.
-    execution
-        How the computation runs.
-    **choices
-        Fields of the analysis that are the same for all lines.
-
-    Returns
-    -------
-    The analysis of the map. It is complete when the analyses of all lines are complete.
-    """
-    if escape_map.spec.plane.parameter is None:
-        return run_to_frame(begin(escape_map, ALL_PIXELS), execution, on_frame)
-    return run_to_frame(_LinewiseAnalysis(escape_map, begin, kind, choices), execution, on_frame)
-
-
-class _LinewiseAnalysis[Analysis: PixelAnalysis]:
-    """Analyses the lines of a map concurrently, see `analyse_map`."""
-
-    def __init__(
-        self,
-        escape_map: EscapeMap,
-        begin: Callable[[EscapeMap, Place], Staged[Analysis]],
-        kind: type[Analysis],
-        choices: Mapping[str, Any],
-    ) -> None:
-        self._map, self._begin, self._kind, self._choices = escape_map, begin, kind, choices
-        self._arrays = empty_arrays(kind.pixel_arrays, escape_map.fate.shape)
-        self._lines = [line for line in find_lines(escape_map.spec) if line is not None]
-        # Number of lines whose analysis has ended, and number of these analyses that are complete.
-        self._finished_count = self._complete_count = 0
-
-    def stages(self, execution: Execution, on_change: OnChange) -> Iterator[Stage]:
-        """Yield the stages, see `Staged`. All lines form one stage."""
-        yield partial(self._analyse, execution, on_change)
-
-    def _analyse(self, execution: Execution, on_change: OnChange) -> None:
-        """Analyse all lines."""
-        silent_execution = replace(execution, on_progress=None)
-        with _create_coordinating_threads() as threads:
-            lines = {threads.submit(self._analyse_line, line, silent_execution): line for line in self._lines}
-            for line, analysis in _as_finished(lines, execution):
-                for name, values in self._arrays.items():
-                    values[line.place] = getattr(analysis, name)
-                self._finished_count += 1
-                self._complete_count += analysis.complete
-                on_change(True)
-
-    def _analyse_line(self, line: Line, execution: Execution) -> Analysis:
-        """Return the analysis of one line, with the arrays of the line."""
-        return run_to_frame(self._begin(line.extract(self._map), line.place), execution)
-
-    def progress(self) -> float:
-        """Return the share of the lines that are finished."""
-        return self._finished_count / max(len(self._lines), 1)
-
-    def frame(self) -> Analysis:
-        """Return the analysis so far."""
-        arrays: dict[str, Any] = {name: values.copy() for name, values in self._arrays.items()}
-        complete = self._complete_count == len(self._lines)
-        return self._kind(spec=self._map.spec, complete=complete, **arrays, **self._choices)
-
-
-def _as_finished[Key, Result](key_by_call: dict[Future[Result], Key], execution: Execution) -> Iterator[tuple[Key, Result]]:
+def as_finished[Key, Result](key_by_call: dict[Future[Result], Key], execution: Execution) -> Iterator[tuple[Key, Result]]:
     """Yield the key and the result of each call when it is finished.
 
     When the computation is cancelled, calls that have not begun are dropped and yield nothing.
@@ -313,7 +231,7 @@ def _as_finished[Key, Result](key_by_call: dict[Future[Result], Key], execution:
             yield key_by_call[call], result
 
 
-def _create_coordinating_threads() -> ThreadPoolExecutor:
+def create_coordinating_threads() -> ThreadPoolExecutor:
     """Return a pool of threads that each compute one line at a time. They share the executor, and mostly wait for tiles."""
     return ThreadPoolExecutor(2 * count_cores(), thread_name_prefix="lines")
 

@@ -13,7 +13,8 @@ import numpy as np
 from engine.exits.exit_rows import exit_curves_at
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.validation import checked_number, checks_types
-from engine.maps.parameter_map import Place, analyse_map
+from engine.maps.analyses.map_analysis import analyse_map
+from engine.maps.parameter_map import Place
 from engine.maps.pixels import MirrorPixels, PixelAnalysis
 from engine.maps.result import EscapeMap, MapLike, as_complete_map
 from engine.maps.spec import MapSpec

@@ -14,7 +14,7 @@ from engine.exits.exit_rows import closed_exits, exit_curves_at
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.validation import checks_types
 from engine.foundations.wording import format_share
-from engine.maps.parameter_map import analyse_map
+from engine.maps.analyses.map_analysis import analyse_map
 from engine.maps.pixels import PixelAnalysis, PixelCodes, code_share
 from engine.maps.result import EscapeMap, MapLike, as_complete_map
 from engine.maps.stages import OnChange, Stage

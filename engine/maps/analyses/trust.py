@@ -17,8 +17,9 @@ from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_pro
 from engine.foundations.validation import checks_types
 from engine.foundations.wording import format_share
 from engine.integrator.kernels.dense_output import advance_states
+from engine.maps.analyses.map_analysis import analyse_map
 from engine.maps.analyses.reruns import SHIFT, SHIFTED_STARTS, Perturbation, Rerun
-from engine.maps.parameter_map import Place, analyse_map
+from engine.maps.parameter_map import Place
 from engine.maps.pixels import PixelAnalysis, PixelCodes, code_share
 from engine.maps.result import EscapeMap, MapLike, as_complete_map
 from engine.maps.run import FIRST_TEST_TIME, looks_for_tori, rising_horizons
