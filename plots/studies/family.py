@@ -186,7 +186,6 @@ FAMILY_STUDY = Study(
     "against a parameter.",
     axes=energy_and_parameters,
     job=_job,
-    progress=lambda family: 1.0 if family.complete else 0.0,
     sentence=_sentence,
     invitation=lambda family: "Click a curve to open a member." if len(family) > 1 else "",
     frames=(_RETURNS, _INDEX, _PERIOD, _ACTION),

@@ -85,7 +85,6 @@ PERIODIC_STUDY = Study(
     follows_map=True,
     hint=f"The periodic orbits with up to {RETURNS} returns to the section, and whether they are stable: a few seconds.",
     job=_job,
-    progress=lambda found: 1.0 if found.complete else 0.0,
     sentence=PeriodicOrbits.describe,
     invitation=_invite,
     frames=(FRAME,),

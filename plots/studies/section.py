@@ -158,7 +158,6 @@ SECTION_STUDY = Study(
     follows_map=True,
     hint=f"The points at which many orbits cross the surface of section, up to {RETURNS} of each orbit.",
     job=_job,
-    progress=lambda found: 1.0 if found.complete else 0.0,
     sentence=Returns.describe,
     invitation=_invite,
     frames=(FRAME,),

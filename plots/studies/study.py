@@ -99,7 +99,7 @@ class Study[Found: Result]:
     function
         The public function that returns the result for the arguments of the job; None if the job has this function.
     progress
-        Returns the computed share of a result, 0 to 1.
+        Returns the computed share of a result, 0 to 1. By default 0 for a result whose ``complete`` is False, and otherwise 1.
     needs_orbit
         Whether the job is about the orbit of `Subject.state`; other studies do not depend on it.
     follows_map
@@ -138,7 +138,7 @@ class Study[Found: Result]:
     invitation: Callable[[Found], str] = lambda found: ""
     axes: Callable[[System], Sequence[str]] = lambda system: ()
     function: Callable[..., Found] | None = None
-    progress: Callable[[Found], float] = lambda found: 1.0
+    progress: Callable[[Found], float] = lambda found: float(getattr(found, "complete", True))
     follows_map: bool = False
     button: str = ""
     tab: str = ""
