@@ -36,7 +36,7 @@ _SHADOW = 0.35
 def shade_relief(spec: MapSpec) -> tuple[np.ndarray, Window]:
     """Return the shades of the relief in a map in (x, y), uint8 of shape (n, n), and their window. The job of the map calls this.
 
-    The effective potential of a rotating system is shaded. Heights are cut off at a floor and at a plateau around the well.
+    The effective potential of a rotating system is shaded. Heights begin at a floor and approach a plateau around the well.
     """
     window = _enlarged(spec.find_window())
     h = spec.common_energy
@@ -46,12 +46,18 @@ def shade_relief(spec: MapSpec) -> tuple[np.ndarray, Window]:
         energies = spec.plane.required_energy(spec.potential, *np.meshgrid(x, y))
     floor = _find_floor(spec.potential.well.bottom, energies[energies <= h], h)
     depth = h - floor or 1.0
-    heights = np.clip(np.nan_to_num((energies - floor) / depth, nan=_PLATEAU), 0.0, _PLATEAU)
+    heights = _flattened(np.maximum(np.nan_to_num((energies - floor) / depth, nan=np.inf), 0.0))
     slope_y, slope_x = np.gradient(heights * _DEPTH * (_SIDE - 1) / _MARGIN)
     brightness = (_LIGHT[2] - _LIGHT[0] * slope_x - _LIGHT[1] * slope_y) / np.sqrt(1.0 + slope_x**2 + slope_y**2) - _LIGHT[2]
     middle = _SHADES // 2
     tone = brightness / _STRONGEST + _SHADOW * (np.minimum(heights, 1.0) - 1.0)
     return np.clip(np.rint(middle * (1.0 + tone)), 0, _SHADES - 1).astype(np.uint8), window
+
+
+def _flattened(heights: np.ndarray) -> np.ndarray:
+    """Return heights that approach the plateau smoothly above the energy h, so that its edge makes no step in the shades."""
+    reach = _PLATEAU - 1.0
+    return np.where(heights > 1.0, 1.0 + reach * np.tanh((heights - 1.0) / reach), heights)
 
 
 def _find_floor(bottom: float, inside: np.ndarray, h: float) -> float:

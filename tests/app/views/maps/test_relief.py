@@ -29,6 +29,13 @@ def test_the_bottom_is_darker_than_the_places_above_the_energy() -> None:
     assert shade_at("III", 0.26, 0.0, 0.0) < shade_at("III", 0.26, 0.0, 1.0)
 
 
+def test_the_slope_fades_above_the_energy() -> None:
+    # Along this line, V of case I rises from the bottom to 3.7 times the energy.
+    shades = [shade_at("I", 0.05, -t, 0.5 * t) for t in np.linspace(0.0, 0.5, 120)]
+    assert max(shades) - min(shades) > 15
+    assert np.abs(np.diff(shades)).max() <= 6
+
+
 def test_only_the_surroundings_of_bodies_are_deep() -> None:
     near, far = (shade_at("Copenhagen", -1.6, x, -0.05) for x in (-0.5, 2.0))
     assert near != far
