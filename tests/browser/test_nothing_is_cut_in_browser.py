@@ -77,3 +77,21 @@ def cut_parts(reader: Browser, address: str) -> dict[str, list[str]]:
 @pytest.mark.parametrize("name", LINKS)
 def test_no_content_is_cut(reader: Browser, server: str, name: str) -> None:
     assert cut_parts(reader, server + LINKS[name]) == {}
+
+
+# Whether the frame of the basins is a square inside the window, beside the slider of the energy.
+_WHOLE_PICTURE = """() => {
+    const views = [...Bokeh.index.all_views()], view = views.find(each => each.model.name === "basins")
+    const {left, right, bottom} = view.canvas_view.el.getBoundingClientRect(), {width, height} = view.frame.bbox
+    const slider = views.find(each => each.model.css_classes?.includes("energy")).el.getBoundingClientRect()
+    const isWhole = left >= 0 && bottom <= innerHeight && right <= slider.left + 8
+    return isWhole && Math.abs(width - height) <= 1 && width > 0.35 * innerHeight
+}"""
+
+
+def test_the_picture_is_whole_on_a_phone_that_lies_on_its_side(reader: Browser, server: str) -> None:
+    page: Page = reader.new_page(viewport={"width": 844, "height": 390}, has_touch=True)
+    page.goto(server + QUICK)
+    page.wait_for_function(_SHOWN)
+    page.wait_for_function(_WHOLE_PICTURE, timeout=SETTLING_MS)
+    page.close()

@@ -140,12 +140,13 @@ def is_within(box: FloatRect | None, top: float, bottom: float) -> bool:
     return box is not None and box["y"] >= top and box["y"] + box["height"] <= bottom
 
 
-@pytest.mark.parametrize(("width", "height"), [(390, 844), (420, 860)])
+@pytest.mark.parametrize(("width", "height", "letters"), [(390, 844, "100%"), (420, 860, "100%"), (420, 860, "200%")])
 def test_on_a_phone_the_picture_and_a_line_of_the_player_are_seen_together(
-    open_explorer: OpenExplorer, width: int, height: int
+    open_explorer: OpenExplorer, width: int, height: int, letters: str
 ) -> None:
     explorer = open_explorer(width, height, f"{QUICK}&analysis=watch&watch=well,1000,1,-2", touch=True)
     page = explorer.page
+    page.evaluate("size => { document.documentElement.style.fontSize = size }", letters)
     play = page.get_by_role("button", name="Watch them leave")
     expect(play).to_be_enabled()
     play.tap()

@@ -22,6 +22,7 @@ from bokeh.models import (
     Glyph,
     GlyphRenderer,
     HoverTool,
+    NoOverlap,
     Range1d,
     Span,
 )
@@ -77,8 +78,9 @@ def map_figure(name: str, title: str, x: Range1d, y: Range1d) -> figure:
     """Return the square figure of a picture, see `square_figure`. `PictureTexts` stand around its frame."""
     # A frame aligned with the frames of larger pictures would not be square.
     plot = square_figure(name, title, HELP_TEXTS[name], x_range=x, y_range=y, frame_align=False, **_PICTURE_BORDERS)
+    labels_apart = NoOverlap()
     for axis in (*plot.below, *plot.left):
-        axis.major_label_text_font_size = "14px"
+        axis.update(major_label_text_font_size="14px", major_label_policy=labels_apart)
         axis.ticker.desired_num_ticks = _MOST_TICKS
     return plot
 

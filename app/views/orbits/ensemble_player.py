@@ -39,9 +39,13 @@ button.play { min-width: 11.5rem; font-weight: 600 }
 /* Where the results are below the pictures, this line stays in the window. */
 @media (max-width: 74.99em) {
   .line.watched { position: fixed; z-index: 80; inset: auto 0 0 var(--maps-width, 0px); flex-wrap: nowrap; margin: 0;
-    padding: 6px 10px; border-top: 1px solid var(--ui-edge); background: var(--ui-surface); box-shadow: var(--ui-shadow-l) }
-  .line.watched > .play { min-width: 6rem }
-  .line.watched > .close { display: block; flex: none; width: var(--ui-control); padding: 0 }
+    padding: 6px 10px; border-top: 1px solid var(--ui-edge); background: var(--ui-surface); box-shadow: var(--ui-shadow-l);
+    font-size: min(var(--ui-size), 4vmin) }
+  .line.watched > .bk-btn { font-size: inherit }
+  .line.watched > .play { min-width: min(6rem, 24vmin) }
+  .line.watched > input { min-width: min(3.5rem, 15vmin) }
+  .line.watched > output { width: 5.2em }
+  .line.watched > .close { display: block; flex: none; width: min(var(--ui-control), 12vmin); padding: 0 }
 }
 select.bk-input { appearance: none; padding-right: 28px; border: 1px solid var(--ui-edge); border-radius: var(--ui-radius);
   background-color: var(--ui-surface); background-repeat: no-repeat; color: inherit; font: inherit }

@@ -14,7 +14,7 @@ const GAP = 8
 /** Width of a frame, in pixels. */
 const FRAME = 3
 /** Windows in which the maps are above all other parts, as in the stylesheet. */
-const NARROW = "(max-width: 37.49em), (max-width: 56.24em) and (min-height: 32.01em)"
+const NARROW = "(max-width: 37.49em) and (max-aspect-ratio: 3/2), (max-width: 56.24em) and (min-height: 32.01em)"
 
 /** @type {(name: string) => DOMRect | undefined} */
 const boxOfClass = name =>
