@@ -53,6 +53,14 @@ def test_another_energy_is_compared_with_the_view_that_was_kept(explorer: Explor
     np.testing.assert_array_equal(explorer.column("difference") == 6, expected == 6)
 
 
+def test_an_energy_that_is_typed_before_the_server_has_kept_the_view_is_compared_too(explorer: ExplorerPage) -> None:
+    explorer.page.get_by_role("checkbox", name="Compare with this view", exact=True).click()
+    explorer.type_number("Exact h", "0.25")
+    explorer.wait_for_data("maps", "data.complete[0] && data.energy[0] == 0.25 && data.difference[0].length > 1")
+    # Both views are in the window of the kept view, which is smaller than that of all starts at the new energy.
+    assert explorer.ranges("basins") == pytest.approx(explorer.window_of_pixels())
+
+
 @pytest.mark.slow
 def test_the_comparison_follows_the_slider_without_the_server(open_explorer: Callable[..., ExplorerPage]) -> None:
     explorer = open_explorer(link=f"{QUICK}&with_case=I&with_plane=x_px&with_h=0.19")

@@ -97,8 +97,11 @@ export class Preview {
   /** @param {ServerView} view */
   setView(view) {
     const viewChanged = this.#view && (view.system !== this.#view.system || view.plane !== this.#view.plane)
+    // A preview at a new energy has a window of its own until the server chooses one, which may be the last window from the server.
+    const isWindowChosen = this.#view && !this.#view.window && view.window
     this.#view = view
     if (viewChanged) this.#restore()
+    if (isWindowChosen) this.#window.follow()
   }
 
   /** The scene to show; null if the browser cannot compute it. @returns {import("../../../../plots/browser/modules/workers/frames.js").Scene | null} */
