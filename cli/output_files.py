@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -12,7 +11,7 @@ from typing import Annotated
 import typer
 
 from cli.option_marks import DocumentedBy
-from engine.foundations.output_lock import hold_lock, output_named_in_errors
+from engine.foundations.output_lock import hold_lock, replaced_file
 
 Content = str | bytes
 """Content of a file: text or bytes."""
@@ -114,16 +113,5 @@ def write_files(contents: Mapping[Path, Content]) -> list[str]:
 
 
 def _write(path: Path, content: bytes) -> None:
-    # The temporary file is in the same folder, because replacing is atomic only within one file system.
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
-    with output_named_in_errors(path):
-        # The file of a killed process with the same number.
-        temporary.unlink(missing_ok=True)
-        try:
-            with temporary.open("xb") as file:
-                file.write(content)
-                file.flush()
-                os.fsync(file.fileno())
-            temporary.replace(path)
-        finally:
-            temporary.unlink(missing_ok=True)
+    with replaced_file(path) as temporary, temporary.open("xb") as file:
+        file.write(content)

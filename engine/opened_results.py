@@ -18,6 +18,7 @@ from engine.foundations.validation import checked_path, checks_types
 from engine.maps.pixels import PixelAnalysis
 from engine.maps.result import EscapeMap, read_map
 from engine.maps.spec import read_spec
+from engine.sweeps.stored_metadata import METADATA_FILE, open_stored
 from engine.sweeps.sweep import Sweep
 from engine.systems.formulas.formula_parser import read_potential
 from engine.systems.outcomes import read_outcomes
@@ -41,8 +42,6 @@ _READERS: dict[Any, Callable[[xr.Dataset], Result]] = {
     Sweep: _read_sweep,
     Potential: lambda dataset: read_potential(dataset.attrs),
 }
-# Name of a file in every Zarr store of format 3.
-_ZARR_FILE = "zarr.json"
 
 
 @overload
@@ -93,18 +92,13 @@ def open_result(path: str | os.PathLike[str], kind: type[Any] = Result) -> Any:
 
 def _open(path: Path) -> Any:
     """Return the result of a file or a Zarr store; an OSError names the path."""
-    # The import is slow and seldom needed.
-    import xarray as xr
-
     if not path.exists():
         raise FileNotFoundError(f"path={path}: there is no such file or folder")
-    if (path / _ZARR_FILE).exists():
+    if (path / METADATA_FILE).exists():
         require_package("zarr", "files")
-        with content_named(f"path={path}"):
-            dataset = xr.open_zarr(path, chunks=None, consolidated=False)
-        return _read(path, dataset)
+        return _read(path, open_stored(f"path={path}", path))
     if path.is_dir():
-        raise ValueError(f"path={path}: is a folder without {_ZARR_FILE}; must be a NetCDF file or a Zarr store of format 3")
+        raise ValueError(f"path={path}: is a folder without {METADATA_FILE}; must be a NetCDF file or a Zarr store of format 3")
     return _read(path, read_netcdf(path))
 
 

@@ -1,14 +1,20 @@
-"""NetCDF files with checksums, which are replaced as a whole, and whose damage is named."""
+"""NetCDF files with checksums, which are replaced as a whole, and whose damage is named.
+
+The checksum of the whole file stands after the NetCDF content. Other readers ignore it there, and programs that change the file
+drop it. Checksums of arrays alone are not enough: when their index is damaged, HDF5 reads zeros, which look like bounded orbits.
+"""
 
 from __future__ import annotations
 
+import hashlib
+import mmap
 import os
 from collections.abc import Hashable
 from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 from engine.foundations.extras import require_package
-from engine.foundations.output_lock import output_named_in_errors
+from engine.foundations.output_lock import replaced_file
 from engine.foundations.validation import checked_path
 
 if TYPE_CHECKING:
@@ -16,6 +22,10 @@ if TYPE_CHECKING:
 
 # First bytes of HDF5 files, and thus of NetCDF 4 files.
 _HDF5_SIGNATURE = b"\x89HDF"
+# Text before the checksum at the end of a file.
+_MARK = b"\nsha256 "
+# Length of the checksum with its mark.
+_CHECKSUM_LENGTH = len(_MARK) + 2 * hashlib.sha256().digest_size
 
 
 def write_netcdf(dataset: xr.Dataset, path: str | os.PathLike[str]) -> None:
@@ -35,16 +45,15 @@ def write_netcdf(dataset: xr.Dataset, path: str | os.PathLike[str]) -> None:
     OSError
         If the file cannot be written; the error names it.
     """
-    file = checked_path("path", path)
-    if file.suffix != ".nc":
+    target = checked_path("path", path)
+    if target.suffix != ".nc":
         raise ValueError(f"path={path}: must end in .nc")
-    incomplete = file.with_name(f".{file.name}.{os.getpid()}.part")
-    with output_named_in_errors(path):
-        try:
-            dataset.to_netcdf(incomplete, encoding=_checksums(dataset))
-            incomplete.replace(file)
-        finally:
-            incomplete.unlink(missing_ok=True)
+    with replaced_file(target) as incomplete:
+        dataset.to_netcdf(incomplete, encoding=_checksums(dataset))
+        with incomplete.open("rb") as file:
+            checksum = hashlib.file_digest(file, "sha256").hexdigest()
+        with incomplete.open("ab") as file:
+            file.write(_MARK + checksum.encode())
 
 
 def _checksums(dataset: xr.Dataset) -> dict[Hashable, dict[str, bool]]:
@@ -72,16 +81,27 @@ def read_netcdf(path: str | os.PathLike[str]) -> xr.Dataset:
     with open(path, "rb") as file:
         if file.read(len(_HDF5_SIGNATURE)) == _HDF5_SIGNATURE:
             require_package("h5netcdf", "files")
-    problem = f"path={os.fspath(path)}: cannot be read as a NetCDF file"
+    problem, advice = f"path={os.fspath(path)}: cannot be read as a NetCDF file", "restore it, or delete it and compute it again"
+    if not _is_unchanged(path):
+        raise OSError(f"{problem}: is damaged; {advice}")
     try:
-        opened = xr.open_dataset(path)
-    except OSError as error:
-        raise OSError(f"{problem}: {error}") from error
+        with xr.open_dataset(path) as dataset:
+            return dataset.load()
+    except (OSError, RuntimeError, KeyError, AttributeError, UnicodeError) as error:
+        # These are the errors of HDF5, and of the packages that read it, for damaged files.
+        raise OSError(f"{problem}: {error}; {advice}") from error
     except ValueError:
         # No engine of xarray recognises the file.
         raise OSError(f"{problem}: its format is unknown") from None
-    with opened as dataset:
-        try:
-            return dataset.load()
-        except OSError as error:
-            raise OSError(f"path={os.fspath(path)}: its data are damaged: {error}") from error
+
+
+def _is_unchanged(path: str | os.PathLike[str]) -> bool:
+    """Return whether a file has the checksum at its end, or none, as files of other programs and earlier versions."""
+    with open(path, "rb") as file:
+        if os.fstat(file.fileno()).st_size <= _CHECKSUM_LENGTH:
+            return True
+        with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content, memoryview(content) as view:
+            found = bytes(view[-_CHECKSUM_LENGTH:])
+            with view[:-_CHECKSUM_LENGTH] as checked:
+                checksum = hashlib.sha256(checked).hexdigest()
+    return not found.startswith(_MARK) or found == _MARK + checksum.encode()

@@ -1,4 +1,4 @@
-"""A lock for output that takes long to write, and errors that name the output.
+"""A lock for output that takes long to write, files that are replaced as a whole, and errors that name the output.
 
 One process holds the lock; errors in other processes name the holder.
 """
@@ -6,12 +6,13 @@ One process holds the lock; errors in other processes name the holder.
 from __future__ import annotations
 
 import errno
+import glob
 import os
 import platform
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -44,6 +45,71 @@ def output_named_in_errors(path: str | os.PathLike[str]) -> Iterator[None]:
         if error.errno is None:
             raise
         raise OSError(error.errno, os.strerror(error.errno), os.fspath(path)) from error
+
+
+@contextmanager
+def replaced_file(path: Path) -> Iterator[Path]:
+    """Yield the path of a temporary file to be written, which at the end replaces a file as a whole.
+
+    Without an error, the content is on the disk before the file is replaced; with one, the file stays. Temporary files of killed
+    processes of this machine are deleted when the same file is next written.
+
+    Parameters
+    ----------
+    path
+        The file, which need not exist.
+
+    Raises
+    ------
+    OSError
+        When the file cannot be written; the error names it.
+    """
+    # Processes of other machines that share the folder have numbers of their own.
+    prefix = f".{path.name}.{platform.node()}."
+    # Replacing is atomic only within one file system, so the temporary file is in the same folder.
+    temporary = path.with_name(f"{prefix}{os.getpid()}.part")
+    with output_named_in_errors(path):
+        for left_over in path.parent.glob(f"{glob.escape(prefix)}*.part"):
+            _delete_left_over(left_over, left_over.name.removeprefix(prefix).removesuffix(".part"))
+        try:
+            yield temporary
+            sync_to_disk(temporary)
+            temporary.replace(path)
+        finally:
+            temporary.unlink(missing_ok=True)
+
+
+def _delete_left_over(file: Path, process: str) -> None:
+    """Delete a temporary file, unless another process with this number lives. A file of another user stays."""
+    if process.isdecimal() and (int(process) == os.getpid() or not _lives(int(process))):
+        with suppress(OSError):
+            file.unlink()
+
+
+def _lives(process: int) -> bool:
+    """Return whether a process with this number exists."""
+    if sys.platform == "win32":
+        # There, this call would end the process.
+        return True
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except PermissionError:
+        # The process belongs to another user.
+        return True
+    return True
+
+
+def sync_to_disk(path: Path) -> None:
+    """Write a file, or the names in a folder, from the cache of the operating system to the disk."""
+    if path.is_dir() and os.name != "posix":
+        return
+    opened = os.open(path, os.O_RDONLY if path.is_dir() else os.O_RDWR)
+    try:
+        os.fsync(opened)
+    finally:
+        os.close(opened)
 
 
 @contextmanager

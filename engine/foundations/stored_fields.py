@@ -60,7 +60,7 @@ def content_named(label: str) -> Iterator[None]:
     """Raise a ValueError that begins with a label, such as the path, for content of a file that is not that of a result."""
     try:
         yield
-    except (ValueError, KeyError, TypeError, AttributeError, StopIteration) as error:
+    except (ValueError, KeyError, TypeError, AttributeError, RuntimeError, StopIteration) as error:
         problem = f"{label}: cannot be read as a result ({error!r})"
         raise ValueError(f"{problem}; must hold what this library has written") from error
 

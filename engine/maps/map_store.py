@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import glob
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -39,9 +38,6 @@ def open_map_store(path: Path, spec: MapSpec) -> Iterator[MapStore]:
     if not path.absolute().parent.exists():
         raise ValueError(f"store={path}: the folder {path.parent} does not exist; make it first")
     with hold_lock(path):
-        # No other process writes this file, so these are left over from killed processes.
-        for left_over in path.parent.glob(f".{glob.escape(path.name)}.*.part"):
-            left_over.unlink()
         yield MapStore(path, _read_earlier(path, spec))
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-import os
+import shutil
 import tempfile
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
@@ -14,27 +14,32 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from engine.foundations.extras import require_package
-from engine.foundations.output_lock import hold_lock, output_named_in_errors
+from engine.foundations.output_lock import hold_lock, output_named_in_errors, sync_to_disk
 from engine.slices.sections.section_text import FORMER_ATTRIBUTES
 from engine.sweeps.axes import axis_names
-from engine.sweeps.stored_values import absent_values, count_complete, has_axis
+from engine.sweeps.stored_metadata import (
+    ARRAYS_ATTRIBUTE,
+    CHECKSUM_ATTRIBUTE,
+    COUNT_ATTRIBUTE,
+    METADATA_FILE,
+    OPTIONS,
+    check_metadata,
+    metadata_checksum,
+    read_stored,
+    without_values,
+)
+from engine.sweeps.stored_values import count_complete, encodings, has_axis
 
 if TYPE_CHECKING:
     import xarray as xr
     import zarr
 
-# Name of the file with the metadata of the group, or of an array.
-_METADATA_FILE = "zarr.json"
-# Names of the attributes of the group with the number of values on the disk, and with the names of all arrays.
-_COUNT_ATTRIBUTE, _ARRAYS_ATTRIBUTE = "finished", "arrays"
 # Pattern of the names of the temporary files of Zarr.
 _PARTIAL_FILES = "*.partial"
 # Names of attributes that follow from the potential, but whose wording may differ between versions.
 _WORDED_ATTRIBUTES = ("outcomes", "exit_names")
-# Options of xarray for the format of the group.
-_OPTIONS: Mapping[str, Any] = {"consolidated": False, "zarr_format": 3}
 # A chunk that equals the value of missing data is written as well, so that its file is known to be missing.
-_WRITING_OPTIONS: Mapping[str, Any] = {**_OPTIONS, "write_empty_chunks": True}
+_WRITING_OPTIONS: Mapping[str, Any] = {**OPTIONS, "write_empty_chunks": True}
 
 log = logging.getLogger(__name__)
 
@@ -78,32 +83,33 @@ class SweepStore:
 
     def read(self) -> xr.Dataset:
         """Return all values in ascending order; arrays are read from the disk on access."""
-        # This import is slow.
-        import xarray as xr
-
-        if not self._finished:
-            return without_values(self._attributes)
-        dataset: xr.Dataset = xr.open_zarr(self._path, chunks=None, **_OPTIONS)
-        values = dataset[self._axis].values
-        return dataset if np.all(np.diff(values) > 0.0) else dataset.sortby(self._axis)
+        return read_stored(self._path) if self._finished else without_values(self._attributes)
 
     def append(self, point: xr.Dataset) -> None:
         """Add a value. It counts only after its arrays are on the disk, in case of a power failure or a full disk."""
-        first: dict[str, Any] = {"mode": "w", "encoding": absent_values(point)}
+        first: dict[str, Any] = {"mode": "w", "encoding": encodings(point)}
         mode = {"append_dim": self._axis} if self._finished else first
-        state = {_COUNT_ATTRIBUTE: self._finished, _ARRAYS_ATTRIBUTE: sorted(map(str, point.variables))}
+        state = {COUNT_ATTRIBUTE: self._finished, ARRAYS_ATTRIBUTE: sorted(map(str, point.variables))}
         with output_named_in_errors(self._path):
+            if not self._finished:
+                self._remove_arrays()
             point.assign_attrs(self._attributes | state).to_zarr(self._path, **mode, **_WRITING_OPTIONS)
             for pattern in ("*/zarr.json", f"*/c/{self._finished}", f"*/c/{self._finished}/**/*", "**/"):
                 for written in self._path.glob(pattern):
-                    _sync_to_disk(written)
+                    sync_to_disk(written)
             self._set_finished(self._finished + 1)
+
+    def _remove_arrays(self) -> None:
+        """Remove arrays without complete values, while the file is still there by which the next run knows the store."""
+        for folder in self._path.glob("*/"):
+            shutil.rmtree(folder)
 
     def _set_finished(self, count: int) -> None:
         """Write the number of finished values, in one file with the metadata of all arrays, to the disk."""
-        _consolidate(self._path).attrs[_COUNT_ATTRIBUTE] = count
-        for written in (self._path / _METADATA_FILE, self._path, self._path.parent):
-            _sync_to_disk(written)
+        group = _consolidate(self._path)
+        group.attrs.update({COUNT_ATTRIBUTE: count, CHECKSUM_ATTRIBUTE: metadata_checksum(self._path)})
+        for written in (self._path / METADATA_FILE, self._path, self._path.parent):
+            sync_to_disk(written)
         self._finished = count
 
     def _resume(self) -> None:
@@ -112,21 +118,22 @@ class SweepStore:
         if not (attributes or arrays):
             # A run was killed before it wrote its request.
             return
-        finished = attributes.get(_COUNT_ATTRIBUTE, 0)
+        finished = attributes.get(COUNT_ATTRIBUTE, 0)
         check_same_sweep(f"store={self._path}", attributes, self._attributes)
-        is_whole = arrays.keys() >= set(attributes.get(_ARRAYS_ATTRIBUTE, ()))
-        self._finished = count_complete(self._path, arrays, self._axis, finished) if is_whole else 0
-        if self._finished == self._attributes["count"]:
+        if arrays.keys() >= set(attributes.get(ARRAYS_ATTRIBUTE, ())):
+            check_metadata(f"store={self._path}", self._path)
+            self._finished = count_complete(self._path, arrays, self._axis, finished)
+        # Arrays may contain values that do not count.
+        too_long = [array for array in arrays.values() if has_axis(array, self._axis) and array.shape[0] > self._finished]
+        if self._finished == self._attributes["count"] and not too_long:
             return
         # If the store is not writable, this fails before anything is computed.
         with tempfile.TemporaryFile(dir=self._path):
             pass
         for file in self._path.rglob(_PARTIAL_FILES):
             file.unlink()
-        # Arrays may contain values that do not count.
-        for array in arrays.values():
-            if has_axis(array, self._axis) and array.shape[0] > self._finished:
-                array.resize((self._finished, *array.shape[1:]))
+        for array in too_long:
+            array.resize((self._finished, *array.shape[1:]))
         if self._finished < finished:
             log.warning("store=%s: the data of value %d are damaged; computing from there", self._path, self._finished + 1)
             self._set_finished(self._finished)
@@ -135,11 +142,11 @@ class SweepStore:
         """Return the attributes of the group."""
         import zarr
 
-        if not (self._path / _METADATA_FILE).exists():
+        if not (self._path / METADATA_FILE).exists():
             raise ValueError(
-                f"store={self._path}: holds other files but no {_METADATA_FILE}; must be new, empty, or the store of this request"
+                f"store={self._path}: holds other files but no {METADATA_FILE}; must be new, empty, or the store of this request"
             )
-        with self._damage_named(_METADATA_FILE):
+        with self._damage_named(METADATA_FILE):
             return dict(zarr.open_group(self._path, mode="r+", use_consolidated=False).attrs)
 
     def _open_arrays(self) -> dict[str, zarr.Array[Any]]:
@@ -147,9 +154,9 @@ class SweepStore:
         import zarr
 
         arrays = {}
-        for file in self._path.glob(f"*/{_METADATA_FILE}"):
+        for file in self._path.glob(f"*/{METADATA_FILE}"):
             name = file.parent.name
-            with self._damage_named(f"{name}/{_METADATA_FILE}"):
+            with self._damage_named(f"{name}/{METADATA_FILE}"):
                 arrays[name] = zarr.open_array(file.parent, mode="r+")
         return arrays
 
@@ -161,14 +168,6 @@ class SweepStore:
         except (ValueError, KeyError, TypeError) as error:
             problem = f"store={self._path}: its file {file} cannot be read: {error}"
             raise ValueError(f"{problem}; restore it, or delete the folder to compute everything again") from error
-
-
-def without_values(attributes: Mapping[str, Any]) -> xr.Dataset:
-    """Return the dataset of a request before its first value."""
-    # This import is slow.
-    import xarray as xr
-
-    return xr.Dataset(coords={name: np.zeros(0) for name in axis_names(attributes)}, attrs=attributes)
 
 
 def check_same_sweep(label: str, found: Mapping[str, Any], wanted: Mapping[str, Any], *, ignored: Sequence[str] = ()) -> None:
@@ -197,14 +196,3 @@ def _consolidate(path: Path) -> zarr.Group:
         # Of the extension, and of folders of arrays that have been lost.
         warnings.simplefilter("ignore", zarr.errors.ZarrUserWarning)
         return zarr.consolidate_metadata(path, zarr_format=3)
-
-
-def _sync_to_disk(path: Path) -> None:
-    """Write a file, or the names in a folder, from the cache of the operating system to the disk."""
-    if path.is_dir() and os.name != "posix":
-        return
-    opened = os.open(path, os.O_RDONLY if path.is_dir() else os.O_RDWR)
-    try:
-        os.fsync(opened)
-    finally:
-        os.close(opened)

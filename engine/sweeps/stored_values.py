@@ -16,13 +16,20 @@ if TYPE_CHECKING:
     import zarr
 
 
-def absent_values(dataset: xr.Dataset) -> dict[str, dict[str, Any]]:
-    """Return encodings of the integers, so that missing data are `Fate.NOT_COMPUTED`; without them, floats are NaN.
+def encodings(dataset: xr.Dataset) -> dict[str, dict[str, Any]]:
+    """Return the encodings of arrays in a store: chunks have checksums, and missing data never look like a result.
 
-    No integer of a sweep can have this value.
+    Missing integers are `Fate.NOT_COMPUTED`, which no integer of a sweep can be. Missing floats are NaN by default.
     """
-    integers = (name for name, array in dataset.variables.items() if np.issubdtype(array.dtype, np.integer))
-    return {str(name): {"fill_value": int(Fate.NOT_COMPUTED)} for name in integers}
+    # The import is slow.
+    from zarr.codecs import Crc32cCodec, ZstdCodec
+
+    checked = {"compressors": (ZstdCodec(), Crc32cCodec())}
+    absent = {"fill_value": int(Fate.NOT_COMPUTED)}
+    return {
+        str(name): checked | (absent if np.issubdtype(array.dtype, np.integer) else {})
+        for name, array in dataset.variables.items()
+    }
 
 
 def has_axis(array: zarr.Array[Any], axis: str) -> bool:

@@ -21,7 +21,8 @@ from engine.measures.compute import compute_point
 from engine.measures.measured_map import SweepPoint
 from engine.sweeps.axes import AXIS_SEPARATOR, axis_names, coarse_to_fine
 from engine.sweeps.spec import VALUE_ATTRIBUTES, SweepSpec
-from engine.sweeps.store import SweepStore, check_same_sweep, open_store, without_values
+from engine.sweeps.store import SweepStore, check_same_sweep, open_store
+from engine.sweeps.stored_metadata import without_values
 from engine.systems.outcomes import Outcome, read_outcomes
 
 if TYPE_CHECKING:

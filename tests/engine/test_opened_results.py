@@ -348,7 +348,7 @@ def test_a_file_with_damaged_data_is_refused_and_named(tmp_path: Path) -> None:
     content[place : place + len(some_times)] = bytes(len(some_times))
     file.write_bytes(content)
     assert place > 0
-    with pytest.raises(OSError, match=r"map\.nc: its data are damaged"):
+    with pytest.raises(OSError, match=r"map\.nc: cannot be read as a NetCDF file: is damaged; restore it"):
         open_result(file)
 
 

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from engine.foundations.output_lock import hold_lock
+from engine.foundations.output_lock import hold_lock, replaced_file
 from tests.forked import fork_context, start
 from tests.waiting import SECONDS
 
@@ -102,3 +102,25 @@ def test_a_file_system_without_locks_reserves_nothing_and_other_errors_of_the_di
     assert not any(tmp_path.iterdir())
     with pytest.raises(OSError, match=re.escape(os.strerror(errno.EIO))), hold_lock(tmp_path / "out"):
         pass
+
+
+def write(path: Path, held: Event, end: Event) -> None:
+    with replaced_file(path) as temporary:
+        temporary.write_text("incomplete")
+        held.set()
+        end.wait()
+
+
+def test_the_temporary_file_of_a_process_goes_with_the_next_writing_once_the_process_is_killed(tmp_path: Path) -> None:
+    held, end = fork_context().Event(), fork_context().Event()
+    process = start(write, tmp_path / "out", held, end)
+    assert held.wait(SECONDS)
+    assert process.pid is not None
+    for is_killed in (False, True):
+        if is_killed:
+            os.kill(process.pid, signal.SIGKILL)
+            process.join(SECONDS)
+        with replaced_file(tmp_path / "out") as temporary:
+            temporary.write_text("complete")
+        assert (tmp_path / "out").read_text() == "complete"
+        assert len(list(tmp_path.iterdir())) == (1 if is_killed else 2)

@@ -61,9 +61,3 @@ def test_a_damaged_store_is_refused_by_name(tmp_path: Path) -> None:
     store.write_bytes(store.read_bytes()[:2000])
     with pytest.raises(OSError, match=r"map.nc: cannot be read as a NetCDF file"):
         compute_map(SMALL, store=store)
-
-
-def test_files_of_killed_processes_are_removed(tmp_path: Path) -> None:
-    (tmp_path / ".map.nc.1.part").write_text("incomplete")
-    compute_map(SMALL, store=tmp_path / "map.nc")
-    assert [file.name for file in tmp_path.iterdir()] == ["map.nc"]

@@ -201,6 +201,31 @@ def test_a_run_that_was_killed_before_it_wrote_its_request_is_begun_again(
     assert files_of(tmp_path / "store") == files_of(finished)
 
 
+def test_a_run_that_is_killed_while_it_removes_an_incomplete_first_value_is_begun_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, finished: Path
+) -> None:
+    store = tmp_path / "store"
+
+    def interrupt() -> None:
+        raise KeyboardInterrupt
+
+    def remove_in_part(folder: Path, *_arguments: object, **_named: object) -> None:
+        (Path(folder) / "zarr.json").unlink()
+        interrupt()
+
+    with monkeypatch.context() as patch:
+        patch.setattr(os, "fsync", os.fsync)
+        interrupt_writing(2, interrupt)
+        with pytest.raises(KeyboardInterrupt):
+            compute_sweep(SPEC, store)
+    with monkeypatch.context() as patch:
+        patch.setattr(shutil, "rmtree", remove_in_part)
+        with pytest.raises(KeyboardInterrupt):
+            compute_sweep(SPEC, store)
+    compute_sweep(SPEC, store)
+    assert files_of(store) == files_of(finished)
+
+
 def remove(path: Path) -> None:
     path.unlink()
 
@@ -213,7 +238,14 @@ def fill_with_zeros(path: Path) -> None:
     path.write_bytes(bytes(path.stat().st_size))
 
 
-@pytest.mark.parametrize("damage", [remove, truncate, fill_with_zeros])
+def flip_one_bit(path: Path) -> None:
+    """Change a number that is stored uncompressed. Chunks end with four bytes of their checksum."""
+    content = bytearray(path.read_bytes())
+    content[-6] ^= 1
+    path.write_bytes(content)
+
+
+@pytest.mark.parametrize("damage", [remove, truncate, fill_with_zeros, flip_one_bit])
 @pytest.mark.parametrize(("chunk", "kept"), [("fate/c/1/0/0", 1), ("share/c/2/0", 2), ("h/c/0", 0), ("x/c/0", 0)])
 def test_values_from_a_damaged_one_on_are_computed_again(
     tmp_path: Path, finished: Path, caplog: pytest.LogCaptureFixture, chunk: str, kept: int, damage: Callable[[Path], None]
