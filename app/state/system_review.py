@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import re
 from dataclasses import dataclass, fields
 from functools import cache, cached_property
 
@@ -12,7 +13,12 @@ from engine.systems.review.potential_review import SystemReview, review_system
 from engine.systems.system import TYPED
 from plots.texts.accepted_potentials import page_refusal
 from plots.texts.mathml import equations, potential_formula
+from plots.texts.mathml_elements import COEFFICIENT_DIGITS
 
+# A number of a formula, without its exponent.
+_NUMBER = re.compile(r"[0-9]+\.?[0-9]*|\.[0-9]+")
+# Smallest number of significant digits of coefficients of a typed formula.
+_FEWEST_DIGITS = 6
 # Size of a review in memory, in units of the size of its pickle.
 _MEMORY_OF_PICKLE = 5
 
@@ -56,12 +62,23 @@ def review_for_page(system: System) -> PageReview:
     page_review = PageReview(
         **{each.name: getattr(review, each.name) for each in fields(review)},
         problem=problem,
-        typeset=potential_formula(review.potential),
+        typeset=potential_formula(review.potential, _shown_digits(system)),
         equations=equations(review.potential) if problem is None else "",
     )
     # The cache of results asks for the size.
     _ = page_review.nbytes
     return page_review
+
+
+def _shown_digits(system: System) -> int:
+    """Return the number of significant digits of coefficients in the typeset formula of a system.
+
+    About another well, or after products, coefficients of a typed formula have more digits than the numbers in it.
+    """
+    if system.case != TYPED:
+        return COEFFICIENT_DIGITS
+    text = " ".join((system.formula, *map(repr, system.parameters.values())))
+    return max([_FEWEST_DIGITS, *(len(number.replace(".", "").lstrip("0")) for number in _NUMBER.findall(text))])
 
 
 def review_job(system: System) -> Job[PageReview]:

@@ -8,7 +8,7 @@ from xml.etree import ElementTree
 from engine import Potential
 from engine.expressions.nodes import Expression, from_terms
 from engine.systems.forms.expression_form import Form
-from plots.texts.mathml_elements import digits, number, op, row, var, write_power
+from plots.texts.mathml_elements import COEFFICIENT_DIGITS, digits, number, op, row, var, write_power
 from plots.texts.mathml_expressions import signed_parts
 
 # Words for operators and dots.
@@ -35,18 +35,21 @@ def equations(potential: Potential) -> str:
     return f"<dl style='margin:0;font-size:13px;color:inherit'>{body}</dl>"
 
 
-def potential_formula(potential: Potential) -> str:
-    """Return V(x, y) = … as text with one MathML element for each term, because browsers do not break long MathML elements."""
-    first, *others = _signed_terms(potential.form)
+def potential_formula(potential: Potential, shown: int = COEFFICIENT_DIGITS) -> str:
+    """Return V(x, y) = … as text with one MathML element for each term, because browsers do not break long MathML elements.
+
+    Coefficients that are decimal numbers have `shown` significant digits.
+    """
+    first, *others = _signed_terms(potential.form, shown)
     # By default, a sign at the start of an element has the space of a unary sign.
     terms = [first, *(term.replace("<mo>", "<mo form='infix'>", 1) for term in others)]
     # The signs have space of their own.
     elements = "<wbr>".join(f"<math aria-hidden='true'>{part}</math>" for part in (_at_point(potential) + op("="), *terms))
-    return f"<span role='math' aria-label='{_spoken(_potential(potential))}'>{elements}</span>"
+    return f"<span role='math' aria-label='{_spoken(_potential(potential, shown))}'>{elements}</span>"
 
 
-def _potential(potential: Potential) -> str:
-    return _at_point(potential) + op("=") + _sum(potential.form)
+def _potential(potential: Potential, shown: int = COEFFICIENT_DIGITS) -> str:
+    return _at_point(potential) + op("=") + _sum(potential.form, shown)
 
 
 def potential_symbol(potential: Potential) -> str:
@@ -100,16 +103,16 @@ def _energy(potential: Potential, factor: float, first: str, second: str) -> str
     return (number(factor) if factor != 1.0 else "") + squares + op("+") + _at_point(potential)
 
 
-def _sum(form: Form) -> str:
+def _sum(form: Form, shown: int = COEFFICIENT_DIGITS) -> str:
     """Return a formula with its terms in order."""
-    return row("".join(_signed_terms(form)))
+    return row("".join(_signed_terms(form, shown)))
 
 
-def _signed_terms(form: Form) -> list[str]:
+def _signed_terms(form: Form, shown: int) -> list[str]:
     """Return the terms with their signs. The first term has no plus sign."""
     definition = form.definition
     expression = definition if isinstance(definition, Expression) else from_terms({(i, j): c for i, j, c in definition})
-    first, *others = signed_parts(expression)
+    first, *others = signed_parts(expression, shown)
     return [first.removeprefix(op("+")), *others]
 
 
