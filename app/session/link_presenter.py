@@ -133,11 +133,12 @@ class LinkPresenter:
         self._show_problems()
 
     def _show_problems(self) -> None:
-        """Show the problems of the link until the view changes, or else its unknown parameters for a few seconds."""
+        """Show the problems of the link until the view changes. Unknown parameters alone are shown for some seconds, once."""
+        unknown = [ignored_parameters(self._unknown)] if self._unknown else []
         if self._problems:
-            self._warn(" ".join(self._problems))
-        elif self._unknown and self._notice is not None:
-            self._notice.show(ignored_parameters(self._unknown))
+            self._warn(" ".join([*self._problems, *unknown]))
+        elif unknown and self._notice is not None:
+            self._notice.show(*unknown)
         self._unknown = ()
 
     def _warn(self, sentence: str) -> None:

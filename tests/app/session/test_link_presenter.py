@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any, cast
 
+import pytest
 from bokeh.document import Document
 
 from app.session.link_presenter import LinkPresenter
@@ -35,11 +36,13 @@ def test_a_comparison_that_is_refused_before_the_page_is_made_is_named_when_the_
     assert "Ignored the view in the link with which to compare: The formula ends too soon." in notice.layout().object
 
 
-def test_unknown_parameters_of_a_link_are_named_once() -> None:
-    links, notice, unused = LinkPresenter(Document(), {"case": "I", "potential": "", "<b>": ""}), Notice(), cast("Any", None)
+@pytest.mark.parametrize("others", [{}, {"h": "high"}])
+def test_unknown_parameters_of_a_link_are_named_once(others: dict[str, str]) -> None:
+    link = {"case": "I", "potential": "", "<b>": "", **others}
+    links, notice, unused = LinkPresenter(Document(), link), Notice(), cast("Any", None)
     links.connect(unused, unused, unused, notice)
     links.begin(lambda: None)
     assert "Ignored potential, ?b?: the parameters of a link are case, V" in notice.layout().object
     notice.clear()
     links.begin(lambda: None)
-    assert not notice.layout().object
+    assert "potential" not in notice.layout().object
