@@ -2,6 +2,7 @@
 
 import typing
 
+from engine.exits.monodromy import Monodromy as Monodromy
 from engine.foundations.drawing import Drawing as Drawing
 from engine.maps.analyses.descriptors import DescriptorMap as DescriptorMap
 from engine.maps.analyses.regularity import RegularityMap as RegularityMap

@@ -13,7 +13,7 @@ from PIL import Image
 
 from docs.pictures.introduction import blob, energies, exits, maps, tubes, well
 from docs.pictures.panels import CASE, ENERGY, SIDE, STYLE, mark_section, new_panels, show
-from docs.pictures.rotating import copenhagen, earth_moon, four_hills, star_cluster
+from docs.pictures.rotating import copenhagen, earth_moon, four_hills, necks, star_cluster
 from engine import (
     CASES,
     POTENTIALS,
@@ -275,7 +275,7 @@ def origins() -> Figure:
 DRAWINGS: tuple[Callable[[], Figure], ...] = (
     well, maps, blob, tubes, energies, cases, potentials, exits, sali, trust, basin_entropy, wada, uncertainty_exponent,
     escape_laws, slices, statistics, curves, flux, evidence, periodic, families, origins, earth_moon, copenhagen, star_cluster,
-    four_hills,
+    four_hills, necks,
 )  # fmt: skip
 
 PICTURES = {f"drawings/{draw.__name__.replace('_', '-')}": draw for draw in DRAWINGS}

@@ -9,15 +9,20 @@ from types import MappingProxyType
 import numpy as np
 from matplotlib.figure import Figure
 
-from docs.pictures.panels import new_panels
-from engine import Fate, compute_map
+from docs.pictures.panels import SIDE, new_panels
+from engine import POTENTIALS, Fate, MapSpec, compute_map, find_stable_manifolds, read_section
+from plots.layers.manifolds import manifold_strokes
 from plots.pictures.palette import DEFAULT_COLOURS
 from plots.printed.figure_axes import add_figure_legend, legend_handles, set_title
 from plots.printed.map_figure import draw_picture
+from plots.printed.window_axes import draw_strokes
 from reproduction.rotating.paper_maps import PAPER_MAPS, PaperMap
 
 # Number of pixels along a side. Fractal maps compress badly, so files grow with it.
 _SIDE = 120
+# System and energy of the drawn tubes, and sections with titles.
+_EARTH_MOON, _ENERGY = POTENTIALS["Earth-Moon"], -1.09
+_NECKS = {"x = -0.1, px < 0": "Starts near L1", "x = 0.1, px > 0": "Starts near L2"}
 
 
 def earth_moon() -> Figure:
@@ -40,6 +45,20 @@ def four_hills() -> Figure:
     """Draw directions in which orbits leave four hills, at energies below and above their tops."""
     first, _, second, third = PAPER_MAPS["Four hills"]
     return _draw((first, second, third), {"collision with the ": "to the "})
+
+
+def necks() -> Figure:
+    """Draw the first images of the tubes of L1 and L2 of Earth-Moon, on sections across their necks, over the basins."""
+    figure, panels = new_panels(2, 11.0)
+    for axes, (text, title) in zip(panels, _NECKS.items(), strict=True):
+        section = read_section(text)
+        frame = compute_map(MapSpec(_EARTH_MOON, section.plane, _ENERGY, (SIDE, SIDE), t_max=20.0, section=section))
+        manifolds = find_stable_manifolds(_EARTH_MOON, _ENERGY, images=1, section=section)
+        draw_picture(axes, frame, "basins", DEFAULT_COLOURS)
+        draw_strokes(axes, manifold_strokes(manifolds), frame.spec.find_window(), DEFAULT_COLOURS)
+        set_title(axes, title)
+    add_figure_legend(figure, legend_handles(DEFAULT_COLOURS.end_entries(_EARTH_MOON.outcomes)))
+    return figure
 
 
 def _draw(paper_maps: tuple[PaperMap, ...], renamed: Mapping[str, str] = MappingProxyType({})) -> Figure:

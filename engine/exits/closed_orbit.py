@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 import numpy as np
 
+from engine.exits.monodromy import Monodromy, canonical_axes, eigenvectors
 from engine.exits.saddle_orbits.orbit_parts import matrix_product, monodromy_matrix, trace_parts
 from engine.foundations.arrays import read_only
 from engine.foundations.result import Result
@@ -32,11 +33,14 @@ class Nodes(NamedTuple):
     states: np.ndarray
     durations: np.ndarray
 
-    def stability_index(self, potential: Potential) -> float:
-        """Return a of the monodromy matrix, which is the product of the matrices of the parts."""
+    def monodromy_matrix(self, potential: Potential) -> np.ndarray:
+        """Return the monodromy matrix, (4, 4), which is the product of the matrices of the parts."""
         parts = zip(self.states, self.durations.tolist(), strict=True)
-        matrices = [monodromy_matrix(potential, state, duration) for state, duration in parts]
-        return stability_index(matrix_product(np.array(matrices)))
+        return matrix_product(np.array([monodromy_matrix(potential, state, duration) for state, duration in parts]))
+
+    def stability_index(self, potential: Potential) -> float:
+        """Return a of the monodromy matrix."""
+        return stability_index(self.monodromy_matrix(potential))
 
     def action(self, potential: Potential) -> float:
         """Return the integral of the canonical momentum along the orbit, whose derivative by the energy is the period.
@@ -104,7 +108,7 @@ class ClosedOrbit(Result):
     energy: float
     period: float
     potential: Potential
-    inner_names: ClassVar = Result.inner_names | {"nodes"}
+    inner_names: ClassVar = Result.inner_names | {"monodromy_matrix", "nodes"}
 
     if TYPE_CHECKING:
         # Fields of some kinds of orbits, and computed when they are asked for of others.
@@ -128,6 +132,11 @@ class ClosedOrbit(Result):
         raise NotImplementedError
 
     @property
+    def monodromy_matrix(self) -> np.ndarray:
+        """(4, 4) the matrix of one period for x, y, ẋ, ẏ, in units of the well."""
+        return self.nodes.monodromy_matrix(self.potential.in_well_units)
+
+    @property
     def stability(self) -> Stability:
         """The motion near the orbit."""
         return Stability.of(self.stability_index)
@@ -149,6 +158,28 @@ class ClosedOrbit(Result):
         root = np.sqrt(index * index - 1.0)
         larger = index + root if self.stability_index >= 0.0 else index - root
         return read_only(np.array([larger, 1.0 / larger]))
+
+    def find_monodromy(self) -> Monodromy:
+        """Return the monodromy matrix at the start of the orbit in canonical coordinates, with multipliers and eigenvectors.
+
+        The matrix is that of the equations of motion linearised along one period, with the series of the integrator. For a very
+        unstable orbit, it is a product of the matrices of short parts.
+
+        Examples
+        --------
+        >>> from escape_explorer import POTENTIALS, find_lyapunov_orbits
+        >>> orbit = find_lyapunov_orbits(POTENTIALS["Earth-Moon"], -1.09)[0]
+        >>> monodromy = orbit.find_monodromy()
+        >>> orbit.name, round(monodromy.multipliers[0].real, 1)
+        ('L2', 1254.8)
+        """
+        potential = self.potential
+        state_units = np.array(potential.units.state)
+        axes = canonical_axes(potential.mass * potential.rotation)
+        matrix = self.monodromy_matrix * state_units[:, None] / state_units
+        matrix = axes @ matrix @ np.linalg.inv(axes)
+        flow = axes @ potential.derivatives(self.start)
+        return Monodromy(matrix, self.multipliers, eigenvectors(matrix, self.multipliers), flow)
 
     def find_path(self, points: int = 400) -> np.ndarray:
         """Return the path of one period, of shape (5, m): t, x, y, px and py at about this number of times, 2 to 1e6.

@@ -73,6 +73,14 @@ class LyapunovOrbit(ClosedOrbit):
             states = np.vstack([states, [*self.half_path[-1], 0.0, 0.0]])
         return Nodes(states / units.state, np.full(len(states), period / len(states)))
 
+    @property
+    def monodromy_matrix(self) -> np.ndarray:
+        """See `ClosedOrbit.monodromy_matrix`. In a frame at rest, the matrix follows from half the period."""
+        well, nodes = self.potential.in_well_units, self.nodes
+        if self._is_closed_curve:
+            return nodes.monodromy_matrix(well)
+        return monodromy_of_brake_orbit(well, nodes.states[0], nodes.durations[0])
+
     @cached_property
     def stability_index(self) -> float:
         """a = ½ (tr M − 2), with the monodromy matrix M of one period; nearby orbits leave an unstable orbit, abs(a) > 1.
@@ -84,10 +92,7 @@ class LyapunovOrbit(ClosedOrbit):
         >>> round(orbit.stability_index, 3), round(orbit.multipliers[0].real, 2)
         (46.928, 93.85)
         """
-        well, nodes = self.potential.in_well_units, self.nodes
-        if self._is_closed_curve:
-            return nodes.stability_index(well)
-        return stability_index(monodromy_of_brake_orbit(well, nodes.states[0], nodes.durations[0]))
+        return stability_index(self.monodromy_matrix)
 
     @cached_property
     def action(self) -> float:

@@ -2,9 +2,11 @@
 
 Orbits that tend to the Lyapunov orbit over an exit form a tube, its stable manifold. Orbits inside the tube leave through that
 exit, orbits outside it turn back. Backward in time the tube enters the well and intersects the section repeatedly; the successive
-intersections are called its images. As the kinetic energy is even in the momenta, the tube backward in time is the unstable
-manifold with reversed momenta. The code therefore integrates the unstable manifold forward from near the Lyapunov orbit; each
-passage of the section in the opposite direction gives a point of the stable manifold, if its momenta are reversed.
+intersections are called its images. As the kinetic energy is even in the momenta, an orbit backward in time is an orbit with
+reversed momenta of the same system, or, if its frame rotates, of the system whose frame rotates the other way. The tube backward
+in time is thus the unstable manifold in that system with reversed momenta. The code integrates this unstable manifold forward
+from near the Lyapunov orbit; each passage of the section in the opposite direction gives a point of the stable manifold, if its
+momenta are reversed.
 """
 
 from __future__ import annotations
@@ -82,7 +84,8 @@ class StableManifolds(Result):
     images
         Number of images computed for each tube.
     truncated
-        Whether an arc is truncated, because it winds around another arc infinitely often or is too fine to be resolved.
+        Whether an arc is truncated, because it winds around another arc infinitely often, ends at a body, or is too fine to be
+        resolved.
     section
         The surface of section; the arcs are curves on the slice `section.plane`.
     """
@@ -153,8 +156,11 @@ def find_stable_manifolds(
 
     On one side of an arc of image n, orbits leave through its channel after exactly n − 1 crossings of the section, the start not
     counted. On the other side they turn back before that exit, and leave later or never. Where the Lyapunov orbit itself crosses
-    the section (channel 1 of Case II), orbits that stay near it for longer cross it more often. In this case, images are numbered
-    along the curve, which starts at the Lyapunov orbit's own point, and the number of crossings is not fixed.
+    the section (channel 1 of Case II; L1 and L2 on y = 0), orbits that stay near it for longer cross it more often. In this case,
+    images are numbered along the curve, which starts at the Lyapunov orbit's own point, and the number of crossings is not fixed.
+
+    The frame may rotate. The tube is then computed in the frame that rotates at −Ω, whose orbits are those of this frame backward
+    in time, with reversed momenta.
 
     Parameters
     ----------
@@ -177,15 +183,16 @@ def find_stable_manifolds(
     -------
     The `StableManifolds`, which have no arcs at or below the escape energy. An arc ends where the tube, backward in time, leaves
     through an exit. Near this end the arc winds infinitely often around an arc of another manifold, and is truncated after the
-    first few turns. Points lie on the manifold to 1e-10.
+    first few turns. An arc also ends where the tube, backward in time, meets a body: no orbit comes from there. Points lie on the
+    manifold to 1e-10.
 
     Raises
     ------
     concurrent.futures.CancelledError
         When cancelled.
     ValueError
-        When `energy` is not finite or too high for unstable Lyapunov orbits, `images` is out of range, the frame rotates,
-        `section` is not legal, or a Lyapunov orbit crosses it more than once in a period.
+        When `energy` is not finite or too high for unstable Lyapunov orbits, `images` is out of range, no exit is over a saddle
+        because orbits escape at a circle, `section` is not legal, or a Lyapunov orbit crosses it more than once in a period.
 
     Notes
     -----
@@ -198,7 +205,10 @@ def find_stable_manifolds(
     >>> [(arc.channel, arc.image) for arc in manifolds.arcs]
     [(1, 1), (2, 1)]
     """
-    potential.check_at_rest("stable manifolds")
+    if not potential.escapes_over_saddles:
+        raise ValueError(
+            f"potential={potential.name}: its orbits escape at a circle; stable manifolds belong to exits over saddles"
+        )
     images = checked_count("images", images, 1, MOST_IMAGES)
     energy, section = checked_number("energy", energy), _checked_section(section)
     plane_window = default_window(potential, section.slice_of_starts, energy)
@@ -210,7 +220,7 @@ def find_stable_manifolds(
     # A given window need not be symmetric, so all channels are computed in it.
     uses_mirror = potential.in_well_units.well.mirror_in_x and section.is_mirrored and window is None
     tubes = _Tubes(section.in_well_units(units), images, spacing, execution)
-    arcs, truncated = _find_all_arcs(potential.in_well_units, energy / units.energy, tubes, uses_mirror)
+    arcs, truncated = _find_all_arcs(potential.reversed_in_time.in_well_units, energy / units.energy, tubes, uses_mirror)
     return StableManifolds(potential, energy, tuple(map(units.restore, arcs)), images, truncated, section)
 
 

@@ -52,7 +52,7 @@ class UnstableManifold:
     orbit
         The Lyapunov orbit of a potential in units of its well.
     direction
-        (4,) unit vector in phase space: the inward unstable direction at the first point of the orbit, a point of rest.
+        (4,) unit vector in phase space: the inward unstable direction at the first point of the orbit.
     multiplier
         Unstable Floquet multiplier, the eigenvalue of the monodromy matrix of largest modulus, above 1.5.
     min_displacement, max_displacement
@@ -78,9 +78,8 @@ class UnstableManifold:
         Raises
         ------
         ValueError
-            When the orbit is not unstable or crosses the section more than once in a period, or the frame rotates.
+            When the orbit is not unstable or crosses the section more than once in a period.
         """
-        orbit.potential.check_at_rest("manifolds of Lyapunov orbits")
         monodromy = monodromy_matrix(orbit.potential, orbit.start, orbit.period)
         multiplier, direction = _leading_eigenpair(monodromy)
         if not multiplier > _MIN_MULTIPLIER:
@@ -158,7 +157,7 @@ class UnstableManifold:
         return self.min_displacement * (self.max_displacement / self.min_displacement) ** phases
 
     def start_states(self, displacements: np.ndarray) -> np.ndarray:
-        """Return n states displaced from the Lyapunov orbit's point of rest and projected back onto its energy, (n, 4)."""
+        """Return n states displaced from the Lyapunov orbit's first point and projected back onto its energy, (n, 4)."""
         states: np.ndarray = self.orbit.start + displacements[:, None] * self.direction
         # Three steps of Newton's method along the gradient of H.
         for _ in range(3):

@@ -89,7 +89,9 @@ def _refusal(spec: MapSpec) -> str:
             "Stable manifolds are drawn on slices whose starts cross a line, such as (x, px) for y = 0 and (y, py) for x = 0; "
             f"{spec.plane.title} is not such a slice."
         )
-    return "Stable manifolds are found in frames that do not rotate only." if spec.potential.rotation else ""
+    if not spec.potential.escapes_over_saddles:
+        return "Stable manifolds belong to exits over saddles; orbits of this system escape at a circle."
+    return ""
 
 
 MANIFOLDS = Layer(

@@ -17,7 +17,7 @@ AROUND_BODIES = MapSpec(POTENTIALS["Copenhagen"], Plane.X_PX, -1.6)
         (ORDINARY, {"descriptor_power": 3.0}, "power=3.0: must be above 0 and at most 1$"),
         (ORDINARY, {"descriptor_time": -1.0}, "duration=-1"),
         (AROUND_BODIES, {"judge": True}, "does not tell regular from chaotic"),
-        (AROUND_BODIES, {"manifolds": 2}, "do not rotate"),
+        (AROUND_BODIES, {"manifolds": 2}, "escape at a circle"),
         (MapSpec(CASES["I"], Plane.X_Y, 0.3), {"manifolds": 2}, "is not such a slice"),
         (MapSpec(POTENTIALS["HH"], Plane.X_H, (0.1, 0.3)), {"periodic": 2}, "is not such a slice"),
     ],

@@ -295,8 +295,8 @@ WRONG_CALLS = (
     ),
     ("integrate_orbit(III, S, 1e9)", "t_max=1000000000.0: must be above 0 and at most 1e+07"),
     (
-        'find_stable_manifolds(System("Hill").potential, -2.0)',
-        "potential=Hill: its frame rotates; stable manifolds are for frame",
+        'find_stable_manifolds(System("Copenhagen").potential, -1.6)',
+        "potential=Copenhagen: its orbits escape at a circle; stable manifolds belong to exits over saddles",
     ),
     (
         'classify_orbits(System("Hill").potential, -2.0, [(0.0, 0.0, 0.0, 1.0)])',

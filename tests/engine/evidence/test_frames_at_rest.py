@@ -13,12 +13,9 @@ from engine import (
     MapSpec,
     Plane,
     Potential,
-    Section,
     compute_flux,
     compute_map,
     compute_regularity,
-    find_lyapunov_orbits,
-    find_stable_manifolds,
     integrate_orbit,
     judge_orbit,
     parse_formula,
@@ -30,7 +27,6 @@ from engine.maps.run import looks_for_tori
 from engine.propagation.fates import Evidence
 from engine.systems.outcomes import Centre
 from engine.trajectories.birkhoff_digits import compute_birkhoff_digits
-from engine.trajectories.unstable_manifold import UnstableManifold
 
 ROTATING = parse_formula("½(x² + y²) + ½(x² + y²) - x² y").in_rotating_frame(0.5)
 ENERGY = 1.2 * ROTATING.escape_energy
@@ -42,10 +38,8 @@ WITH_RADIUS = CASES["I"].with_outcomes(escape_radius=3.0)
     "call",
     [
         compute_flux,
-        find_stable_manifolds,
         find_entry_points,
         lambda potential, energy: sample_entrances(potential, energy, 10, rng=0),
-        lambda potential, energy: UnstableManifold.from_orbit(find_lyapunov_orbits(potential, energy)[0], Section.Y_UP.numbers),
     ],
 )
 def test_analyses_that_need_time_reversal_refuse_rotating_frames(call: Callable[[Potential, float], Any]) -> None:
