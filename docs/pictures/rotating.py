@@ -49,7 +49,7 @@ def four_hills() -> Figure:
 
 def necks() -> Figure:
     """Draw the first images of the tubes of L1 and L2 of Earth-Moon, on sections across their necks, over the basins."""
-    figure, panels = new_panels(2, 11.0)
+    figure, panels = new_panels(2, 9.0)
     for axes, (text, title) in zip(panels, _NECKS.items(), strict=True):
         section = read_section(text)
         frame = compute_map(MapSpec(_EARTH_MOON, section.plane, _ENERGY, (SIDE, SIDE), t_max=20.0, section=section))
