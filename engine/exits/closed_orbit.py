@@ -170,7 +170,7 @@ class ClosedOrbit(Result):
         >>> from escape_explorer import POTENTIALS, find_lyapunov_orbits
         >>> orbit = find_lyapunov_orbits(POTENTIALS["Earth-Moon"], -1.09)[0]
         >>> monodromy = orbit.find_monodromy()
-        >>> orbit.name, round(monodromy.multipliers[0].real, 1)
+        >>> orbit.name, round(float(monodromy.multipliers[0].real), 1)
         ('L2', 1254.8)
         """
         potential = self.potential

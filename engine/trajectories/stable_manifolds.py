@@ -133,7 +133,7 @@ class StableManifolds(Result):
         label = "images" if len(image_numbers) > 1 else "image"
         image_text = f"{label} {', '.join(map(str, image_numbers))}" if image_numbers else "no image"
         points = format_whole(sum(arc.x.size for arc in self.arcs))
-        note = ", some of them truncated spirals" if self.truncated else ""
+        note = ", some of them truncated" if self.truncated else ""
         return f"Stable manifolds of the Lyapunov orbits, {image_text}: {len(self.arcs)} arcs of {points} points{note}."
 
     @property
