@@ -30,6 +30,7 @@ from engine.exits.lyapunov_orbit import LyapunovOrbit as LyapunovOrbit
 from engine.exits.lyapunov_orbits import UndefinedExitsError as UndefinedExitsError
 from engine.exits.lyapunov_orbits import find_lyapunov_orbits as find_lyapunov_orbits
 from engine.foundations.execution import Execution as Execution
+from engine.foundations.names import UnknownNameError as UnknownNameError
 from engine.foundations.result import Result as Result
 from engine.foundations.versions import show_versions as show_versions
 from engine.maps.analyses.descriptors import TimeDirection as TimeDirection
@@ -83,7 +84,6 @@ from engine.sweeps.spec import SweepSpec as SweepSpec
 from engine.sweeps.stored_returns import store_returns as store_returns
 from engine.sweeps.sweep import compute_sweep as compute_sweep
 from engine.sweeps.threshold import find_where as find_where
-from engine.systems.catalogue.names import UnknownNameError as UnknownNameError
 from engine.systems.formulas.formula_tokens import FormulaError as FormulaError
 from engine.systems.formulas.formula_writer import write_formula as write_formula
 from engine.systems.known_potentials import CASES as CASES

@@ -10,6 +10,8 @@ from enum import StrEnum
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any, Protocol
 
+from engine.foundations.names import unknown_name
+
 
 class Group(StrEnum):
     """The groups of entry points, one for each table."""
@@ -79,7 +81,11 @@ class Entries[Entry: Named](Mapping[str, Entry]):
         self._lock = threading.RLock()
 
     def __getitem__(self, name: str) -> Entry:
-        return self._load()[name]
+        """Return the entry of a name; for an unknown name, raise an `UnknownNameError` that suggests similar names."""
+        entries = self._load()
+        if name not in entries:
+            raise unknown_name(self._kind.__name__.lower(), name, entries)
+        return entries[name]
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._load())

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import cache
 
-from engine.systems.catalogue.names import ByName
+from engine.foundations.names import ByName
 from engine.systems.catalogue.table import CATALOGUE, PAPER_ENERGIES
 from engine.systems.potential import Potential
 from engine.systems.system import System

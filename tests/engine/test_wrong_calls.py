@@ -74,6 +74,7 @@ def names() -> dict[str, Any]:
 
 # Each call with the beginning of the sentence. … stands for the value.
 WRONG_CALLS = (
+    ('MEASURES["basin entropy"]', "measure 'basin entropy': did you mean 'basin_entropy'? The names are shares, escape_times,"),
     ('CASES["IV"]', "case 'IV': did you mean 'I'? The names are I, II, III"),
     ('POTENTIALS["Henon-Heiles"]', "potential 'Henon-Heiles': did you mean 'HH'? The names are I, II, III, C3, C4, C5, C6, C7,"),
     ('POTENTIALS["barbanis"]', "potential 'barbanis': did you mean 'Barbanis'? The names are I, II, III, C3, C4, C5, C6, C7, C8"),

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from engine.foundations.names import ByName
 from engine.foundations.plug_ins import Entries, Group
 from engine.systems.catalogue.entry import CatalogueEntry, EnergyRange
-from engine.systems.catalogue.names import ByName
 from engine.systems.catalogue.rotating_systems import ROTATING_ENTRIES
 from engine.systems.formulas.formula_parser import make_potential
 from engine.systems.parameters import WELL_PARAMETERS

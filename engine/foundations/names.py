@@ -44,9 +44,7 @@ class ByName[Value](Mapping[str, Value]):
         """Return the value of a name; for an unknown name, raise an `UnknownNameError` that suggests similar names."""
         if name in self:
             return self._make(name)
-        similar_names = self._find_similar(str(name))
-        question = f"did you mean {' or '.join(map(repr, similar_names))}? The" if similar_names else "the"
-        raise UnknownNameError(f"{self._kind} {short_repr(name)}: {question} names are {', '.join(self._names)}")
+        raise unknown_name(self._kind, name, self._names, self._title_of)
 
     def __contains__(self, name: object) -> bool:
         # Users may pass any object.
@@ -61,12 +59,20 @@ class ByName[Value](Mapping[str, Value]):
     def __repr__(self) -> str:
         return f"<{self._kind}s: {', '.join(self._names)}>"
 
-    def _find_similar(self, name: str) -> list[str]:
-        """Return up to three names with similar spelling, the most similar first."""
-        # Names by the plain spelling of the name and of its title.
-        spellings = {_plain_spelling(text): known for known in self._names for text in (known, self._title_of(known))}
-        matches = difflib.get_close_matches(_plain_spelling(name), spellings, n=3, cutoff=_SMALLEST_SIMILARITY)
-        return list(dict.fromkeys(spellings[match] for match in matches))
+
+def unknown_name(kind: str, name: object, names: Collection[str], title_of: Callable[[str], str] = str) -> UnknownNameError:
+    """Return the error for an unknown name, which suggests similar names; the arguments are those of `ByName`."""
+    similar_names = _find_similar(str(name), names, title_of)
+    question = f"did you mean {' or '.join(map(repr, similar_names))}? The" if similar_names else "the"
+    return UnknownNameError(f"{kind} {short_repr(name)}: {question} names are {', '.join(names)}")
+
+
+def _find_similar(name: str, names: Collection[str], title_of: Callable[[str], str]) -> list[str]:
+    """Return up to three names with similar spelling, the most similar first."""
+    # Names by the plain spelling of the name and of its title.
+    spellings = {_plain_spelling(text): known for known in names for text in (known, title_of(known))}
+    matches = difflib.get_close_matches(_plain_spelling(name), spellings, n=3, cutoff=_SMALLEST_SIMILARITY)
+    return list(dict.fromkeys(spellings[match] for match in matches))
 
 
 def _plain_spelling(name: str) -> str:
