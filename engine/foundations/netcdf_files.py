@@ -7,11 +7,12 @@ drop it. Checksums of arrays alone are not enough: when their index is damaged, 
 from __future__ import annotations
 
 import hashlib
+import io
 import mmap
 import os
 from collections.abc import Hashable
 from importlib.util import find_spec
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from engine.foundations.extras import require_package
 from engine.foundations.output_lock import replaced_file
@@ -48,12 +49,15 @@ def write_netcdf(dataset: xr.Dataset, path: str | os.PathLike[str]) -> None:
     target = checked_path("path", path)
     if target.suffix != ".nc":
         raise ValueError(f"path={path}: must end in .nc")
-    with replaced_file(target) as incomplete:
-        dataset.to_netcdf(incomplete, encoding=_checksums(dataset))
-        with incomplete.open("rb") as file:
-            checksum = hashlib.file_digest(file, "sha256").hexdigest()
-        with incomplete.open("ab") as file:
-            file.write(_MARK + checksum.encode())
+    # In memory, because HDF5 can end the process when a disk is full.
+    engine: Literal["h5netcdf", "scipy"] = "scipy" if find_spec("h5netcdf") is None else "h5netcdf"
+    buffer = io.BytesIO()
+    dataset.to_netcdf(buffer, engine=engine, encoding=_checksums(dataset))
+    content = buffer.getvalue()
+    checksum = hashlib.sha256(content).hexdigest()
+    with replaced_file(target) as incomplete, incomplete.open("xb") as file:
+        file.write(content)
+        file.write(_MARK + checksum.encode())
 
 
 def _checksums(dataset: xr.Dataset) -> dict[Hashable, dict[str, bool]]:

@@ -52,6 +52,20 @@ def test_failed_write_keeps_the_existing_file(tmp_path: Path, run_limited: Calla
     assert {path.name: path.read_text() for path in tmp_path.iterdir()} == {"exits.csv": "previous"}
 
 
+@pytest.mark.parametrize("share", [0.2, 0.9])
+def test_a_map_that_does_not_fit_on_the_disk_ends_with_a_sentence(
+    tmp_path: Path, run_limited: Callable[..., Finished], share: float
+) -> None:
+    command = ("map", "I", "--energy", "0.2", "--resolution", "60x50", "--t-max", "50", "--output", "map.nc")
+    assert run_limited(10**9, tmp_path, *command).code == 0
+    written = (tmp_path / "map.nc").read_bytes()
+    completed = run_limited(int(share * len(written)), tmp_path, *command)
+    assert completed.code == FAILED
+    assert is_one_sentence(completed.err), completed.err
+    assert f"map.nc: {os.strerror(errno.EFBIG)}" in completed.err
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == {"map.nc": written}
+
+
 SWEEP = ("sweep", "I", "--energy", "0.19", "--energy", "0.2", "--resolution", "80", "--t-max", "5", "--store", "store.zarr")
 
 
