@@ -53,7 +53,7 @@ def write_netcdf(dataset: xr.Dataset, path: str | os.PathLike[str]) -> None:
     engine: Literal["h5netcdf", "scipy"] = "scipy" if find_spec("h5netcdf") is None else "h5netcdf"
     buffer = io.BytesIO()
     dataset.to_netcdf(buffer, engine=engine, encoding=_checksums(dataset))
-    content = buffer.getbuffer()
+    content = buffer.getvalue()
     checksum = hashlib.sha256(content).hexdigest()
     with replaced_file(target) as incomplete, incomplete.open("xb") as file:
         file.write(content)

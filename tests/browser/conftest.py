@@ -165,9 +165,11 @@ def opened(chromium: Browser, server: str) -> Iterator[ExplorerPage]:
 
 @pytest.fixture
 def explorer(opened: ExplorerPage, request: pytest.FixtureRequest) -> Iterator[ExplorerPage]:
-    """Yield a page that many tests share. A test may change the page, which returns to its first view after each test."""
-    failed = request.session.testsfailed
+    """Yield a page that many tests share. Each test may change page and window, which return to their first state after it."""
+    failed, window = request.session.testsfailed, opened.page.viewport_size
+    assert window is not None
     yield opened
+    opened.page.set_viewport_size(window)
     if request.session.testsfailed > failed:
         opened.open()
     else:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 
 import pytest
 from playwright.sync_api import expect
 
+from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 
 _WIDTHS = """names => [...Bokeh.index.all_views()].filter(view => names.includes(view.model.name))
@@ -14,7 +16,14 @@ _WIDTHS = """names => [...Bokeh.index.all_views()].filter(view => names.includes
 _PRINTED = "() => dispatchEvent(new Event('beforeprint'))"
 
 
-def test_a_print_has_the_pictures_in_their_size_and_no_controls(explorer: ExplorerPage) -> None:
+@pytest.fixture
+def printable(open_explorer: Callable[..., ExplorerPage]) -> ExplorerPage:
+    """Return a page of its own, because a page does not know when a print ends that is only simulated."""
+    return open_explorer(link=QUICK)
+
+
+def test_a_print_has_the_pictures_in_their_size_and_no_controls(printable: ExplorerPage) -> None:
+    explorer = printable
     page = explorer.page
     explorer.pick("Statistics")
     expect(explorer.text("Interior starts in the whole view")).to_be_visible()
@@ -34,7 +43,7 @@ def test_a_print_has_the_pictures_in_their_size_and_no_controls(explorer: Explor
     assert page.evaluate(_WIDTHS, pictures) == pytest.approx(widths, abs=1.0)
 
 
-def test_a_print_fills_one_sheet(explorer: ExplorerPage) -> None:
-    expect(explorer.text("Views to begin with")).to_be_visible()
-    printed = explorer.page.pdf(prefer_css_page_size=True)
+def test_a_print_fills_one_sheet(printable: ExplorerPage) -> None:
+    expect(printable.text("Views to begin with")).to_be_visible()
+    printed = printable.page.pdf(prefer_css_page_size=True)
     assert len(re.findall(rb"/Type\s*/Page\b", printed)) == 1

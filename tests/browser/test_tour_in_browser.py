@@ -98,7 +98,6 @@ def test_frames_surround_the_pictures_of_a_step_and_follow_them(explorer: Explor
         # Bokeh and the frame follow the window in later turns of the browser.
         explorer.page.wait_for_function(_SURROUNDS_BASINS)
     explorer.page.keyboard.press("Escape")
-    explorer.page.set_viewport_size({"width": 1600, "height": 1400})
 
 
 def test_escape_ends_the_tour_alone_and_returns_the_focus(explorer: ExplorerPage) -> None:
