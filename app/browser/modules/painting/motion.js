@@ -32,7 +32,7 @@ export function follow(find, draw) {
   let last = ""
   const compare = () => {
     const places = find()
-    const state = JSON.stringify(places) ?? ""
+    const state = JSON.stringify(places)
     const hasChanged = state !== last
     last = state
     if (hasChanged) draw(places)
@@ -40,6 +40,8 @@ export function follow(find, draw) {
   }
   followers.add(compare)
   if (!isListening) listen()
+  // A notebook adds a document with each explorer. A function that listens already is not added again.
+  for (const each of Bokeh.documents) each.on_change(wake)
   wake()
   return () => followers.delete(compare)
 }
@@ -53,10 +55,10 @@ export function wake() {
 function compareAll() {
   const now = performance.now()
   for (const compare of followers) if (compare()) lastChange = now
-  request = followers.size > 0 && now - lastChange < AT_REST_MS ? requestAnimationFrame(compareAll) : 0
+  request = now - lastChange < AT_REST_MS ? requestAnimationFrame(compareAll) : 0
 }
 
-/** Listen to all that can move pictures, as long as the page exists. */
+/** Listen to all that can move pictures, except documents, as long as the page exists. */
 function listen() {
   isListening = true
   const options = {capture: true, passive: true}
@@ -64,5 +66,4 @@ function listen() {
   for (const name of WINDOW_EVENTS) addEventListener(name, wake, options)
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", wake)
   new ResizeObserver(wake).observe(document.body)
-  for (const each of Bokeh.documents) each.on_change(wake)
 }
