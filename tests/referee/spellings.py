@@ -1,4 +1,4 @@
-"""Compare a formula with its other spellings: nested, expanded, with turned axes, in other units, about its well."""
+"""Compare a formula with its other spellings: nested, expanded, with turned or moved axes, in other units, about its well."""
 
 from __future__ import annotations
 
@@ -19,22 +19,25 @@ from tests.referee.setting import Setting
 CHECK = "spellings"
 STARTS = 30
 _FACTOR = sympy.Rational(17, 10)
+_LARGE_FACTOR = 1000
+_ORIGIN = sympy.Rational(-13, 10), sympy.Rational(7, 10)
 _SAME = np.eye(2)
 
 
 @dataclass(frozen=True)
 class Spelling:
-    """A formula written anew, the matrix that maps places, and the factor by which times are longer."""
+    """A formula written anew, the matrix that maps places, the new origin, and the factor by which times are longer."""
 
     spell: Callable[[sympy.Expr], sympy.Expr]
     matrix: np.ndarray = None  # type: ignore[assignment]
     time_factor: float = 1.0
     at_well: bool = False
+    origin: tuple[float, float] = (0.0, 0.0)
 
     def apply(self, formula: Formula) -> Formula:
         text = sympy.sstr(self.spell(formula.expression)).replace("**", "^")
         place = (0.0, 0.0) if self.at_well and formula.well is None else formula.well
-        well = None if place is None else tuple((self._matrix @ np.array(place)).round(12).tolist())
+        well = None if place is None else tuple((self._matrix @ (np.array(place) - self.origin)).round(12).tolist())
         return replace(formula, expression_text=text, well=well, state=None)
 
     @property
@@ -62,14 +65,22 @@ SPELLINGS: dict[str, Spelling] = {
     "swapped axes": Spelling(_exchanged(Y, X), np.array([[0.0, 1.0], [1.0, 0.0]])),
     "turned axes": Spelling(_exchanged(Y, -X), np.array([[0.0, -1.0], [1.0, 0.0]])),
     "other units": Spelling(_exchanged(_FACTOR * X, _FACTOR * Y), _SAME / float(_FACTOR), 1.0 / float(_FACTOR)),
+    "small units": Spelling(
+        _exchanged(_LARGE_FACTOR * X, _LARGE_FACTOR * Y), _SAME / float(_LARGE_FACTOR), 1.0 / float(_LARGE_FACTOR)
+    ),
     "about its well": Spelling(lambda expression: expression, at_well=True),
+    "moved axes": Spelling(
+        lambda expression: sympy.expand(_exchanged(X + _ORIGIN[0], Y + _ORIGIN[1])(expression)),
+        at_well=True,
+        origin=(float(_ORIGIN[0]), float(_ORIGIN[1])),
+    ),
 }
 """Spellings by name."""
 
 
 def check_spellings(formula: Formula, review: PotentialReview, energies: list[float], seed: int, report: Report) -> None:
     """Compare the reviews of all spellings, and the fates of one spelling."""
-    names = [name for name in SPELLINGS if name != "about its well" or review.refusal is None]
+    names = [name for name, spelling in SPELLINGS.items() if not spelling.at_well or review.refusal is None]
     # Formulas of the same structure share the compiled functions of a spelling.
     chosen = random.Random(f"spelling {seed // REPEATS}").choice(names)
     for name in names:

@@ -113,7 +113,7 @@ class _Hessian:
         self.xx, self.xy, self.yy = (_value(entry, root) for entry in entries)
         self._magnitudes = [float(_value(entry, root, magnitude=True)) for entry in entries]
         with ctx.workprec(_PRECISION):
-            self.determinant = self.xx * self.yy - self.xy**2
+            self.determinant = self.xx * self.yy - self.xy * self.xy
 
     def is_singular_to_rounding(self) -> bool:
         """Return whether rounding errors of the coefficients can change the sign of the eigenvalue λ of smaller magnitude.
@@ -121,8 +121,8 @@ class _Hessian:
         With the unit eigenvector e of λ, a change δ of the matrix changes λ by eᵀ δ e.
         """
         with ctx.workprec(_PRECISION):
-            mean = (self.xx + self.yy) / 2
-            distance = (((self.xx - self.yy) / 2) ** 2 + self.xy**2).sqrt()
+            mean, half_difference = (self.xx + self.yy) / 2, (self.xx - self.yy) / 2
+            distance = (half_difference * half_difference + self.xy * self.xy).sqrt()
             eigenvalue = self.determinant / (mean + distance if mean > 0 else mean - distance)
             # Both vectors are parallel to the eigenvector. The longer vector has the smaller rounding error. Only magnitudes of
             # its parts enter the bound.
@@ -136,6 +136,7 @@ class _Hessian:
 
 def _value(polynomial: fmpq_mpoly, root: CommonRoot, *, magnitude: bool = False) -> arb:
     """Return an interval that contains the value at a root; with `magnitude`, the sum of the magnitudes of the terms."""
+    # python-flint 0.9 returns NaN for powers of intervals around 0, such as those of coordinates that are nearly 0.
     with ctx.workprec(_PRECISION):
-        terms = (arb(c) * root.x**i * root.y**j for (i, j), c in polynomial.to_dict().items())
+        terms = (math.prod((root.x,) * i + (root.y,) * j, start=arb(c)) for (i, j), c in polynomial.to_dict().items())
         return sum(map(abs, terms) if magnitude else terms, arb(0))

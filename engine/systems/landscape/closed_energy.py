@@ -29,6 +29,9 @@ _HALF_LENGTHS = 2.0 ** -np.arange(0.5, 8.5, 0.5)
 _PARTS = 1.1 ** np.arange(-60.0, 1.0)
 # Energies above the bottom at which a well without exits is tested, in units of energy, as powers of 4.
 _POWERS = (-3.0, 1.0, 5.0, 9.0, 13.0, 16.0)
+# Lower powers, to try in turn if the well is open at all of these: the core of a deep well can be much smaller than the unit of
+# length.
+_LOW_POWERS = (-7.0, -11.0, -15.0)
 # Number of bisections between an energy at which the well is closed and one at which it may be open.
 _BISECTIONS = 7
 
@@ -84,9 +87,13 @@ def _find_without_saddles(search: ComponentSearch, bottom: float, unit: float) -
         return bottom + unit * 4.0**power
 
     count = next((k for k, power in enumerate(_POWERS) if not _is_closed(search, energy_at(power))), len(_POWERS))
-    if count in (0, len(_POWERS)):
-        return energy_at(_POWERS[-1]) if count else -np.inf
-    return max(energy_at(_POWERS[count - 1]), _bisect(search, energy_at, _POWERS[count - 1], _POWERS[count]))
+    if count == len(_POWERS):
+        return energy_at(_POWERS[-1])
+    low = _POWERS[count - 1] if count else next((p for p in _LOW_POWERS if _is_closed(search, energy_at(p))), None)
+    if low is None:
+        return -np.inf
+    high = min(power for power in (*_LOW_POWERS, *_POWERS) if power > low)
+    return max(energy_at(low), _bisect(search, energy_at, low, high))
 
 
 def _bisect(search: ComponentSearch, energy_at: Callable[[float], float], low: float, high: float) -> float:

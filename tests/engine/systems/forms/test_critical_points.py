@@ -113,3 +113,11 @@ def test_a_coefficient_stands_for_the_fraction_that_was_typed() -> None:
     # Only with exact thirds and sevenths this is (x² + y² − 1)² / 21, whose points form a circle.
     with pytest.raises(NotIsolatedError):
         find_critical_points(terms_of((X**2 + Y**2 - 1) ** 2 / 21))
+
+
+@pytest.mark.parametrize("place", [(1, 0), (-1, 0), (0, 1)])
+def test_points_keep_their_kinds_when_the_axes_are_moved_to_another_well(place: tuple[int, int]) -> None:
+    # V_xy is the difference of equal terms at the other wells.
+    formula = "−½(x² + y²) + ¼(x² + y²)² + 0.3x²y²"
+    moved = parse_formula(f"{formula}; well ({place[0]}, {place[1]})")
+    assert sorted(moved.well.critical_indices) == sorted(parse_formula(formula).well.critical_indices) == [-1] * 4 + [1] * 5

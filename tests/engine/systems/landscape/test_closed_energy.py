@@ -22,7 +22,12 @@ def test_wells_of_the_catalogue_are_closed_up_to_their_saddles(name: str) -> Non
 
 
 @pytest.mark.parametrize(
-    ("formula", "opening"), [("½x² + 200(1 − exp(−0.05y))²", 200.0), ("½x² + ½y²/(1 + 0.0001y²)", 5000.0), ("−1/√(r² + 1)", 0.0)]
+    ("formula", "opening"),
+    [
+        *(("½x² + 200(1 − exp(−0.05y))²", 200.0), ("½x² + ½y²/(1 + 0.0001y²)", 5000.0)),
+        # Cores much larger and much smaller than the unit of length, which is 1.
+        *(("−1/√(r² + 10000)", 0.0), ("−1/√(r² + 1)", 0.0), ("−1/√(r² + 0.01) + x²/8", 0.0), ("−1/√(r² + 0.000001)", 0.0)),
+    ],
 )
 def test_a_well_without_saddles_is_closed_up_to_nearly_the_energy_at_which_it_opens(formula: str, opening: float) -> None:
     well = parse_formula(formula).well
