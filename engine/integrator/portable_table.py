@@ -15,6 +15,7 @@ from engine.integrator.kernels import (
     ensemble,
     exit_geometry,
     interior,
+    lanes,
     propagate,
     random_starts,
     slice_starts,
@@ -59,7 +60,7 @@ KERNELS: dict[Any, Signature] = {
 def _main() -> None:
     """Build the module and write it to the standard output."""
     # A vector of WebAssembly has two lanes. The kernels are compiled after this assignment.
-    propagate.VECTOR = VECTOR_LANES
+    lanes.VECTOR = VECTOR_LANES
     sys.stdout.buffer.write(lower_kernels(KERNELS))
 
 

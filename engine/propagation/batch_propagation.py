@@ -11,7 +11,8 @@ import numpy as np
 
 from engine.exits.exit_shapes import exit_gates
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
-from engine.integrator.kernels.propagate import NO_TRACE, VECTOR, Exits, fill_vectors
+from engine.integrator.kernels.lanes import VECTOR, fill_vectors
+from engine.integrator.kernels.propagate import NO_TRACE, Exits
 from engine.integrator.source.recurrence import LANES, TOLERANCE
 from engine.integrator.source.section_numbers import UPWARD, SectionForm, SectionNumbers
 from engine.propagation.batch import OrbitBatch

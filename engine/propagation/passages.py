@@ -9,7 +9,8 @@ import numpy as np
 from engine.exits.exit_shapes import exit_gates
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.integrator.kernels.dense_output import without_exits
-from engine.integrator.kernels.propagate import VECTOR, Exits
+from engine.integrator.kernels.lanes import VECTOR
+from engine.integrator.kernels.propagate import Exits
 from engine.integrator.source.recurrence import TOLERANCE
 from engine.integrator.source.section_numbers import SectionForm, SectionNumbers
 from engine.propagation.fates import Fate

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
-from engine.integrator.kernels.propagate import fill_vectors
+from engine.integrator.kernels.lanes import fill_vectors
 from engine.integrator.source.recurrence import LANES
 from engine.systems.potential import Potential
 

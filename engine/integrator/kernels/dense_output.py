@@ -12,7 +12,8 @@ from engine.integrator.jit.decorator import kernel
 from engine.integrator.jit.function_pointers import call_jets
 from engine.integrator.kernels.events import BOUNDED, NOT_COMPUTED, series_value
 from engine.integrator.kernels.exit_geometry import CURVE_COLUMNS
-from engine.integrator.kernels.propagate import VECTOR, Exits, Orbits
+from engine.integrator.kernels.lanes import VECTOR
+from engine.integrator.kernels.propagate import Exits, Orbits
 from engine.integrator.source.recurrence import TOLERANCE
 from engine.integrator.source.section_numbers import UPWARD, SectionNumbers
 from engine.integrator.source.series import ORDER

@@ -14,7 +14,7 @@ from engine.integrator.jit.decorator import kernel, subroutine
 from engine.integrator.jit.function_pointers import call_jets, call_step
 from engine.integrator.kernels.events import crossed_exit, find_exit_time, find_zero, passed_exit, series_slope, series_value
 from engine.integrator.kernels.exit_geometry import ends_inside, reached_exit
-from engine.integrator.kernels.propagate import fill_vectors
+from engine.integrator.kernels.lanes import fill_vectors
 from engine.integrator.kernels.sections import section_series
 from engine.integrator.source.recurrence import LANES, ROWS, SIZE_ROW, TIME_ROW
 from engine.integrator.source.series import ORDER

@@ -14,9 +14,9 @@ import numpy as np
 from engine.integrator.jit.decorator import kernel, subroutine
 from engine.integrator.jit.function_pointers import call_jets, call_limited_step, call_tangent
 from engine.integrator.kernels.events import append_crossings
-from engine.integrator.kernels.propagate import fill_vectors
+from engine.integrator.kernels.lanes import fill_lanes, fill_vectors, move_lane
 from engine.integrator.kernels.sections import UPWARD
-from engine.integrator.source.recurrence import LANES, ROWS, SIZE_ROW, TIME_ROW
+from engine.integrator.source.recurrence import LANES, SIZE_ROW, TIME_ROW
 from engine.integrator.source.series import ORDER
 
 
@@ -29,7 +29,8 @@ def birkhoff_averages(limited_step, coefficients, tolerance, interval, budget, w
     """
     active = state.shape[1]
     m = weights.shape[0]
-    now, new, until, lane_orbit = _fill_lanes(state, interval)
+    now, new, lane_orbit = fill_lanes(state)
+    until = _fill_limits(active, interval)
     samples = np.zeros(LANES, np.int64)
     for i in range(active):
         _add_sample(now, i, weights, 0, averages, i)
@@ -59,19 +60,12 @@ def birkhoff_averages(limited_step, coefficients, tolerance, interval, budget, w
 
 
 @subroutine
-def _fill_lanes(state, limit):
-    """Return lanes at the start and the end of a step, the time that each must not pass, and the orbit of each.
-
-    state (4, lanes): the orbits at t = 0; limit: the time.
-    """
-    now, new = np.zeros((ROWS, LANES)), np.zeros((ROWS, LANES))
-    until, lane_orbit = np.zeros(LANES), np.zeros(LANES, np.int64)
-    for i in range(state.shape[1]):
-        for c in range(4):
-            now[c, i] = state[c, i]
+def _fill_limits(count, limit):
+    """Return the times that lanes must not pass: `limit` for the first `count` lanes."""
+    until = np.zeros(LANES)
+    for i in range(count):
         until[i] = limit
-        lane_orbit[i] = i
-    return now, new, until, lane_orbit
+    return until
 
 
 @subroutine
@@ -87,9 +81,7 @@ def _end_lane(lanes, i, last, lane_orbit, state):
     """Store the state of the orbit of lane i in `state` (4, orbits), and move the lane `last` there."""
     for c in range(4):
         state[c, lane_orbit[i]] = lanes[c, i]
-    for c in range(ROWS):
-        lanes[c, i] = lanes[c, last]
-    lane_orbit[i] = lane_orbit[last]
+    move_lane(lanes, last, i, lane_orbit)
 
 
 @subroutine
@@ -116,7 +108,8 @@ def find_section_points(limited_step, jets, coefficients, tolerance, duration, b
     """
     lanes = state.shape[1]
     active = lanes
-    now, new, until, lane_orbit = _fill_lanes(state, duration)
+    now, new, lane_orbit = fill_lanes(state)
+    until = _fill_limits(lanes, duration)
     # Steps with a crossing are collected, so that their series are computed together.
     start, size, step_orbit = np.zeros((4, LANES)), np.zeros(LANES), np.zeros(LANES, np.int64)
     buffered = 0
@@ -172,7 +165,8 @@ def follow_deviations(tangent, limited_step, coefficients, tolerance, interval, 
     SALI of orbits that fail becomes NaN.
     """
     active = orbits.shape[1]
-    now, new, until, lane_orbit = _fill_lanes(orbits[:4], interval)
+    now, new, lane_orbit = fill_lanes(orbits[:4])
+    until = _fill_limits(active, interval)
     vectors = np.zeros((8, LANES))
     for i in range(active):
         for c in range(8):

@@ -22,7 +22,8 @@ from engine.integrator.kernels.events import (
     series_value,
 )
 from engine.integrator.kernels.exit_geometry import reached_exit
-from engine.integrator.kernels.propagate import fill_vectors, has_failed, make_buffer, passes_exit
+from engine.integrator.kernels.lanes import fill_lanes, fill_vectors, has_failed, move_lane
+from engine.integrator.kernels.propagate import make_buffer, passes_exit
 from engine.integrator.source.recurrence import LANES, ROWS, SIZE_ROW, TIME_ROW
 from engine.integrator.source.series import ORDER
 from engine.integrator.source.step_flags import CROSSES, GATE, HIDDEN, NEAR, OVERSHOOT
@@ -55,32 +56,18 @@ class _PassageBuffer(NamedTuple):
     channel: np.ndarray
 
 
-@subroutine
-def fill_lanes(orbits):
-    """Return the arguments of `step` for orbits (rows, lanes): now, new, flag and crossed, and the orbit number of each lane."""
-    lanes = orbits.shape[1]
-    now = np.zeros((ROWS, LANES))
-    # The elements are copied one by one, because for `now[:4] = orbits` Numba also compiles an error message, which takes 2 s.
-    for c in range(orbits.shape[0]):
-        for i in range(lanes):
-            now[c, i] = orbits[c, i]
-    lane_orbit = np.zeros(lanes, np.int64)
-    for i in range(lanes):
-        lane_orbit[i] = i
-    return now, np.zeros((ROWS, LANES)), np.zeros(LANES, np.int64), np.zeros(LANES, np.int64), lane_orbit
-
-
 @kernel
 def find_section_passages(step, jets, coefficients, tolerance, horizon, exits, state, passages, found, fate):
     """Find the first m crossings of the section by each orbit before it escapes through an exit or passes `horizon`.
 
-    exits: `propagate.Exits`; state (4, lanes), lanes a multiple of `propagate.VECTOR` up to `LANES`; passages (lanes, m, 3 to 5):
+    exits: `propagate.Exits`; state (4, lanes), lanes a multiple of `VECTOR` up to `LANES`; passages (lanes, m, 3 to 5):
     set to x, px, time, py and y; found (lanes,): zeros, set to the numbers of crossings; fate (lanes,): set where an orbit has
     ended, which says nothing about an orbit with m crossings: the number of the exit, or BOUNDED or FAILED.
     """
     lanes = state.shape[1]
     most_passages = passages.shape[1]
-    now, new, flag, crossed, lane_orbit = fill_lanes(state)
+    now, new, lane_orbit = fill_lanes(state)
+    flag, crossed = np.zeros(LANES, np.int64), np.zeros(LANES, np.int64)
     buffer = _PassageBuffer(np.zeros((6, lanes)), np.zeros(lanes, np.int64), np.zeros(lanes, np.int64))
     single = make_buffer(2)
     buffered = 0
@@ -115,11 +102,8 @@ def find_section_passages(step, jets, coefficients, tolerance, horizon, exits, s
             if fails or is_full or channel > 0 or flag[i] & OVERSHOOT != 0:
                 if channel == 0:
                     fate[orbit] = FAILED if fails else BOUNDED
-                # The last active lane takes the place of the lane whose orbit has ended.
                 active -= 1
-                for c in range(ROWS):
-                    new[c, i] = new[c, active]
-                lane_orbit[i] = lane_orbit[active]
+                move_lane(new, active, i, lane_orbit)
         now, new = new, now
     _locate_passages(jets, coefficients, horizon, buffer, buffered, exits, passages, found, fate)
 
@@ -148,11 +132,12 @@ def integrate_speed(step, jets, coefficients, tolerance, duration, power, budget
     """Continue the integrals of |v|^power to `duration`, or until an orbit crosses an exit, by at most `budget` steps.
 
     gates (exits, 3); curves (energies, exits, columns); curve_row (lanes,): the row of `curves` of each orbit; orbits (ROWS,
-    lanes), lanes a multiple of `propagate.VECTOR` up to `LANES`: see `ROWS`; integral (lanes,): the integrals so far. Orbits and
+    lanes), lanes a multiple of `VECTOR` up to `LANES`: see `ROWS`; integral (lanes,): the integrals so far. Orbits and
     integrals are changed in place. The time becomes infinite where an integral is complete, and the integral becomes NaN for an
     orbit whose steps become too short.
     """
-    now, new, flag, crossed, lane_orbit = fill_lanes(orbits)
+    now, new, lane_orbit = fill_lanes(orbits)
+    flag, crossed = np.zeros(LANES, np.int64), np.zeros(LANES, np.int64)
     active = orbits.shape[1]
     for i in range(active):
         orbits[TIME_ROW, i] = np.inf
@@ -166,7 +151,7 @@ def integrate_speed(step, jets, coefficients, tolerance, duration, power, budget
         call_jets(jets, coefficients, width, now[0], now[1], now[2], now[3], x_jet, y_jet)
         for i in range(active - 1, -1, -1):
             orbit = lane_orbit[i]
-            fails = not (np.isfinite(new[0, i]) and np.isfinite(new[1, i]) and new[SIZE_ROW, i] > 0.0)
+            fails = has_failed(new, i)
             time_inside, ends = _time_inside(now, new, i, flag[i], duration, x_jet, y_jet, curves[curve_row[orbit]], gates)
             if fails:
                 integral[orbit] = np.nan
@@ -174,12 +159,10 @@ def integrate_speed(step, jets, coefficients, tolerance, duration, power, budget
                 integral[orbit] += _integrate_step(x_jet, y_jet, i, time_inside, power)
             if ends or fails:
                 active -= 1
-                for c in range(ROWS):
-                    new[c, i] = new[c, active]
+                move_lane(new, active, i, lane_orbit)
                 for k in range(ORDER + 1):
                     x_jet[k, i] = x_jet[k, active]
                     y_jet[k, i] = y_jet[k, active]
-                lane_orbit[i] = lane_orbit[active]
         now, new = new, now
     for i in range(active):
         for c in range(ROWS):

@@ -27,12 +27,10 @@ from engine.integrator.kernels.events import (
     series_value,
 )
 from engine.integrator.kernels.exit_geometry import CLOSED, SHAPE, reached_exit
+from engine.integrator.kernels.lanes import fill_vectors, has_failed, move_lane
 from engine.integrator.source.recurrence import LANES, REMAINDER_ROW, ROWS, SIZE_ROW, TIME_ROW
 from engine.integrator.source.series import ORDER
 from engine.integrator.source.step_flags import CROSSES, GATE, HIDDEN, NEAR, OVERSHOOT
-
-VECTOR = 8
-"""The number of active lanes is rounded up to a multiple of this, so that no lane is in the scalar remainder of a loop."""
 
 NO_TRACE = np.empty((0, 5))
 """The argument `trace` of `propagate` for orbits whose steps are not recorded."""
@@ -106,12 +104,6 @@ class _StepBuffer(NamedTuple):
     x_jet: np.ndarray
     y_jet: np.ndarray
     section_jet: np.ndarray
-
-
-@subroutine
-def fill_vectors(count):
-    """Return the number of lanes of the whole vectors that hold `count` orbits."""
-    return (count + VECTOR - 1) // VECTOR * VECTOR
 
 
 @subroutine
@@ -206,7 +198,8 @@ def _refill_lane(orbits, todo, next_orbit, active, lanes, i, lane_orbit, crossed
     if next_orbit < todo.shape[0]:
         _load_orbit(orbits, todo[next_orbit], lanes, i, lane_orbit, crossed)
         return active, next_orbit + 1
-    _move_lane(lanes, active - 1, i, lane_orbit, crossed)
+    move_lane(lanes, active - 1, i, lane_orbit)
+    crossed[i] = crossed[active - 1]
     return active - 1, next_orbit
 
 
@@ -227,12 +220,6 @@ def _judge_step(jets, coefficients, flags, now, new, i, final, exits, orbit, sin
     ends = is_late or channel > 0 or fails
     has_events = channel > 0 or (is_late and final) or (not is_late and flags & HIDDEN != 0)
     return ends, channel, fails, has_events and not fails
-
-
-@subroutine
-def has_failed(new, i):
-    """Return whether the step of lane i has not led to a finite position at a later time."""
-    return not (np.isfinite(new[0, i]) and np.isfinite(new[1, i]) and new[SIZE_ROW, i] > 0.0)
 
 
 @subroutine
@@ -266,15 +253,6 @@ def _store_orbit(lanes, i, crossed, orbits, orbit):
     for c in range(2):
         orbits.remainder[orbit, c] = lanes[REMAINDER_ROW + c, i]
     orbits.crossings[orbit] += crossed[i]
-
-
-@subroutine
-def _move_lane(lanes, source, target, lane_orbit, crossed):
-    """Copy the orbit of lane `source` of the (ROWS, LANES) array `lanes` to lane `target`."""
-    for c in range(ROWS):
-        lanes[c, target] = lanes[c, source]
-    lane_orbit[target] = lane_orbit[source]
-    crossed[target] = crossed[source]
 
 
 @subroutine

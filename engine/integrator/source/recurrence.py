@@ -37,16 +37,7 @@ from engine.integrator.source.generated_functions import GeneratedFunction, Plac
 from engine.integrator.source.polynomial_recurrence import PolynomialStructure, Terms, structure_of_polynomial
 from engine.integrator.source.section_crossings import flag_crossings, section_places
 from engine.integrator.source.section_numbers import COLUMNS
-from engine.integrator.source.series import (
-    LONGEST_STEP,
-    ORDER,
-    ROTATION,
-    Series,
-    Setting,
-    add_coriolis,
-    cauchy,
-    total,
-)
+from engine.integrator.source.series import LONGEST_STEP, ORDER, ROTATION, Series, Setting, add_coriolis, cauchy, total
 from engine.integrator.source.step_flags import CROSSES, OVERSHOOT, flag_gates, flag_hidden_crossings
 from engine.integrator.source.straight_line import StraightLine, Value, where
 

@@ -13,7 +13,8 @@ from engine import CASES, Plane, Potential, parse_formula, start_states
 from engine.exits.exit_rows import exit_curves
 from engine.exits.exit_shapes import exit_gates
 from engine.integrator.jit.webassembly import webassembly_module
-from engine.integrator.kernels.propagate import VECTOR, Exits
+from engine.integrator.kernels.lanes import VECTOR
+from engine.integrator.kernels.propagate import Exits
 from engine.integrator.portable_kernels import kernel_module
 from engine.integrator.source.recurrence import TOLERANCE, outline_code
 from engine.integrator.source.series import ORDER
