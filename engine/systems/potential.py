@@ -21,6 +21,7 @@ from engine.integrator.source.recurrence import TOLERANCE
 from engine.integrator.source.series import ORDER
 from engine.systems.escape_arcs import end_kinds
 from engine.systems.forms.expression_form import Form, as_form
+from engine.systems.landscape.nearest_minimum import find_nearest_minimum
 from engine.systems.motion import MASS_RANGE, Motion
 from engine.systems.outcomes import KINDS, Centre, End, EscapeCircle, Outcome
 from engine.systems.related_wells import SEARCHED, ContinuedWell, Lineage, scaled_to_well
@@ -243,12 +244,10 @@ class Potential(Motion):
         ([0.0, -0.296861], 27.0123)
         """
         place = np.array([checked_number("x", x), checked_number("y", y)])
-        points = self.well.critical_points
-        vxx, _, vyy = self.hessian(*points.T)
-        minima = points[(self.well.critical_indices > 0.0) & (vxx + vyy > 0.0)]
-        if not len(minima):
+        minimum = find_nearest_minimum(self.form, self.well.critical_points, self.well.critical_indices, place)
+        if minimum is None:
             raise ValueError(f"potential={self.name}: V must have a minimum to which its axes can be moved")
-        nearest = minima[np.argmin(np.hypot(*(minima - place).T))].tolist()
+        nearest = minimum.tolist()
         ends = tuple(end.moved(*nearest) for end in self.ends)
         origin = self.origin[0] + nearest[0], self.origin[1] + nearest[1]
         return self._copy_with(form=self.form.moved(*nearest), ends=ends, origin=origin, exit_names=())

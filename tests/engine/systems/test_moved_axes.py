@@ -53,6 +53,13 @@ def test_moved_axes_leave_v_at_each_place_unchanged() -> None:
     assert moved.critical_points[np.hypot(*moved.critical_points.T) < 1e-6].tolist() == [[0.0, 0.0]]
 
 
+def test_a_well_is_found_far_beyond_a_critical_point_near_the_origin() -> None:
+    # A minimum at (0.08, −0.007) makes the region small that is searched about the origin.
+    wells = "−1.8118/(1 + (x + 0.143)² + (y + 1.909)²) − 1.5383/(1 + (x + 0.07)² + (y − 1.818)²) − 1.4043/(1 + (x − 0.102)² + y²)"
+    for well, origin in [("(−0.07, 1.818)", (-0.060351, 1.689716)), ("(0, 0)", (0.080087, -0.007208))]:
+        np.testing.assert_allclose(parse_formula(f"{wells}; well {well}").origin, origin, atol=1e-6)
+
+
 def test_bodies_move_with_the_axes() -> None:
     moved = parse_formula("½(x − 1)² + ½y² − 0.1/√((x − 2)² + y²); center (2, 0) 0.01; well (1, 0); escape 5")
     (centre,) = moved.centres
