@@ -85,6 +85,10 @@ class PolynomialForm:
         """Whether all powers of y are even."""
         return all(j % 2 == 0 for _, j, _ in self.terms)
 
+    def is_even_in(self, axis: int) -> bool:
+        """Return whether all powers of x (axis 0) or y (axis 1) are even."""
+        return (self.mirror_in_x, self.mirror_in_y)[axis]
+
     @property
     def has_constant(self) -> bool:
         """Whether there is a term without x and y."""

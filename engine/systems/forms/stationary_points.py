@@ -37,6 +37,10 @@ _NEWTON_STEPS = 60
 _SMALLEST_CURVATURE = 1e-290
 # Length of a step below which Newton's method has converged, relative to the distance from the origin.
 _STEP_TOLERANCE = 1e-12
+# Largest slope at a point, relative to its largest second derivative times its distance from the origin. Where the Hessian is
+# singular to rounding, a step can be 0 although the slope is not. The slope of exp(k r) is 1/(k r) in this unit, and k r is at
+# most 710, or a few times as much off the direction in which the exponent grows.
+_SLOPE_TOLERANCE = 1e-4
 # Distance up to which points are the same, relative to their distance from the origin plus that of the nearest point.
 _DUPLICATE_TOLERANCE = 1e-8
 # The same distance for degenerate points, whose places are less accurate.
@@ -192,7 +196,14 @@ def _newton_roots(derivatives: Derivatives, points: np.ndarray) -> np.ndarray:
         points = points - step
         roots.append(points[has_converged])
         points = points[~has_converged & np.isfinite(length)]
-    return np.concatenate(roots)
+    return _without_slopes(derivatives, np.concatenate(roots))
+
+
+def _without_slopes(derivatives: Derivatives, points: np.ndarray) -> np.ndarray:
+    """Return those points (m, 2) at which V has no slope, up to rounding."""
+    slope, curvature = np.abs(derivatives.slopes_at(points)).max(axis=1), np.abs(derivatives.jacobian_at(points)).max(axis=(1, 2))
+    distance = np.maximum(np.hypot(*points.T), _ORIGIN_RADIUS)
+    return points[slope <= _SLOPE_TOLERANCE * curvature * distance]
 
 
 def _distinct(points: np.ndarray, nearest: float, tolerance: float) -> np.ndarray:

@@ -159,8 +159,8 @@ def review_potential(potential: Potential) -> PotentialReview:
         closed_energy=-np.inf if refusal or not potential.escapes_over_saddles else potential.well.closed_energy,
         channels=potential.channels if points else 0,
         highest_energy=potential.well.channel_mergers[0].energy if points and potential.well.channel_mergers else float("inf"),
-        mirror_in_x=potential.form.mirror_in_x,
-        mirror_in_y=potential.form.mirror_in_y,
+        mirror_in_x=potential.form.is_even_in(0),
+        mirror_in_y=potential.form.is_even_in(1),
         rotations=potential.form.count_rotations(),
         refusal=refusal,
         remarks=() if refusal else _remarks(potential, points),
@@ -197,7 +197,7 @@ def _remarks(potential: Potential, points: tuple[CriticalPoint, ...]) -> tuple[s
         lowest = potential.well.channel_mergers[0]
         merged = name_channels(lowest.channels)
         remarks.append(f"The exits are separate up to h = {lowest.energy:.6g}; above it some are one exit, {merged}.")
-    if not potential.form.mirror_in_y:
+    if not potential.form.is_even_in(1):
         remarks.append("V is not even in y: y = 0 is not a symmetry axis, and an orbit may stay on one side of it.")
     if potential.form.has_constant:
         remarks.append("The constant term has no effect on the orbits, but all energies include it.")

@@ -41,6 +41,13 @@ def test_a_lattice_is_cut_to_a_region_with_few_points() -> None:
     assert 9 <= len(points) <= MOST_POINTS
 
 
+@pytest.mark.parametrize("factor", [0.1, 1.0, 8.0])
+def test_the_only_point_of_a_sum_of_exponentials_is_found_in_units_in_which_they_are_steep(factor: float) -> None:
+    # Far from the origin one exponential is the largest by far, and the Hessian is singular to rounding.
+    text = "exp(2k x + k √12 y) + exp(2k x − k √12 y) + exp(−4k x)"
+    np.testing.assert_array_equal(points_of(parse_formula(text, parameters={"k": factor})), [[0.0, 0.0]])
+
+
 def test_a_region_in_which_v_is_not_defined_is_refused() -> None:
     with pytest.raises(UndecidedError, match="not defined everywhere within"):
         points_of(parse_formula("½r² − 0.5x³ + 0.001 log(0.64 − x²)"))

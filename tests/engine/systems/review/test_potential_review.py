@@ -73,8 +73,23 @@ def test_wells_without_exits_are_accepted_with_energies_at_which_they_are_closed
 
 
 def test_exits_that_are_not_known_are_not_said_to_be_missing() -> None:
-    remark = review_potential(parse_formula("exp(6x + 7y) + exp(6x − 7y) + exp(−12x) − 3")).remarks[0]
+    remark = review_potential(parse_formula("exp(2000x) + exp(−2000x) + exp(2000y) + exp(−2000y)")).remarks[0]
     assert remark.startswith("The exits are not known: Whether all critical points")
+
+
+@pytest.mark.parametrize(
+    ("formula", "is_even"),
+    [
+        ("−1/√(x² + (y − 0.3)² + 0.5) − 1/√(x² + (y + 0.3)² + 0.5)", True),
+        ("−1/√(x² + (y − 0.3)² + 0.5) − 1.01/√(x² + (y + 0.3)² + 0.5); well (0, 0)", False),
+        ("exp(x + 2y) + exp(x − 2y) + exp(−2x)", True),
+        ("r²/2 + 0.1y² sin(y)", False),
+    ],
+)
+def test_v_is_even_also_if_the_reflection_exchanges_its_terms(formula: str, is_even: bool) -> None:
+    review = review_potential(parse_formula(formula))
+    assert (review.refusal, review.mirror_in_y) == (None, is_even)
+    assert any(remark.startswith("V is not even in y") for remark in review.remarks) is not is_even
 
 
 @pytest.mark.parametrize(
