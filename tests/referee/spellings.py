@@ -19,7 +19,7 @@ from tests.referee.setting import Setting
 CHECK = "spellings"
 STARTS = 30
 _FACTOR = sympy.Rational(17, 10)
-_LARGE_FACTOR = 1000
+_LARGE_FACTOR = 50
 _ORIGIN = sympy.Rational(-13, 10), sympy.Rational(7, 10)
 _SAME = np.eye(2)
 

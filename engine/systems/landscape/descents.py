@@ -32,6 +32,8 @@ _INFINITE_DISTANCE = 10.0
 # before the step plus the largest magnitude at a critical point.
 _LARGEST_RISE = 1e-6
 
+# Slope below which V is flat. Smaller slopes, such as those of exp(−r²) far away, lose their digits, and then become 0.
+_SMALLEST_SLOPE = 1e-290
 # Distance from a critical point outside the searched region at which a descent ends, in units of its distance from the origin.
 # Negative curvatures below this share of the positive one are errors of zero, as on a circle of minima.
 _REST_DISTANCE = 1e-6
@@ -128,12 +130,13 @@ class Descents:
             if end is not None:
                 return end, np.array(places)
         x, y = self._points[saddle]
-        raise DescentError(f"The end of a line of steepest descent from the saddle {format_point(x, y)} is not found.")
+        line = "descent" if self._sign > 0.0 else "ascent"
+        raise DescentError(f"The end of a line of steepest {line} from the saddle {format_point(x, y)} is not found.")
 
     def _steady_flow(self, time: float, place: np.ndarray) -> np.ndarray:
-        """Return the flow scaled to speed 1."""
+        """Return the flow scaled to speed 1; 0 where V is flat to rounding."""
         velocity = self._flow(time, place)
-        return velocity / np.hypot(*velocity)
+        return velocity / (float(np.hypot(*velocity)) or 1.0)
 
     def _follow(self, solver_class: Any, flow: Flow, saddle: int, side: float) -> tuple[int | None, list[np.ndarray]]:
         """Descend along a flow with one of SciPy's solvers; see `_descend`. The end is None if it is not reached."""
@@ -162,7 +165,7 @@ class Descents:
             if is_at_end.any():
                 return int(np.argmax(is_at_end)), places
             value = self._value(place)
-            is_far = np.hypot(*place) > self._infinite_distance
+            is_far = np.hypot(*place) > self._infinite_distance or np.hypot(*self._flow(0.0, place)) < _SMALLEST_SLOPE
             # The list does not contain critical points outside the searched region.
             if is_far or self._rises(previous_value, value) or self._is_at_rest(previous_place, place):
                 return -1, places

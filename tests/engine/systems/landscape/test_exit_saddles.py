@@ -105,6 +105,14 @@ def test_lines_of_steepest_ascent_end_at_maxima_outside_the_searched_region() ->
     assert find_maxima_beside(potential.form, points, potential.well.critical_indices, saddles).shape == (6, 8)
 
 
+def test_lines_of_steepest_ascent_end_where_v_is_flat_to_rounding() -> None:
+    # The lines from both saddles lead to the middle of the ring, and outward, where V = 0 to rounding.
+    wells = ("(x − 2)² − y²", "(x + 2)² − y²", "x² − (y − 2)²", "x² − (y + 2)²")
+    potential = parse_formula("".join(f"− exp(−{well})" for well in wells) + "; well (0, −2)")
+    assert (potential.channels, len(potential.well.channel_mergers)) == (2, 1)
+    assert potential.well.channel_mergers[0].energy == pytest.approx(-4.0 * np.exp(-4.0))
+
+
 def test_lines_that_pass_ridges_on_a_line_of_symmetry_end_at_the_origin() -> None:
     # DOP853, applied to x and log y, leads one line from each saddle to the origin and the other line to infinity. The first line
     # comes as close as 1e-15 to ridges on y = 0.
