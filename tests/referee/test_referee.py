@@ -9,6 +9,7 @@ from __future__ import annotations
 import pytest
 
 from tests.referee.checks import check_formula
+from tests.referee.ends import check_ends
 from tests.referee.formulas import EXAMPLES, REPEATS, Formula, random_formula
 from tests.referee.report import COMPARED, Report
 
@@ -30,6 +31,8 @@ CHECKS_OF_EXAMPLES = {
 # Structures of each grammar, with accepted formulas.
 STRUCTURES = (1, 2)
 REVIEWED = 12
+# A well, two bodies twice, and hills, all with arcs, and three with a mass and a rotating frame.
+SEEDS_OF_ENDS = (2, 3, 12, 22)
 
 
 def compared(report: Report) -> int:
@@ -51,6 +54,15 @@ def test_fates_on_random_formulas_are_right(structure: int) -> None:
     report = Report()
     for seed in range(REPEATS * structure, REPEATS * (structure + 1)):
         report.merge(check_formula(random_formula(seed), seed, checks=("fates", "images", "openness")))
+    assert not report.wrong
+    assert compared(report) > 50
+
+
+@pytest.mark.slow
+def test_ends_of_orbits_on_random_formulas_are_right() -> None:
+    report = Report()
+    for seed in SEEDS_OF_ENDS:
+        check_ends(seed, 5, report)
     assert not report.wrong
     assert compared(report) > 50
 
