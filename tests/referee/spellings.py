@@ -115,9 +115,9 @@ def _check_reviews(
     if not accepted or review.refusal is not None:
         return False
     unknown = [bool(each.potential.well.exits_unknown) for each in (review, other)]
-    if unknown[0] != unknown[1]:
-        report.add(CHECK, UNDECIDED, "the exits of one spelling are said to be unknown")
-        return False
+    if any(unknown):
+        report.add(CHECK, UNDECIDED, "the exits of a spelling are said to be unknown")
+        return all(unknown)
     counts = _common_counts(review, other)
     same = counts[0] == counts[1]
     report.judge(CHECK, "the number of exits differs", same, **known, channels=counts)
