@@ -13,7 +13,7 @@ from engine.expressions.calculus import curvatures, derivative, replace_parts, s
 from engine.expressions.evaluation import evaluate, evaluate_at
 from engine.expressions.graph import make_graph
 from engine.expressions.nodes import Expression, Sum, X, Y, as_terms, from_terms, linear_combination, multiply, number, power
-from engine.expressions.parity import EVEN, parity
+from engine.expressions.parity import EVEN, is_even, parity
 from engine.expressions.polynomials import Terms
 from engine.expressions.singularities import repeated_factors, singular_bases
 from engine.expressions.text import write_expression
@@ -34,8 +34,8 @@ _EFFORT = 0.1
 
 # Highest order n of a rotational symmetry, by 2π/n, that is searched.
 _HIGHEST_ORDER = 12
-# Largest difference of V at a point and at its image by a symmetry of V, relative to the largest V on the circle.
-_SYMMETRY_ERROR = 1e-11
+# Largest difference of V before and after a rotation that leaves V unchanged, relative to the largest V on the circle.
+_ROTATION_ERROR = 1e-11
 # Radii of the circles on which V is compared, dimensionless.
 _RADII = 2.0 ** np.arange(-6.0, 3.0)[:, None]
 # Angles of the points on each circle, in radians. They have no symmetry of their own.
@@ -225,20 +225,20 @@ class ExpressionForm:
 
     def count_rotations(self) -> int:
         """Return the largest n of the rotations 2π/n that leave values of V on circles unchanged; 0 for all rotations."""
-        if self._is_equal_at(_ANGLES + _ARBITRARY_ANGLE):
+        if self._is_invariant(_ARBITRARY_ANGLE):
             return 0
-        return next((n for n in range(_HIGHEST_ORDER, 1, -1) if self._is_equal_at(_ANGLES + 2.0 * math.pi / n)), 1)
+        return next((n for n in range(_HIGHEST_ORDER, 1, -1) if self._is_invariant(2.0 * math.pi / n)), 1)
+
+    def _is_invariant(self, angle: float) -> bool:
+        """Return whether a rotation by an angle in radians leaves V unchanged on the circles where V is defined."""
+        value, rotated = (self.value(_RADII * np.cos(a), _RADII * np.sin(a)) for a in (_ANGLES, _ANGLES + angle))
+        is_defined = np.isfinite(value).all(axis=1) & np.isfinite(rotated).all(axis=1)
+        error = np.abs(value[is_defined] - rotated[is_defined]).max(axis=1)
+        return bool(is_defined.any() and np.all(error <= _ROTATION_ERROR * np.abs(value[is_defined]).max(axis=1)))
 
     def is_even_in(self, axis: int) -> bool:
         """Return whether a change of sign of x (axis 0) or y (axis 1) leaves V unchanged, also if it exchanges terms of V."""
-        return parity(self.expression, axis) == EVEN or self._is_equal_at((np.pi - _ANGLES, -_ANGLES)[axis])
-
-    def _is_equal_at(self, images: np.ndarray) -> bool:
-        """Return whether V has equal values at the angles of the points and at these images, on circles where V is defined."""
-        value, other = (self.value(_RADII * np.cos(a), _RADII * np.sin(a)) for a in (_ANGLES, images))
-        is_defined = np.isfinite(value).all(axis=1) & np.isfinite(other).all(axis=1)
-        error = np.abs(value[is_defined] - other[is_defined]).max(axis=1)
-        return bool(is_defined.any() and np.all(error <= _SYMMETRY_ERROR * np.abs(value[is_defined]).max(axis=1)))
+        return is_even(self.expression, axis)
 
     def limits_refusal(self) -> str | None:
         """Return a sentence if V or its derivatives are too large; otherwise None.
