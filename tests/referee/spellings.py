@@ -22,6 +22,8 @@ _FACTOR = sympy.Rational(17, 10)
 _LARGE_FACTOR = 50
 _ORIGIN = sympy.Rational(-13, 10), sympy.Rational(7, 10)
 _SAME = np.eye(2)
+# Distance of neighbouring energies in depths of the well above which the exits of a spelling may be refused.
+_FEW_DIGITS = 1e-6
 
 
 @dataclass(frozen=True)
@@ -149,6 +151,9 @@ def _check_fates(setting: Setting, other: Setting, spelling: Spelling, name: str
             refusals.append(str(error))
     if len(refusals) == 2:
         report.add(CHECK, UNDECIDED, "exits refused in both spellings")
+        return
+    if refusals and np.spacing(setting.energy) > _FEW_DIGITS * setting.potential.well.depth:
+        report.add(CHECK, UNDECIDED, "exits refused in one spelling, but the energy has few digits beside the constant of V")
         return
     known = {"spelling": name, "spelled": other.formula.text, "refusals": refusals}
     report.judge(CHECK, "the exits of one spelling are refused", not refusals, **known, **setting.reproduction)
