@@ -1,8 +1,8 @@
 """Lanes of orbits that step together: their arrays, the number of lanes in whole vectors, and orbits that end.
 
 A kernel steps its first active lanes, in a loop that runs downward over the lanes, because the last active lane replaces a lane
-whose orbit has ended. Each kernel has a loop of its own: kernels differ in the step, in what they do with it, and in what each
-lane holds, and a common loop would need a tuple of arrays and three functions for each of them, which are longer.
+whose orbit has ended. Each kernel has a loop of its own, because kernels differ in the step, in what they do with it, and in what
+a lane holds. A common loop would need a tuple of arrays and three functions for each kernel, which take more lines than the loop.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ def fill_vectors(count):
 
 @subroutine
 def fill_lanes(orbits):
-    """Return lanes at the start and at the end of a step, and the orbit of each, for as many orbits (rows, n) as lanes."""
+    """Return lanes at the start and at the end of a step, and the orbit of each lane, for n orbits (rows, n), n up to `LANES`."""
     now, new, lane_orbit = np.zeros((ROWS, LANES)), np.zeros((ROWS, LANES)), np.zeros(LANES, np.int64)
     # The elements are copied one by one, because for `now[:4] = orbits` Numba also compiles an error message, which takes 2 s.
     for i in range(orbits.shape[1]):
