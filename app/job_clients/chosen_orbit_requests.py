@@ -146,11 +146,11 @@ class PeriodicOrbitRequests:
     def search(self) -> None:
         """Search from the chosen start."""
         self._request.cancel()
-        self._origin = self._state.chosen_start
-        # Orbits may have been removed in the meantime.
-        if self._origin is not None:
+        self._origin, subject = self._state.chosen_start, self._state.subject
+        # Since the click, the start may have been removed, or the view may have changed to one in which it is no orbit.
+        if subject.state is not None:
             self._notify("Searching for the nearest periodic orbit …")
-            self._request.submit(nearest_orbit_job(self._state.subject))
+            self._request.submit(nearest_orbit_job(subject))
 
     def _show(self, found: PeriodicOrbit) -> None:
         state, origin = self._state, self._origin

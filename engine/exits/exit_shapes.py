@@ -22,10 +22,11 @@ from engine.systems.well_units import nearest_power_of_two
 _LARGEST_FIT_ERROR = 1e-9
 # Smallest |s| − 1 of samples on the straight lines beyond the ends of an exit, see `find_reach`.
 _FIRST_BEYOND = 1e-3
-# Length of these lines, in units of the distance of the saddle from the origin or, if larger, of the half width of the exit.
-_FARTHEST_BEYOND = 2.0
+# Length of these lines, in units of the distance of the saddle from the origin or, if larger, of the half width of the exit. An
+# orbit can cross a line far from the exit: in a long well, and beyond the exit.
+_FARTHEST_BEYOND = 200.0
 # Number of samples along one of these lines.
-_SAMPLES_BEYOND = 400
+_SAMPLES_BEYOND = 4000
 # Half the length of the line across a closed saddle, in units of the saddle's distance from the origin.
 _CLOSED_HALF_WIDTH = 1e-3
 # Distance of this line beyond the saddle, in the same unit. An orbit at rest on the saddle starts inside in spite of rounding.
@@ -101,18 +102,18 @@ def find_reach(potential: Potential, energy: float, curve: np.ndarray) -> float:
     """Return the largest |s| at which a crossing counts.
 
     Beyond each end, the straight line that continues the exit leads through the wall to a first point with V ≤ h. Crossings count
-    up to half the way to the nearer of these two points.
+    up to half the way to the nearer of these two points, or to the end of the lines.
     """
-    reach = np.inf
     axes = axes_of(curve)
     farthest = _FARTHEST_BEYOND * max(float(np.hypot(*axes.origin)) / curve[geometry.HALF_WIDTH], 1.0)
     beyond = np.geomspace(_FIRST_BEYOND, farthest, _SAMPLES_BEYOND)
+    nearest = farthest
     for end, slope in ((-1.0, curve[geometry.SLOPE_LOW]), (1.0, curve[geometry.SLOPE_HIGH])):
         u = chebyshev.chebval(end, curve[geometry.COEFFICIENTS :]) + slope * end * beyond
         q = curve[geometry.MIDDLE] + curve[geometry.HALF_WIDTH] * end * (1.0 + beyond)
         is_inside = potential.value(*axes.points(u, q)) <= energy
-        reach = min(reach, 1.0 + 0.5 * beyond[is_inside].min(initial=np.inf))
-    return float(reach)
+        nearest = beyond[is_inside].min(initial=nearest)
+    return 1.0 + 0.5 * float(nearest)
 
 
 def exit_gates(curves: np.ndarray, section: SectionNumbers = UPWARD) -> np.ndarray:

@@ -33,8 +33,6 @@ _SHARES = (1.0, 0.9, 0.75, 0.5)
 _SAFETY = 0.1
 # Coefficients below this limit are dropped from the end of the series, in units of the well.
 _NEGLIGIBLE = 1e-9
-# This value represents an infinite reach, which cannot be interpolated.
-_FARTHEST_REACH = 1e6
 # Values of s at which exits are compared.
 _POSITIONS = np.linspace(-1.0, 1.0, 21)
 # Columns of an exit curve that follow gate and reach in a row of a table, see `engine.integrator.kernels.exit_geometry`.
@@ -165,8 +163,7 @@ def _test_sigmas(count: int, largest_sigma: float) -> np.ndarray:
 
 def _row(curve: np.ndarray) -> np.ndarray:
     """Return the row of a table for an exit curve."""
-    gate, reach = exit_gates(curve[None])[0, 2], min(curve[geometry.REACH], _FARTHEST_REACH)
-    return np.concatenate([[gate, reach], curve[_CURVE_COLUMNS]])
+    return np.concatenate([[exit_gates(curve[None])[0, 2], curve[geometry.REACH]], curve[_CURVE_COLUMNS]])
 
 
 def _interpolate(nodes: np.ndarray, rows: np.ndarray, height: float) -> np.ndarray:

@@ -18,6 +18,7 @@ from tests.referee.images import check_images
 from tests.referee.openness import check_closed, check_openness
 from tests.referee.own_orbits import UndecidedError
 from tests.referee.report import COMPARED, REFUSED, UNDECIDED, Report
+from tests.referee.returns import check_returns
 from tests.referee.setting import Setting
 from tests.referee.spellings import check_spellings
 from tests.referee.verdicts import check_verdicts
@@ -38,6 +39,7 @@ OPEN_CHECKS: Mapping[str, Callable[[Setting, int, Report], None]] = {
     "fates": check_fates,
     "images": check_images,
     "openness": check_openness,
+    "returns": check_returns,
     "verdicts": check_verdicts,
 }
 """Checks at an energy, by name."""

@@ -1,4 +1,4 @@
-"""Make random formulas of three grammars, and list examples that were once answered wrongly.
+"""Make random formulas of four grammars, and list examples that were once answered wrongly.
 
 The texts have explicit products and powers, so that SymPy reads the same formula as the engine. `REPEATS` successive seeds have
 the same structure with other numbers, because compiled functions depend on the structure alone.
@@ -148,6 +148,13 @@ def _even_expression(structure: random.Random, numbers: random.Random) -> Formul
     return Formula(f"{structure.choice(_WELLS[:4])(numbers)}{_sign(structure)}{_number(numbers)}*{power}*{factor}")
 
 
+def _bent(structure: random.Random, numbers: random.Random) -> Formula:
+    """Return a long well along a curve, with exits across it that other parts of the well can face."""
+    u = structure.choice(["(x-{}*y^2)", "(x-{}*y^3)", "(x-{}*sin(y))"]).format(f"{10.0 ** numbers.uniform(-1.5, -0.3):.4f}")
+    walls = structure.choice(["{}*{}^3", "{}*{}^4", "{}*{}^2*y^2"]).format(_number(numbers, 0.2, 0.6), u)
+    return Formula(f"0.5*{u}^2-{walls}+{10.0 ** numbers.uniform(-2.5, -0.3):.4f}*y^2")
+
+
 def _channel_family(structure: random.Random, _numbers: random.Random) -> Formula:
     return Formula(_channels(structure.randint(3, 8)))
 
@@ -161,6 +168,7 @@ GRAMMARS: Mapping[str, Callable[[random.Random, random.Random], Formula]] = {
     "polynomial": _polynomial,
     "expression": _expression,
     "symmetric": _symmetric,
+    "bent": _bent,
 }
 """Makers of formulas, by grammar."""
 
@@ -180,6 +188,9 @@ EXAMPLES: Mapping[str, Formula] = {
     "turn beyond an exit": Formula(
         "0.5*(1.2987*x^2+0.6412*y^2)+0.6056*x^3*y^3-0.8367*x^5*y^1",
         state=(0.16503073210843036, 0.5481251595317982, 0.005591749495613022, -2.440416258234151),
+    ),
+    "bent well with an exit inside its bend": Formula(
+        "0.5*(x-0.0625*y^2)^2-0.375*(x-0.0625*y^2)^3+0.0078125*y^2", state=(0.0, 0.0, 0.05, 0.513)
     ),
     "periodic orbit through the bottom": Formula(
         "0.5*(0.6984*x^2+1.0459*y^2)+0.9621*y^3-1.4327*x*y^3-1.4081*x^2*y^2", energies=(0.38933533872666604,)

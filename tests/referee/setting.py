@@ -19,6 +19,8 @@ from tests.referee.own_system import OwnSystem
 SHIFT, STEADY = 1e-9, 1e-4
 # Largest kinetic energy of a start, in units of energy. Above, rounding changes the energy of a state.
 _MOST_KINETIC = 1e5
+# Parts of the way to a start at which it is tested for walls.
+_FINE = np.linspace(0.0, 1.0, 10_000)
 # Time of integration in units of time.
 DURATION = 60.0
 # Distance of the farthest exit, or units of length without an exit, after which an orbit is far away.
@@ -101,7 +103,9 @@ class Setting:
             segment, channel = exits.first_crossed(ray[:length])
             place = (part if channel or length < len(ray) else part * self.size / reach) * ray[segment if channel else length - 1]
             kinetic = self.energy - float(self.system.value(*place))
-            if 0.0 < kinetic < _MOST_KINETIC * self.potential.units.energy:
+            # The samples may miss a thin wall.
+            is_seen = np.all(self.system.value(*np.outer(place, _FINE)) < self.energy)
+            if is_seen and 0.0 < kinetic < _MOST_KINETIC * self.potential.units.energy:
                 starts.append([*place, *(np.sqrt(2.0 * kinetic) * np.array([np.cos(turn), np.sin(turn)]))])
         return np.array(starts).reshape(-1, 4)
 

@@ -21,6 +21,7 @@ CHECKS_OF_EXAMPLES = {
     "rational channel": ("openness", "spellings"),
     "wells in an open channel": ("openness",),
     "turn beyond an exit": ("fates",),
+    "bent well with an exit inside its bend": ("fates",),
     "periodic orbit through the bottom": ("exits", "fates"),
     "large constant": ("spellings",),
     "meridional plane": ("openness",),

@@ -105,6 +105,10 @@ class ExpressionForm:
         """Return V at (x, y). Arrays broadcast. The value is NaN where V is not defined."""
         return self._evaluate(x, y, self.expression)[0]
 
+    def magnitude(self, x: Any, y: Any) -> Any:
+        """Return |V| at (x, y), of which rounding errors are a share unless terms cancel. Arrays broadcast."""
+        return np.abs(self.value(x, y))
+
     def gradient(self, x: Any, y: Any) -> tuple[Any, Any]:
         """Return (V_x, V_y)."""
         along_x, along_y = self._evaluate(x, y, *slopes(self.expression))

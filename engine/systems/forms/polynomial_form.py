@@ -98,6 +98,10 @@ class PolynomialForm:
         """Return V at (x, y). Arrays broadcast."""
         return evaluate(self.coefficients, x, y)
 
+    def magnitude(self, x: Any, y: Any) -> Any:
+        """Return the sum of the magnitudes of the terms at (x, y), of which rounding errors are a share. Arrays broadcast."""
+        return evaluate({powers: abs(c) for powers, c in self.coefficients.items()}, np.abs(x), np.abs(y))
+
     def gradient(self, x: Any, y: Any) -> tuple[Any, Any]:
         """Return (V_x, V_y)."""
         return tuple(evaluate(slope, x, y) for slope in self.slopes)

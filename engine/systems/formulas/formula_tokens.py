@@ -29,7 +29,7 @@ _TOKEN = re.compile(
     "|(?P<letter>[A-DF-UW-Za-df-qs-wzΑ-Ωα-ω][0-9₀-₉]?)"
     "|(?P<superscript>⁻?[⁰¹²³⁴⁵⁶⁷⁸⁹]+)"
     r"|(?P<power>\^|\*\*)"
-    "|(?P<fraction>[½⅓⅔¼¾⅕⅙⅛⅒])"
+    "|(?P<fraction>[½⅓⅔¼¾⅕⅖⅗⅘⅙⅚⅐⅛⅜⅝⅞⅑⅒])"
     r"|(?P<sign>[+\-−–])"
     "|(?P<operator>[*·×⋅∗/÷∕⁄])"
     "|(?P<root>√)"

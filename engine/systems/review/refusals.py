@@ -90,9 +90,11 @@ def _well_refusal(potential: Potential, points: tuple[CriticalPoint, ...]) -> st
     return f"{problem} {subject} at {place}{hint}."
 
 
-def _degenerate_refusal(_potential: Potential, points: tuple[CriticalPoint, ...]) -> str | None:
+def _degenerate_refusal(potential: Potential, points: tuple[CriticalPoint, ...]) -> str | None:
     for point in points:
-        if point.kind is PointKind.DEGENERATE:
+        # The rounding of coefficients can make points far away, where it changes V by more than the depth of the well.
+        error = float(np.finfo(float).eps * potential.form.magnitude(point.x, point.y))
+        if point.kind is PointKind.DEGENERATE and error < potential.units.energy:
             return (
                 f"V has a degenerate critical point at {format_point(point.x, point.y)}, which is neither a saddle nor a minimum "
                 f"nor a maximum, so it is undefined whether orbits escape over it."

@@ -295,6 +295,17 @@ def test_a_search_without_periodic_orbit_says_why(session: Session) -> None:
     recorder.wait_for(lambda: "no periodic orbit: the orbit of the start does not return" in recorder.messages[-1])
 
 
+@pytest.mark.parametrize("changes", [{"energy": 0.02}, {"starts": ()}])
+def test_nothing_is_searched_from_a_start_that_is_no_orbit_in_the_view(session: Session, changes: dict[str, object]) -> None:
+    state, _, recorder, _ = session
+    search = begin_periodic_search(session)
+    state.add_start((-0.3, 0.02))
+    recorder.wait_for(lambda: recorder.all_computed(1))
+    state.param.update(**changes)
+    search.search()
+    assert not any("Searching" in message for message in recorder.messages)
+
+
 def test_the_path_of_an_unstable_periodic_orbit_is_explained(session: Session) -> None:
     state, _, recorder, _ = session
     search = begin_periodic_search(session)

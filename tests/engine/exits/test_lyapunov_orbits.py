@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from engine import CASES, Potential, Stability, find_lyapunov_orbits, parse_formula
+from engine import CASES, Fate, Potential, Stability, classify_orbits, find_lyapunov_orbits, parse_formula
 from engine.exits.exit_rows import exit_curves
 from engine.integrator.kernels.exit_geometry import REACH, exit_distance
 from engine.systems.known_potentials import POTENTIALS
@@ -110,3 +110,13 @@ def test_the_reach_of_an_exit_is_that_of_its_narrower_end() -> None:
     # Channels that are mirror images of each other under y → −y, which exchanges the ends.
     one, other = (orbit.curve[REACH] for orbit in find_lyapunov_orbits(potential, 1.05 * potential.escape_energy))
     assert one == pytest.approx(other)
+
+
+def test_no_orbit_leaves_a_bent_well_where_it_crosses_the_line_that_continues_an_exit() -> None:
+    # The exit is near u = 8/9, with u = x − y²/16. The line x = 1 continues it to the well at y = ±4.
+    potential, state = parse_formula("½(x − y²/16)² − ⅜(x − y²/16)³ + y²/128"), np.array([0.0, 0.0, 0.05, 0.513])
+    time = 300.0
+    x, y = solve_ivp(equations(potential), (0.0, time), state, method="DOP853", rtol=1e-10, atol=1e-12, max_step=0.1).y[:2]
+    assert x.max() > 1.1
+    assert (x - y**2 / 16).max() < 0.8
+    assert classify_orbits(potential, potential.energy(state), state[None], t_max=time).fate.tolist() == [Fate.BOUNDED]

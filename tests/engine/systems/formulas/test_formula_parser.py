@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+import unicodedata
 from collections.abc import Callable
 
 import numpy as np
@@ -235,3 +236,9 @@ def test_letters_before_a_bracket_are_factors(text: str, product: str) -> None:
 def test_a_third_coordinate_is_no_parameter(text: str) -> None:
     with pytest.raises(FormulaError, match="z' is not understood"):
         parse_formula(text)
+
+
+def test_all_characters_of_fractions_are_read() -> None:
+    fractions = "½⅓⅔¼¾⅕⅖⅗⅘⅙⅚⅐⅛⅜⅝⅞⅑⅒"
+    for character in fractions:
+        assert parse_formula(f"{character}x² + y²").terms[0] == (2, 0, pytest.approx(unicodedata.numeric(character), rel=1e-15))

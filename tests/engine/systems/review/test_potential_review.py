@@ -9,6 +9,7 @@ import pytest
 from engine import parse_formula
 from engine.systems.known_potentials import POTENTIALS
 from engine.systems.potential import Potential
+from engine.systems.review.classified_points import PointKind
 from engine.systems.review.potential_review import review_potential
 from tests.channel_family import channel_family
 
@@ -139,6 +140,16 @@ def test_degenerate_point_outside_the_well_is_refused() -> None:
     refusal = review_potential(parse_formula("y²/2 + x²/2 − 2x³/3 + x⁴/4")).refusal
     assert refusal is not None
     assert "degenerate critical point at (1, 0)" in refusal
+
+
+@pytest.mark.parametrize(
+    "formula", ["½(x − 0.1y²)² − ⅓(x − 0.1y²)³ + 0.005y²", "½(x − 0.4133y³)² − 0.5452(x − 0.4133y³)⁴ + 0.0059y²"]
+)
+def test_points_that_the_rounding_of_coefficients_makes_far_away_are_no_reason_to_refuse(formula: str) -> None:
+    # In u = x − g(y) and y, V is separable, so its only critical points are near the origin. Rounding of the terms adds others.
+    review = review_potential(parse_formula(formula))
+    assert any(point.kind is PointKind.DEGENERATE for point in review.critical_points)
+    assert review.refusal is None
 
 
 def test_a_refused_potential_has_no_energies_to_explore() -> None:
