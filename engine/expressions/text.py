@@ -74,7 +74,16 @@ def write_ratio(magnitude: float, digits: int | None) -> tuple[str, str]:
     fraction = short_fraction(magnitude, 0.0 if digits is None else 5.0 * 10.0**-digits * magnitude)
     if fraction is not None:
         return str(fraction.numerator), str(fraction.denominator)
-    return (repr(float(magnitude)) if digits is None else f"{magnitude:.{digits}g}"), "1"
+    return _with_power_of_ten(repr(float(magnitude)) if digits is None else f"{magnitude:.{digits}g}"), "1"
+
+
+def _with_power_of_ten(number: str) -> str:
+    """Return a number such as "1.5e-05" as "1.5·10⁻⁵"."""
+    mantissa, _, exponent = number.partition("e")
+    if not exponent:
+        return number
+    power = write_power("10", int(exponent))
+    return power if mantissa == "1" else f"{mantissa}·{power}"
 
 
 def write_power(name: str, exponent: float) -> str:

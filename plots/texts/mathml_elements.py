@@ -32,7 +32,17 @@ def number(value: float, shown: int = COORDINATE_DIGITS) -> str:
     # The square of a small number can be rounded to 0.
     if square:
         return _write_fraction(square, _root)
-    return digits(f"{value:.{shown}g}")
+    return _decimal(f"{value:.{shown}g}")
+
+
+def _decimal(written: str) -> str:
+    """Return a decimal number such as "1.5e-05" with a power of ten."""
+    mantissa, _, exponent = written.partition("e")
+    if not exponent:
+        return digits(written)
+    sign = op("−") if int(exponent) < 0 else ""
+    power = f"<msup>{digits(10)}{row(sign + digits(abs(int(exponent))))}</msup>"
+    return power if mantissa == "1" else digits(mantissa) + op("·") + power
 
 
 def _as_fraction(value: float, largest: float) -> Fraction | None:

@@ -242,3 +242,13 @@ def test_all_characters_of_fractions_are_read() -> None:
     fractions = "½⅓⅔¼¾⅕⅖⅗⅘⅙⅚⅐⅛⅜⅝⅞⅑⅒"
     for character in fractions:
         assert parse_formula(f"{character}x² + y²").terms[0] == (2, 0, pytest.approx(unicodedata.numeric(character), rel=1e-15))
+
+
+@pytest.mark.parametrize(
+    ("text", "written"),
+    [("x² + 0.0000915y²", "x² + 9.15·10⁻⁵y²"), ("x² + y² + 1e-5 exp(−1e-6x)", "x² + y² + 10⁻⁵ exp(−10⁻⁶x)")],
+)
+def test_very_small_numbers_are_written_with_a_power_of_ten(text: str, written: str) -> None:
+    potential = parse_formula(text)
+    assert write_formula(potential) == written
+    assert parse_formula(written).form == potential.form
