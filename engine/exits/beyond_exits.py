@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from engine.exits.exit_shapes import absent_channel, exit_gates, reversed_curve
+from engine.exits.exit_shapes import FARTHEST_POSITION, absent_channel, exit_gates, reversed_curve
 from engine.exits.lyapunov_orbit import LyapunovOrbit
 from engine.exits.saddle_orbits.brake_orbits import saddle_axes
 from engine.integrator.kernels import exit_geometry as geometry
@@ -23,8 +23,6 @@ from engine.systems.forms.stored_points import stored_points
 from engine.systems.landscape.hill_component import Barrier, Extent
 from engine.systems.potential import Potential
 
-# Largest |s| of a barrier. The straight lines beyond the ends of an exit continue it through the forbidden region.
-_FARTHEST_POSITION = 1.25
 # Numbers of positions along an exit, and of directions there, from which orbits leave.
 _POSITIONS, _DIRECTIONS = 24, 12
 
@@ -54,7 +52,7 @@ def find_extent(potential: Potential, energy: float, orbits: Sequence[LyapunovOr
 
 def _exit_barrier(curve: np.ndarray) -> Barrier:
     """Return the barrier along an exit, given by its row."""
-    farthest = min(float(curve[geometry.REACH]), _FARTHEST_POSITION)
+    farthest = min(float(curve[geometry.REACH]), FARTHEST_POSITION)
 
     def locate(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         distance, position = np.empty(x.size), np.empty(x.size)

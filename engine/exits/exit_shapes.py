@@ -18,6 +18,9 @@ from engine.systems.landscape.mirror_images import Signs
 from engine.systems.potential import Potential
 from engine.systems.well_units import nearest_power_of_two
 
+FARTHEST_POSITION = 1.25
+"""Largest |s| of a barrier along an exit. The straight lines beyond its ends continue it through the forbidden region."""
+
 # Largest distance of a curve from the path that it follows, in units of the well.
 _LARGEST_FIT_ERROR = 1e-9
 # Smallest |s| − 1 of samples on the straight lines beyond the ends of an exit, see `find_reach`.

@@ -13,11 +13,17 @@ from typing import NamedTuple
 import numpy as np
 
 from engine.exits.exit_rows import exit_curves
+from engine.exits.exit_shapes import FARTHEST_POSITION
 from engine.foundations.arrays import read_only
+from engine.integrator.kernels import exit_geometry as geometry
 from engine.integrator.kernels import interior
 from engine.systems.forms.expression_form import ExpressionForm
 from engine.systems.forms.polynomial_form import PolynomialForm
 from engine.systems.potential import Potential
+
+# Number of points along a side of the lattice of `find_joined_points` (odd, so that the origin is one of them), largest number of
+# times that the lattice is doubled, and number of points along an exit.
+_LATTICE_SIDE, _MOST_DOUBLINGS, _EXIT_POINTS = 301, 8, 4001
 
 
 def find_outside_channels(potential: Potential, energy: float, x: np.ndarray, y: np.ndarray) -> np.ndarray:
@@ -60,6 +66,51 @@ def find_outside_starts(
     # Channels that form one exit share its number.
     exit_numbers = np.take_along_axis(potential.well.exit_numbers(energy), channels[:, None], axis=1)[:, 0]
     return np.where(is_other_end, outcomes, exit_numbers)
+
+
+def find_joined_points(potential: Potential, energy: float, radius: float) -> tuple[np.ndarray, float]:
+    """Return the points of a lattice that paths with V ≤ h join to the origin inside the exits, and the distance between points.
+
+    Steps along the paths are as long as this distance, so narrow parts of an interior, and beyond them others, may be left out,
+    and a thin wall may be missed.
+
+    Parameters
+    ----------
+    potential, energy
+        The potential in units of its well, and h.
+    radius
+        Half the side of the lattice around the origin. It is doubled while the interior extends to the edge of the lattice.
+
+    Returns
+    -------
+    x and y of the points, (2, n), and their distance; no points if the interior extends too far.
+    """
+    # Importing SciPy takes a third of a second.
+    from scipy import ndimage
+
+    curves = exit_curves(potential, energy)
+    exits = [_points_along(curve) for curve in curves if geometry.is_open_channel(curve)]
+    for _ in range(_MOST_DOUBLINGS):
+        side = np.linspace(-radius, radius, _LATTICE_SIDE)
+        allowed = potential.value(side[:, None], side) <= energy
+        for points in exits:
+            places = np.rint((points + radius) / (side[1] - side[0]))
+            within = ((places >= 0) & (places < _LATTICE_SIDE)).all(axis=0)
+            allowed[tuple(places[:, within].astype(int))] = False
+        parts, _ = ndimage.label(allowed)
+        joined = allowed & (parts == parts[_LATTICE_SIDE // 2, _LATTICE_SIDE // 2])
+        if not (joined[[0, -1]].any() or joined[:, [0, -1]].any()):
+            return side[np.argwhere(joined).T], float(side[1] - side[0])
+        radius *= 2.0
+    return np.empty((2, 0)), np.inf
+
+
+def _points_along(curve: np.ndarray) -> np.ndarray:
+    """Return points (2, n) along the curve or line of an exit, and a little beyond its ends."""
+    points = np.empty((2, _EXIT_POINTS))
+    farthest = min(float(curve[geometry.REACH]), FARTHEST_POSITION)
+    geometry.exit_points(curve, np.linspace(-farthest, farthest, _EXIT_POINTS), points)
+    return points
 
 
 def find_inner_radius(potential: Potential) -> float:

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from engine.exits.interior import find_outside_in_well_units
+from engine.exits.interior import find_joined_points, find_outside_in_well_units
 from engine.exits.lyapunov_orbits import find_orbits_in_well_units
 from engine.slices.axes import (
     ANGLES,
@@ -41,6 +41,8 @@ _SEARCH_SADDLE_DISTANCES = 2.0
 _SEARCH_BODY_DISTANCES = 2.5
 # Number of rays from the origin on which the interior is searched.
 _RAYS = 180
+# Number of steps of a lattice by which a part of the interior must exceed the ranges of the points on rays, which are not exact.
+_FEWEST_STEPS = 2
 # Number of blocks of a ray whose points are tested together.
 _BLOCKS = 16
 # Number of points along a side of the lattice on which the interior of an oblique slice is searched.
@@ -170,7 +172,20 @@ def _interior_interval(potential: Potential, energy: float, axis: Coordinate, fi
     middle = line.size // 2
     sides = (np.s_[None, middle - 1 :: -1], np.s_[None, middle + 1 :])
     before, after = (np.count_nonzero(_inside_from_middle(potential, energy, x[side], y[side])) for side in sides)
-    return line[middle - before : middle + 1 + after]
+    seen = line[middle - before : middle + 1 + after]
+    points, distance = find_joined_points(potential, energy, radius)
+    along, across = POSITIONS.index(axis), 1 - POSITIONS.index(axis)
+    points = points[:, np.abs(points[across] - fixed[POSITIONS[across]]) < 0.5 * distance]
+    points[across] = fixed[POSITIONS[across]]
+    hidden = points[:, _extends(points[along], seen, distance) & _is_allowed(potential, energy, *points)]
+    hidden = hidden[:, find_outside_in_well_units(potential, energy, *hidden) == 0]
+    return np.concatenate([seen, hidden[along] - distance, hidden[along] + distance])
+
+
+def _extends(values: np.ndarray, seen: np.ndarray, distance: float) -> np.ndarray:
+    """Return which coordinates of lattice points are beyond the range of coordinates that rays from the origin reach."""
+    margin = _FEWEST_STEPS * distance
+    return (values < seen.min(initial=np.inf) - margin) | (values > seen.max(initial=-np.inf) + margin)
 
 
 def _is_allowed(potential: Potential, energy: float, x: np.ndarray, y: np.ndarray) -> np.ndarray:
@@ -246,13 +261,24 @@ def _known_critical_points(potential: Potential) -> np.ndarray:
 
 
 def _interior_points(potential: Potential, energy: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return x and y of the points inside on rays from the origin, and of the points of the Lyapunov orbits, (n,) each."""
-    x, y, inside = _interior_on_rays(potential, energy, _search_radius(potential, energy))
+    """Return x and y of points inside, and of the points of the Lyapunov orbits, (n,) each.
+
+    The points are those on rays from the origin, and beyond their ranges those of a lattice, as in a bent well.
+    """
+    radius = _search_radius(potential, energy)
+    x, y, inside = _interior_on_rays(potential, energy, radius)
     x, y = x[inside], y[inside]
     if x.size == 0 or not x.min() < x.max():
         return np.empty(0), np.empty(0)
     orbits = find_orbits_in_well_units(potential, energy)
-    return np.concatenate([x, *(orbit.x for orbit in orbits)]), np.concatenate([y, *(orbit.y for orbit in orbits)])
+    x, y = np.concatenate([x, *(orbit.x for orbit in orbits)]), np.concatenate([y, *(orbit.y for orbit in orbits)])
+    if not potential.escapes_over_saddles:
+        return x, y
+    points, distance = find_joined_points(potential, energy, radius)
+    points = points[:, _extends(points[0], x, distance) | _extends(points[1], y, distance)]
+    hidden = points[:, find_outside_in_well_units(potential, energy, *points) == 0]
+    x, y = (np.concatenate([seen, each - distance, each + distance]) for seen, each in zip((x, y), hidden, strict=True))
+    return x, y
 
 
 def _rounded_range(values: np.ndarray) -> Range:

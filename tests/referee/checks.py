@@ -84,7 +84,10 @@ def check_in_parts(formula: Formula, seed: int, energies: int, checks: tuple[str
         yield from _check_accepted(Setting(formula, review.potential, review.escape_energy), chosen, seed, checks)
     if "spellings" in checks:
         report = Report()
-        check_spellings(formula, review, chosen, seed, report)
+        try:
+            check_spellings(formula, review, chosen, seed, report)
+        except UndecidedError as error:
+            report.add("spellings", UNDECIDED, str(error))
         yield report
 
 

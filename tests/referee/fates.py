@@ -14,6 +14,9 @@ STARTS = 12
 # Rounding of escape times by the sampled exits, in units of time.
 _ROUNDING = 1e-5
 
+# Largest distance of the ends of a bounded orbit and of a shifted one that resolve where the orbit goes, in units of the size.
+_NEAR = 0.1
+
 # Factor of the distance up to which an orbit is followed to see whether it comes back, possibly from a large outer well.
 _FARTHER = 1000.0
 
@@ -43,6 +46,10 @@ def _check_orbit(setting: Setting, start: np.ndarray, other: np.ndarray, fate: i
     change = abs(end.time - shifted.time)
     if end.channel != shifted.channel or change > STEADY * unit or fate == Fate.FAILED:
         report.add(CHECK, UNDECIDED, "unresolved" if fate == Fate.FAILED else "the fate changes with a shift of the start")
+        return
+    is_resolved = np.hypot(*(end.state - shifted.state)[:2]) <= _NEAR * setting.size
+    if fate != end.channel == 0 and not is_resolved:
+        report.add(CHECK, UNDECIDED, "a bounded orbit changes with a shift of the start")
         return
     known = {"start": start.tolist(), "said": [fate, time], "own": [end.channel, end.time]} | setting.reproduction
     report.judge(CHECK, "a fate differs", fate == end.channel, **known)

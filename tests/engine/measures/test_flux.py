@@ -116,3 +116,18 @@ def test_orbits_in_a_large_well_beyond_the_exits_do_not_come_back_far_from_the_e
     potential = parse_formula("½(0.3124x² + 0.7225y²) − 1.361xy²/(1 + 0.9387y²)")
     found = compute_flux(potential, 0.013322005209246054)
     assert found.returning == pytest.approx([0.2, 0.2], abs=0.05)
+
+
+def test_the_area_of_a_bent_well_contains_the_parts_behind_its_bend() -> None:
+    # A shear turns the well into ½u² − ⅜u³ + y²/128 ≤ h, which has the same area. Rays from the origin end before y = 3.8.
+    potential = parse_formula("½(x − y²/16)² − ⅜(x − y²/16)³ + y²/128")
+    h = 0.99 * potential.escape_energy
+
+    def width(y: float) -> float:
+        bounds = np.sort(np.roots([-0.375, 0.5, 0.0, y**2 / 128.0 - h]).real)
+        return float(bounds[1] - bounds[0])
+
+    expected = 2.0 * integrate.quad(width, 0.0, math.sqrt(128.0 * h), epsabs=1e-8)[0]
+    found = compute_flux(potential, h)
+    assert found.area == pytest.approx(expected, rel=1e-4)
+    assert abs(found.area - expected) < 10.0 * found.area_error

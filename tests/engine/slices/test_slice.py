@@ -18,6 +18,7 @@ from engine import (
     Slice,
     Window,
     compute_map,
+    parse_formula,
     start_states,
 )
 from engine.exits.interior import find_outside_channels
@@ -213,3 +214,13 @@ def test_the_default_window_of_any_slice_contains_its_interior(plane: Slice) -> 
 @pytest.mark.parametrize("plane", Plane)
 def test_a_named_slice_is_found_by_its_title_and_its_key(plane: Plane) -> None:
     assert checked_slice(plane.title) is checked_slice(plane.key) is plane
+
+
+@pytest.mark.parametrize(("plane", "row"), [(Plane.X_Y, slice(None)), (Plane.X_PX, 400)])
+def test_the_default_window_contains_parts_of_the_interior_behind_a_wall(plane: Plane, row: slice | int) -> None:
+    # The well follows the curve y = sin 2x, which crosses y = 0 at x = 0 and x = ±π/2, with V > h between.
+    potential, energy = parse_formula("½(y − sin(2x))² + 0.05x²"), 0.2
+    side = np.linspace(-3.0, 3.0, 801)
+    is_allowed = potential.value(side, side[:, None])[row] <= energy
+    window = default_window(potential, plane, energy)
+    assert not is_allowed[..., (side < window.x_low) | (side > window.x_high)].any()
