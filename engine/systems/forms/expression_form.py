@@ -159,7 +159,7 @@ class ExpressionForm:
         """
         curvature = np.abs(self.hessian(0.0, 0.0)).max()
         if np.isfinite(curvature):
-            largest_speed = length * curvature
+            largest_speed = float(length * curvature)
         else:
             slopes_around = self.gradient(length * np.cos(_ANGLES), length * np.sin(_ANGLES))
             largest_speed = float(np.hypot(*slopes_around).mean())
@@ -167,7 +167,8 @@ class ExpressionForm:
         graph, numbers = make_graph(slopes(self.expression))
 
         def velocity(_time: float, place: np.ndarray) -> np.ndarray:
-            along_x, along_y = evaluate_at(graph, numbers, *place.tolist())
+            # Products of Python's numbers give no warning where exponentials overflow.
+            along_x, along_y = map(float, evaluate_at(graph, numbers, *place.tolist()))
             factor = -sign / (1.0 + math.hypot(along_x, along_y) / largest_speed)
             return np.array([factor * along_x, factor * along_y])
 
