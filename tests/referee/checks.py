@@ -15,6 +15,7 @@ from tests.referee.descents import check_channels, check_exits
 from tests.referee.fates import check_fates
 from tests.referee.formulas import Formula
 from tests.referee.images import check_images
+from tests.referee.interior import check_interior
 from tests.referee.openness import check_closed, check_openness
 from tests.referee.own_orbits import UndecidedError
 from tests.referee.report import COMPARED, REFUSED, UNDECIDED, Report
@@ -38,6 +39,7 @@ OPEN_CHECKS: Mapping[str, Callable[[Setting, int, Report], None]] = {
     "exits": _check_channels,
     "fates": check_fates,
     "images": check_images,
+    "interior": check_interior,
     "openness": check_openness,
     "returns": check_returns,
     "verdicts": check_verdicts,
