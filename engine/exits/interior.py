@@ -23,7 +23,7 @@ from engine.systems.potential import Potential
 
 # Number of points along a side of the lattice of `find_joined_points` (odd, so that the origin is one of them), largest number of
 # times that the lattice is doubled, and number of points along an exit.
-_LATTICE_SIDE, _MOST_DOUBLINGS, _EXIT_POINTS = 301, 8, 4001
+_LATTICE_SIDE, _MOST_DOUBLINGS, _EXIT_POINTS = 301, 20, 4001
 
 
 def find_outside_channels(potential: Potential, energy: float, x: np.ndarray, y: np.ndarray) -> np.ndarray:

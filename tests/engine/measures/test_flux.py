@@ -131,3 +131,8 @@ def test_the_area_of_a_bent_well_contains_the_parts_behind_its_bend() -> None:
     found = compute_flux(potential, h)
     assert found.area == pytest.approx(expected, rel=1e-4)
     assert abs(found.area - expected) < 10.0 * found.area_error
+
+
+@pytest.mark.parametrize("h", [0.3, 100.0, 1e6])
+def test_the_area_of_an_ellipse_is_known_at_any_energy(h: float) -> None:
+    assert compute_flux(parse_formula("x² + 4y²"), h).area == pytest.approx(0.5 * math.pi * h, rel=2e-4)
