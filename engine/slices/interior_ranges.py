@@ -22,6 +22,7 @@ from engine.slices.axes import (
 )
 from engine.slices.slice import Slice
 from engine.systems.forms.form import NO_POINTS, NotIsolatedError, UndecidedError
+from engine.systems.landscape.hill_component import FARTHEST
 from engine.systems.potential import Potential
 from engine.systems.well_units import WellUnits
 
@@ -203,12 +204,12 @@ def _without_outside(potential: Potential, energy: float, x: np.ndarray, y: np.n
 
 
 def _search_radius(potential: Potential, energy: float) -> float:
-    """Return a radius that contains the interior, unless the energy is many times the escape energy."""
+    """Return a radius that contains the interior; with exits, unless the energy is many times the escape energy."""
     if potential.escape_radius is not None:
         return _shown_radius(potential, potential.escape_radius)
     distances = np.hypot(*potential.saddles.T)
     # The rounded units of the well are not used here, so that the edges do not depend on the user's units.
-    nearest, outermost = (float(distances.min()), float(distances.max())) if distances.size else (1.0, 0.0)
+    nearest, outermost = (float(distances.min()), float(distances.max())) if distances.size else (1.0, FARTHEST)
     radius = _SEARCH_LENGTHS * nearest
     # The search does not begin at the outermost saddle, which may be so far away that all points miss the interior.
     while radius < _SEARCH_SADDLE_DISTANCES * outermost and _interior_on_rays(potential, energy, radius)[2][:, -1].any():
