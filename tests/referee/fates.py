@@ -25,8 +25,8 @@ _LONGER = 4.0
 
 
 def check_fates(setting: Setting, seed: int, report: Report) -> None:
-    """Compare the fates of random starts, and of the start of an example."""
-    states = setting.random_starts(STARTS, seed)
+    """Compare the fates of random starts, half of them from where the origin is seen, and of the start of an example."""
+    states = np.vstack([setting.random_starts(STARTS, seed), setting.hidden_starts(STARTS, seed)])
     if setting.is_start_of_example:
         states = np.vstack([states, setting.formula.state])
     if not len(states):

@@ -12,6 +12,7 @@ from engine import Potential, classify_orbits, compute_flux, find_lyapunov_orbit
 from engine.results import EscapeFlux
 from tests.peers.sampled_paths import Exits
 from tests.referee.formulas import Formula
+from tests.referee.lattice import Lattice
 from tests.referee.own_orbits import OwnOrbits, UndecidedError
 from tests.referee.own_system import OwnSystem
 
@@ -23,6 +24,8 @@ _MOST_KINETIC = 1e5
 _FINE = np.linspace(0.0, 1.0, 10_000)
 # Time of integration in units of time.
 DURATION = 60.0
+# Half the side of the lattice in units of the distance of the farthest exit.
+_LATTICE = 1.5
 # Distance of the farthest exit, or units of length without an exit, after which an orbit is far away.
 _FAR, _FAR_WITHOUT_EXIT = 30.0, 1000.0
 
@@ -88,6 +91,22 @@ class Setting:
     def flux(self) -> EscapeFlux:
         """What the engine says of the flux through its exits."""
         return compute_flux(self.potential, self.energy)
+
+    @cached_property
+    def lattice(self) -> Lattice:
+        """A lattice that contains the exits."""
+        return Lattice(self.system, self.energy, self.exits, _LATTICE * self.size)
+
+    def hidden_starts(self, count: int, seed: int) -> np.ndarray:
+        """Return starts of this energy anywhere inside, also where the origin is not seen, of shape (n, 4)."""
+        random = np.random.default_rng(seed)
+        places = self.lattice.points(self.lattice.surely_inside)
+        if not len(places):
+            return np.empty((0, 4))
+        places = random.choice(places, count) + 0.5 * self.lattice.step * random.uniform(-1.0, 1.0, (count, 2))
+        kinetic, turn = self.energy - self.system.value(*places.T), random.uniform(0.0, 2.0 * np.pi, count)
+        momenta = np.sqrt(2.0 * np.maximum(kinetic, 0.0)) * np.array([np.cos(turn), np.sin(turn)])
+        return np.column_stack([places, *momenta])[(kinetic > 0.0) & (kinetic < _MOST_KINETIC * self.potential.units.energy)]
 
     def random_starts(self, count: int, seed: int, *, within: float = np.inf) -> np.ndarray:
         """Return starts of this energy that are seen from the origin, before any wall or exit, of shape (n, 4)."""

@@ -54,7 +54,7 @@ def test_answers_on_an_example_are_right(name: str) -> None:
 def test_fates_on_random_formulas_are_right(structure: int) -> None:
     report = Report()
     for seed in range(REPEATS * structure, REPEATS * (structure + 1)):
-        report.merge(check_formula(random_formula(seed), seed, checks=("fates", "images", "openness")))
+        report.merge(check_formula(random_formula(seed), seed, checks=("fates", "images", "interior", "openness", "returns")))
     assert not report.wrong
     assert compared(report) > 50
 
