@@ -85,9 +85,6 @@ def find_joined_points(potential: Potential, energy: float, radius: float) -> tu
     -------
     x and y of the points, (2, n), and their distance; no points if the interior extends too far.
     """
-    # Importing SciPy takes a third of a second.
-    from scipy import ndimage
-
     curves = exit_curves(potential, energy)
     exits = [_points_along(curve) for curve in curves if geometry.is_open_channel(curve)]
     for _ in range(_MOST_DOUBLINGS):
@@ -97,12 +94,35 @@ def find_joined_points(potential: Potential, energy: float, radius: float) -> tu
             places = np.rint((points + radius) / (side[1] - side[0]))
             within = ((places >= 0) & (places < _LATTICE_SIDE)).all(axis=0)
             allowed[tuple(places[:, within].astype(int))] = False
-        parts, _ = ndimage.label(allowed)
-        joined = allowed & (parts == parts[_LATTICE_SIDE // 2, _LATTICE_SIDE // 2])
+        joined = _part_around_middle(allowed)
         if not (joined[[0, -1]].any() or joined[:, [0, -1]].any()):
             return side[np.argwhere(joined).T], float(side[1] - side[0])
         radius *= 2.0
     return np.empty((2, 0)), np.inf
+
+
+def _part_around_middle(allowed: np.ndarray) -> np.ndarray:
+    """Return the part of a lattice (n, n) that steps along rows and columns join to its middle."""
+    # `scipy.ndimage.label` would do, but importing SciPy takes a third of a second.
+    runs_along_rows, runs_along_columns = _run_numbers(allowed), _run_numbers(allowed.T).T
+    joined = np.zeros_like(allowed)
+    middle = len(allowed) // 2
+    joined[middle, middle] = allowed[middle, middle]
+    count = 0
+    while joined.sum() > count:
+        count = int(joined.sum())
+        for numbers in (runs_along_rows, runs_along_columns):
+            is_joined = np.zeros(allowed.size + 1, bool)
+            is_joined[numbers[joined]] = True
+            joined = allowed & is_joined[numbers]
+    return joined
+
+
+def _run_numbers(allowed: np.ndarray) -> np.ndarray:
+    """Return a number for each point of a lattice that neighbours in a row share if both are allowed."""
+    begins = ~allowed
+    begins[:, 0] = True
+    return np.cumsum(begins).reshape(allowed.shape)
 
 
 def _points_along(curve: np.ndarray) -> np.ndarray:
