@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from engine.exits.exit_shapes import FARTHEST_POSITION, absent_channel, exit_gates, reversed_curve
+from engine.exits.exit_shapes import absent_channel, exit_gates, find_barrier_end, points_along, reversed_curve
 from engine.exits.lyapunov_orbit import LyapunovOrbit
 from engine.exits.saddle_orbits.brake_orbits import saddle_axes
 from engine.integrator.kernels import exit_geometry as geometry
@@ -52,7 +52,7 @@ def find_extent(potential: Potential, energy: float, orbits: Sequence[LyapunovOr
 
 def _exit_barrier(curve: np.ndarray) -> Barrier:
     """Return the barrier along an exit, given by its row."""
-    farthest = min(float(curve[geometry.REACH]), FARTHEST_POSITION)
+    farthest = find_barrier_end(curve)
 
     def locate(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         distance, position = np.empty(x.size), np.empty(x.size)
@@ -92,9 +92,7 @@ def _leaving_states(potential: Potential, energy: float, curve: np.ndarray) -> t
     """Return states (n, 4) that leave across an exit, and the flux (n,) that each stands for."""
     positions = -1.0 + 2.0 * (np.arange(_POSITIONS) + 0.5) / _POSITIONS
     sines = -1.0 + 2.0 * (np.arange(_DIRECTIONS) + 0.5) / _DIRECTIONS
-    before, places, after = np.empty((3, 2, _POSITIONS))
-    for shift, points in ((-_S_DIFFERENCE, before), (0.0, places), (_S_DIFFERENCE, after)):
-        geometry.exit_points(curve, positions + shift, points)
+    before, places, after = (points_along(curve, positions + shift) for shift in (-_S_DIFFERENCE, 0.0, _S_DIFFERENCE))
     dx, dy = after - before
     momentum = np.sqrt(np.maximum(2.0 * (energy - potential.value(*places)), 0.0))
     # The outside is on the right of the direction in which s rises.

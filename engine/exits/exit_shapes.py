@@ -18,9 +18,8 @@ from engine.systems.landscape.mirror_images import Signs
 from engine.systems.potential import Potential
 from engine.systems.well_units import nearest_power_of_two
 
-FARTHEST_POSITION = 1.25
-"""Largest |s| of a barrier along an exit. The straight lines beyond its ends continue it through the forbidden region."""
-
+# Largest |s| of a barrier along an exit. The straight lines beyond its ends continue it through the forbidden region.
+_FARTHEST_POSITION = 1.25
 # Largest distance of a curve from the path that it follows, in units of the well.
 _LARGEST_FIT_ERROR = 1e-9
 # Smallest |s| − 1 of samples on the straight lines beyond the ends of an exit, see `find_reach`.
@@ -117,6 +116,19 @@ def find_reach(potential: Potential, energy: float, curve: np.ndarray) -> float:
         is_inside = potential.value(*axes.points(u, q)) <= energy
         nearest = beyond[is_inside].min(initial=nearest)
     return 1.0 + 0.5 * float(nearest)
+
+
+def find_barrier_end(curve: np.ndarray) -> float:
+    """Return the largest |s| of the barrier along an exit: a little beyond its ends, and within its reach."""
+    return min(float(curve[geometry.REACH]), _FARTHEST_POSITION)
+
+
+def points_along(curve: np.ndarray, positions: np.ndarray) -> np.ndarray:
+    """Return the points of an exit at m values of s, of shape (2, m)."""
+    points = np.empty((2, positions.size))
+    # The kernel writes into `points`.
+    geometry.exit_points(curve, positions, points)
+    return points
 
 
 def exit_gates(curves: np.ndarray, section: SectionNumbers = UPWARD) -> np.ndarray:

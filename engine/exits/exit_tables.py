@@ -13,13 +13,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.exits.exit_shapes import curve_along, exit_gates, find_reach
+from engine.exits.exit_shapes import curve_along, exit_gates, find_reach, points_along
 from engine.exits.lyapunov_orbit import LyapunovOrbit
 from engine.exits.lyapunov_orbits import find_orbits_in_well_units
 from engine.exits.saddle_orbits.brake_orbits import chord_axes
 from engine.foundations.arrays import ReadOnlyArrays
 from engine.integrator.kernels import exit_geometry as geometry
-from engine.integrator.kernels.exit_geometry import MIDDLE_COLUMN, exit_points, interpolate_exit
+from engine.integrator.kernels.exit_geometry import MIDDLE_COLUMN, interpolate_exit
 from engine.systems.potential import Potential
 
 LARGEST_ERROR = 1e-6
@@ -66,7 +66,7 @@ class ExitTable(ReadOnlyArrays):
 
     def points_at(self, energy: float, positions: np.ndarray) -> np.ndarray:
         """Return m points of the exit, at s from −1 to 1, at an energy above the saddle, of shape (2, m)."""
-        return _points(_interpolate(self.nodes, self.rows, energy - self.saddle), positions)
+        return points_along(_interpolate(self.nodes, self.rows, energy - self.saddle), positions)
 
 
 def tabulate_exits(potential: Potential, highest: float) -> tuple[ExitTable, ...]:
@@ -143,8 +143,9 @@ def _tabulate(curves_at: _CurvesAt, channel: int, saddle: float, highest: float)
             # An exit is undefined in this range: try the next range.
             continue
         rows = np.array([_row(curve) for curve in node_curves])
-        interpolated = [_points(_interpolate(nodes, rows, sigma**2), _POSITIONS) for sigma in test_sigmas.tolist()]
-        if np.abs(np.array(interpolated) - [_points(curve, _POSITIONS) for curve in test_curves]).max() < _SAFETY * LARGEST_ERROR:
+        interpolated = [points_along(_interpolate(nodes, rows, sigma**2), _POSITIONS) for sigma in test_sigmas.tolist()]
+        exact = [points_along(curve, _POSITIONS) for curve in test_curves]
+        if np.abs(np.array(interpolated) - exact).max() < _SAFETY * LARGEST_ERROR:
             column_count = np.flatnonzero(np.abs(rows).max(axis=0) > _NEGLIGIBLE).max() + 1
             # In this order the whole range ends exactly at `highest`.
             return ExitTable(saddle, highest - (1.0 - share) * (highest - saddle), nodes, rows[:, :column_count].copy())
@@ -172,11 +173,3 @@ def _interpolate(nodes: np.ndarray, rows: np.ndarray, height: float) -> np.ndarr
     # The kernel writes into `curves` and `gates`.
     interpolate_exit(nodes, rows, 0.0, geometry.CURVE, np.array([height]), 0, curves, gates)
     return curves[0, 0]
-
-
-def _points(curve: np.ndarray, positions: np.ndarray) -> np.ndarray:
-    """Return the points of an exit at m values of s, of shape (2, m)."""
-    points = np.empty((2, positions.size))
-    # The kernel writes into `points`.
-    exit_points(curve, positions, points)
-    return points

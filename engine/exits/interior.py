@@ -13,17 +13,17 @@ from typing import NamedTuple
 import numpy as np
 
 from engine.exits.exit_rows import exit_curves
-from engine.exits.exit_shapes import FARTHEST_POSITION
+from engine.exits.exit_shapes import find_barrier_end, points_along
 from engine.foundations.arrays import read_only
 from engine.integrator.kernels import exit_geometry as geometry
 from engine.integrator.kernels import interior
 from engine.systems.forms.expression_form import ExpressionForm
 from engine.systems.forms.polynomial_form import PolynomialForm
+from engine.systems.landscape.hill_component import FARTHEST
 from engine.systems.potential import Potential
 
-# Number of points along a side of the lattice of `find_joined_points` (odd, so that the origin is one of them), largest number of
-# times that the lattice is doubled, and number of points along an exit.
-_LATTICE_SIDE, _MOST_DOUBLINGS, _EXIT_POINTS = 301, 20, 4001
+# Number of points along a side of the lattice of `find_joined_points`, odd so that the origin is one of them, and along an exit.
+_LATTICE_SIDE, _EXIT_POINTS = 301, 4001
 
 
 def find_outside_channels(potential: Potential, energy: float, x: np.ndarray, y: np.ndarray) -> np.ndarray:
@@ -86,11 +86,15 @@ def find_joined_points(potential: Potential, energy: float, radius: float) -> tu
     x and y of the points, (2, n), and their distance; no points if the interior extends too far.
     """
     curves = exit_curves(potential, energy)
-    exits = [_points_along(curve) for curve in curves if geometry.is_open_channel(curve)]
-    for _ in range(_MOST_DOUBLINGS):
+    barriers = [
+        points_along(curve, find_barrier_end(curve) * np.linspace(-1.0, 1.0, _EXIT_POINTS))
+        for curve in curves
+        if geometry.is_open_channel(curve)
+    ]
+    while radius <= 2.0 * FARTHEST:
         side = np.linspace(-radius, radius, _LATTICE_SIDE)
         allowed = potential.value(side[:, None], side) <= energy
-        for points in exits:
+        for points in barriers:
             places = np.rint((points + radius) / (side[1] - side[0]))
             within = ((places >= 0) & (places < _LATTICE_SIDE)).all(axis=0)
             allowed[tuple(places[:, within].astype(int))] = False
@@ -98,7 +102,7 @@ def find_joined_points(potential: Potential, energy: float, radius: float) -> tu
         if not (joined[[0, -1]].any() or joined[:, [0, -1]].any()):
             return side[np.argwhere(joined).T], float(side[1] - side[0])
         radius *= 2.0
-    return np.empty((2, 0)), np.inf
+    return np.empty((2, 0)), 0.0
 
 
 def _part_around_middle(allowed: np.ndarray) -> np.ndarray:
@@ -108,9 +112,9 @@ def _part_around_middle(allowed: np.ndarray) -> np.ndarray:
     joined = np.zeros_like(allowed)
     middle = len(allowed) // 2
     joined[middle, middle] = allowed[middle, middle]
-    count = 0
-    while joined.sum() > count:
-        count = int(joined.sum())
+    before = np.zeros_like(joined)
+    while not np.array_equal(joined, before):
+        before = joined
         for numbers in (runs_along_rows, runs_along_columns):
             is_joined = np.zeros(allowed.size + 1, bool)
             is_joined[numbers[joined]] = True
@@ -123,14 +127,6 @@ def _run_numbers(allowed: np.ndarray) -> np.ndarray:
     begins = ~allowed
     begins[:, 0] = True
     return np.cumsum(begins).reshape(allowed.shape)
-
-
-def _points_along(curve: np.ndarray) -> np.ndarray:
-    """Return points (2, n) along the curve or line of an exit, and a little beyond its ends."""
-    points = np.empty((2, _EXIT_POINTS))
-    farthest = min(float(curve[geometry.REACH]), FARTHEST_POSITION)
-    geometry.exit_points(curve, np.linspace(-farthest, farthest, _EXIT_POINTS), points)
-    return points
 
 
 def find_inner_radius(potential: Potential) -> float:

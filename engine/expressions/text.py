@@ -5,6 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from engine.expressions.nodes import Coordinate, Expression, Function, as_sum, factors_of, powers_of
+from engine.foundations.wording import typeset_number
 
 _TO_SUPERSCRIPT = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 # Largest denominator of a number that is written as a fraction.
@@ -74,16 +75,7 @@ def write_ratio(magnitude: float, digits: int | None) -> tuple[str, str]:
     fraction = short_fraction(magnitude, 0.0 if digits is None else 5.0 * 10.0**-digits * magnitude)
     if fraction is not None:
         return str(fraction.numerator), str(fraction.denominator)
-    return _with_power_of_ten(repr(float(magnitude)) if digits is None else f"{magnitude:.{digits}g}"), "1"
-
-
-def _with_power_of_ten(number: str) -> str:
-    """Return a number such as "1.5e-05" as "1.5·10⁻⁵"."""
-    mantissa, _, exponent = number.partition("e")
-    if not exponent:
-        return number
-    power = write_power("10", int(exponent))
-    return power if mantissa == "1" else f"{mantissa}·{power}"
+    return typeset_number(repr(float(magnitude)) if digits is None else f"{magnitude:.{digits}g}", times="·"), "1"
 
 
 def write_power(name: str, exponent: float) -> str:

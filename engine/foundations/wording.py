@@ -43,7 +43,7 @@ def format_time(t: float, digits: int = 6) -> str:
 
 def format_number(value: float, digits: int = 4) -> str:
     """Return a number to `digits` significant digits, with a typographic minus sign and exponent, such as "1.9 × 10⁻¹²"."""
-    return _typeset(f"{value:.{digits}g}")
+    return typeset_number(f"{value:.{digits}g}")
 
 
 def format_point(x: float, y: float, digits: int = 6) -> str:
@@ -53,7 +53,7 @@ def format_point(x: float, y: float, digits: int = 6) -> str:
 
 def format_decimals(value: float, decimals: int) -> str:
     """Return a number to `decimals` decimals, with a typographic minus sign and without a negative zero."""
-    return _typeset(f"{round(value, decimals) + 0.0:.{decimals}f}")
+    return typeset_number(f"{round(value, decimals) + 0.0:.{decimals}f}")
 
 
 def format_share(share: float, decimals: int = 1) -> str:
@@ -66,14 +66,17 @@ def format_share_range(low: float, high: float, decimals: int = 2) -> str:
     return f"{100.0 * low:.{decimals}f} to {format_share(high, decimals)}"
 
 
-def _typeset(text: str) -> str:
-    """Return the text of a number, such as "-1e-05", with a typographic minus sign, exponent and infinity: "−10⁻⁵"."""
+def typeset_number(text: str, times: str = " × ") -> str:
+    """Return the text of a number, such as "-1e-05", with a typographic minus sign, exponent and infinity: "−10⁻⁵".
+
+    times: what stands between the digits and a power of ten.
+    """
     mantissa, _, exponent = text.partition("e")
     number = mantissa.replace("-", "−").replace("inf", "∞")
     if not exponent:
         return number
     power = f"10{str(int(exponent)).translate(_SUPERSCRIPTS)}"
-    return power if number == "1" else f"{number} × {power}"
+    return power if number == "1" else f"{number}{times}{power}"
 
 
 def describe_codes(codes: type[IntEnum], labels: Sequence[str] = ()) -> dict[str, str]:

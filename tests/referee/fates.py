@@ -17,8 +17,8 @@ _ROUNDING = 1e-5
 # Largest distance of the ends of a bounded orbit and of a shifted one that resolve where the orbit goes, in units of the size.
 _NEAR = 0.1
 
-# Factor of the distance up to which an orbit is followed to see whether it comes back, possibly from a large outer well.
-_FARTHER = 1000.0
+FARTHER = 1000.0
+"""Factor of the distance up to which an orbit is followed to see whether it comes back, possibly from a large outer well."""
 
 # Factor of the time within which orbits come back: one that stays near a Lyapunov orbit for a while comes back later.
 _LONGER = 4.0
@@ -48,7 +48,7 @@ def _check_orbit(setting: Setting, start: np.ndarray, other: np.ndarray, fate: i
         report.add(CHECK, UNDECIDED, "unresolved" if fate == Fate.FAILED else "the fate changes with a shift of the start")
         return
     is_resolved = np.hypot(*(end.state - shifted.state)[:2]) <= _NEAR * setting.size
-    if fate != end.channel == 0 and not is_resolved:
+    if not is_resolved and end.channel == 0 and fate != 0:
         report.add(CHECK, UNDECIDED, "a bounded orbit changes with a shift of the start")
         return
     known = {"start": start.tolist(), "said": [fate, time], "own": [end.channel, end.time]} | setting.reproduction
@@ -68,7 +68,7 @@ def _check_beyond(setting: Setting, channel: int, state: np.ndarray, known: dict
     share = float(flux.returning[flux.channels == channel][0])
     longest = _LONGER * flux.followed_time
     try:
-        later = setting.orbits.end_of(_beyond(setting, state), setting.exits, longest, farther=_FARTHER)
+        later = setting.orbits.end_of(_beyond(setting, state), setting.exits, longest, farther=FARTHER)
     except EnergyError:
         raise
     except UndecidedError:

@@ -41,18 +41,20 @@ class Lattice:
     @cached_property
     def surely_inside(self) -> np.ndarray:
         """Whether points are inside also if walls and exits are a step thicker."""
-        walls = ndimage.binary_dilation(self._on_exits, _BLOCK)
-        return _joined(ndimage.binary_erosion(self.is_allowed, _BLOCK) & ~walls)
+        return _joined(ndimage.binary_erosion(self.is_allowed, _BLOCK) & ~self._near_exits)
 
     @cached_property
     def perhaps_inside(self) -> np.ndarray:
         """Whether points are inside if walls are a step thinner, or near an exit."""
-        walls = ndimage.binary_dilation(self._on_exits, _BLOCK)
-        return _joined(ndimage.binary_dilation(self.is_allowed, _BLOCK) & ~self._on_exits) | walls
+        return _joined(ndimage.binary_dilation(self.is_allowed, _BLOCK) & ~self._on_exits) | self._near_exits
 
     def points(self, mask: np.ndarray) -> np.ndarray:
         """Return the points of a mask, (n, 2)."""
         return self.side[np.argwhere(mask)]
+
+    @cached_property
+    def _near_exits(self) -> np.ndarray:
+        return ndimage.binary_dilation(self._on_exits, _BLOCK)
 
     @cached_property
     def _on_exits(self) -> np.ndarray:

@@ -8,15 +8,13 @@ import numpy as np
 from scipy.stats import binom
 
 from engine import Fate, classify_orbits
-from tests.peers.sampled_paths import Exits
+from tests.referee.fates import FARTHER
 from tests.referee.own_orbits import EnergyError, UndecidedError
 from tests.referee.report import Report
 from tests.referee.setting import Setting
 
 CHECK = "returns"
 _ORBITS = 16
-# Factor of the distance up to which an orbit is followed, possibly in a large outer well.
-_FARTHER = 1000.0
 # Error of the engine's share, which is that of some hundred orbits, and smallest probability of the own number of orbits.
 _ERROR, _LEAST_PROBABILITY = 0.08, 1e-7
 # Distances in units of the farthest of an orbit, and number of angles, at which V is compared with the energy.
@@ -34,7 +32,7 @@ def check_returns(setting: Setting, seed: int, report: Report) -> None:
     flux = setting.flux
     channel = setting.exits.channels[index]
     share = float(flux.returning[flux.channels == channel][0])
-    states = _leaving_states(setting, setting.exits, index, random)
+    states = _leaving_states(setting, setting.exits.paths[index], random)
     number = sum(_come_back(setting, states, flux.followed_time))
     least = binom.sf(number - 1, _ORBITS, min(share + _ERROR, 1.0))
     most = binom.cdf(number, _ORBITS, max(share - _ERROR, 0.0))
@@ -42,9 +40,8 @@ def check_returns(setting: Setting, seed: int, report: Report) -> None:
     report.judge(CHECK, "another share comes back", min(least, most) > _LEAST_PROBABILITY, **known)
 
 
-def _leaving_states(setting: Setting, exits: Exits, index: int, random: np.random.Generator) -> np.ndarray:
+def _leaving_states(setting: Setting, path: np.ndarray, random: np.random.Generator) -> np.ndarray:
     """Return states that leave through an exit with the density of its flux, of shape (n, 4)."""
-    path = exits.paths[index]
     squares = np.maximum(2.0 * (setting.energy - setting.system.value(*path.T)), 0.0)[1:-1]
     # The points of the path have equal distances in time, in which p·dq is p² dt.
     chosen = 1 + random.choice(squares.size, _ORBITS, p=squares / squares.sum())
@@ -52,13 +49,13 @@ def _leaving_states(setting: Setting, exits: Exits, index: int, random: np.rando
     along /= np.hypot(*along.T)[:, None]
     normal, angle = np.column_stack([along[:, 1], -along[:, 0]]), np.arcsin(random.uniform(-1.0, 1.0, _ORBITS))
     length = float(np.hypot(*np.diff(path, axis=0).T).sum())
-    outward = 1.0 if _is_outside(setting, path[len(path) // 2], normal_at(path), 1e-3 * length) else -1.0
+    outward = 1.0 if _is_outside(setting, path[len(path) // 2], _normal_at(path), 1e-3 * length) else -1.0
     momentum = np.sqrt(squares[chosen - 1])[:, None]
     directions = outward * np.cos(angle)[:, None] * normal + np.sin(angle)[:, None] * along
     return np.column_stack([path[chosen] + outward * _BEYOND * length * normal, momentum * directions])
 
 
-def normal_at(path: np.ndarray) -> np.ndarray:
+def _normal_at(path: np.ndarray) -> np.ndarray:
     """Return the unit vector normal to the middle of a path, on the right of its direction."""
     middle = len(path) // 2
     along = path[middle + 1] - path[middle - 1]
@@ -66,7 +63,7 @@ def normal_at(path: np.ndarray) -> np.ndarray:
 
 
 def _is_outside(setting: Setting, place: np.ndarray, normal: np.ndarray, distance: float) -> bool:
-    """Return which side of an exit the engine calls outside."""
+    """Return whether the engine calls the side of an exit toward the normal outside."""
     sides = np.array([place + distance * normal, place - distance * normal])
     kinetic = np.maximum(setting.energy - setting.system.value(*sides.T), 0.0)
     states = np.column_stack([sides, np.sqrt(2.0 * kinetic), np.zeros(2)])
@@ -78,9 +75,10 @@ def _is_outside(setting: Setting, place: np.ndarray, normal: np.ndarray, distanc
 
 def _come_back(setting: Setting, states: np.ndarray, t_max: float) -> Iterator[bool]:
     """Yield whether each orbit passes an exit again within t_max; UndecidedError for an orbit that is not followed as long."""
+    is_closed = _is_closed_far_out(setting)
     for state in states:
         try:
-            left, channel = _follow(setting, state, t_max)
+            left, channel = _follow(setting, state, t_max, is_closed)
         except EnergyError:
             raise
         except UndecidedError:
@@ -98,14 +96,14 @@ def _is_closed_far_out(setting: Setting) -> bool:
     return bool((setting.system.value(x, y) > setting.energy).all(axis=0).any())
 
 
-def _follow(setting: Setting, state: np.ndarray, t_max: float) -> tuple[float, int]:
+def _follow(setting: Setting, state: np.ndarray, t_max: float, is_closed: bool) -> tuple[float, int]:
     """Return the time left, 0 for an orbit that leaves for ever, and the exit that an orbit passes, 0 without one."""
     orbits, exits = setting.orbits, setting.exits
     end = orbits.end_of(state, exits, t_max)
     left = t_max - end.time
     if end.channel or not left:
         return left, end.channel
-    if not _is_closed_far_out(setting) and orbits.leaves(end.state):
+    if not is_closed and orbits.leaves(end.state):
         return 0.0, 0
-    end = orbits.end_of(end.state, exits, left, farther=_FARTHER)
+    end = orbits.end_of(end.state, exits, left, farther=FARTHER)
     return left - end.time, end.channel

@@ -92,9 +92,11 @@ def _well_refusal(potential: Potential, points: tuple[CriticalPoint, ...]) -> st
 
 def _degenerate_refusal(potential: Potential, points: tuple[CriticalPoint, ...]) -> str | None:
     for point in points:
-        # The rounding of coefficients can make points far away, where it changes V by more than the depth of the well.
+        if point.kind is not PointKind.DEGENERATE:
+            continue
+        # Rounding of the coefficients makes critical points far away, where rounding errors of V exceed the depth of the well.
         error = float(np.finfo(float).eps * potential.form.magnitude(point.x, point.y))
-        if point.kind is PointKind.DEGENERATE and error < potential.units.energy:
+        if error < potential.units.energy:
             return (
                 f"V has a degenerate critical point at {format_point(point.x, point.y)}, which is neither a saddle nor a minimum "
                 f"nor a maximum, so it is undefined whether orbits escape over it."

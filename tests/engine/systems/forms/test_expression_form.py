@@ -89,3 +89,8 @@ def test_nested_roots_are_searched_once_each() -> None:
     for k in range(1, 7):
         text = f"({text}+x^{k})^.5"
     assert review_potential(parse_formula(f"x²+y²+{text}")).refusal is not None
+
+
+def test_the_flow_of_descents_is_undefined_without_a_warning_where_exponentials_overflow() -> None:
+    form = parse_formula("½r² + x²(1 − exp(−x))").form
+    assert np.isnan(form.descent_flow(1.0, 1.0)(0.0, np.array([-800.0, 0.1]))[0])

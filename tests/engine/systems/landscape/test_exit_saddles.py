@@ -145,8 +145,3 @@ def test_exits_of_symmetric_wells_and_their_lines_are_exact_mirror_images(seed: 
         for saddle, line in lines.items():
             # The image of a saddle on an axis is the saddle, and its line stays on the axis.
             np.testing.assert_array_equal(lines[tuple((np.array(saddle) * signs).tolist())], line * signs)
-
-
-def test_the_flow_of_descents_is_undefined_without_a_warning_where_exponentials_overflow() -> None:
-    form = parse_formula("½r² + x²(1 − exp(−x))").form
-    assert np.isnan(form.descent_flow(1.0, 1.0)(0.0, np.array([-800.0, 0.1]))[0])
