@@ -39,6 +39,9 @@ class LyapunovOrbit(ClosedOrbit):
         (columns,) the exit as a row of numbers, as the kernels of the integrator read it.
     velocity
         (2,) momenta px and py at the first point, which equal ẋ and ẏ; 0 unless the frame rotates.
+    inner_states
+        (n, 4) x, y, px and py after n of n + 1 equal parts of the period, where a very unstable orbit is integrated in parts;
+        otherwise empty.
     others
         Numbers of the other channels of the same exit, if the energy is above the maxima between them and `channel`, which is
         the lowest number.
@@ -53,10 +56,11 @@ class LyapunovOrbit(ClosedOrbit):
     y: np.ndarray = field(metadata=LENGTH)
     curve: np.ndarray
     velocity: np.ndarray = field(default_factory=lambda: np.zeros(2), metadata=MOMENTUM)
+    inner_states: np.ndarray = field(default_factory=lambda: np.empty((0, 4)))
     others: tuple[int, ...] = ()
     potential: Potential = field(kw_only=True, repr=False)
 
-    array_dimensions: ClassVar = {"curve": ("column",), "velocity": ("component",)}
+    array_dimensions: ClassVar = {"curve": ("column",), "velocity": ("component",), "inner_states": ("part", "coordinate")}
     inner_names: ClassVar = ClosedOrbit.inner_names | {"mirrored", "restored", "symmetrized"}
 
     @property
@@ -68,8 +72,8 @@ class LyapunovOrbit(ClosedOrbit):
     def nodes(self) -> Nodes:
         """See `ClosedOrbit.nodes`. In a frame at rest, the orbit is at rest again after half its period."""
         units = self.potential.units
-        states, period = self.start[None], self.period / units.time
-        if not self._is_closed_curve:
+        states, period = np.vstack([self.start, self.inner_states]), self.period / units.time
+        if self._is_traced_back:
             states = np.vstack([states, [*self.half_path[-1], 0.0, 0.0]])
         return Nodes(states / units.state, np.full(len(states), period / len(states)))
 
@@ -77,9 +81,9 @@ class LyapunovOrbit(ClosedOrbit):
     def monodromy_matrix(self) -> np.ndarray:
         """See `ClosedOrbit.monodromy_matrix`. In a frame at rest, the matrix follows from half the period."""
         well, nodes = self.potential.in_well_units, self.nodes
-        if self._is_closed_curve:
-            return nodes.monodromy_matrix(well)
-        return monodromy_of_brake_orbit(well, nodes.states[0], nodes.durations[0])
+        if self._is_traced_back:
+            return monodromy_of_brake_orbit(well, nodes.states[0], nodes.durations[0])
+        return nodes.monodromy_matrix(well)
 
     @cached_property
     def stability_index(self) -> float:
@@ -138,6 +142,11 @@ class LyapunovOrbit(ClosedOrbit):
         # Only in a rotating frame is the orbit a closed curve, and its exit a parabola (LINE).
         return bool(self.curve[geometry.SHAPE] == geometry.LINE)
 
+    @property
+    def _is_traced_back(self) -> bool:
+        # Whether the second half of the period is computed as the first one, traced back.
+        return not self._is_closed_curve and not self.inner_states.size
+
     def restored(self, units: WellUnits) -> LyapunovOrbit:
         """Convert the orbit from units of the well to those of its potential."""
         if units == WellUnits():
@@ -146,12 +155,14 @@ class LyapunovOrbit(ClosedOrbit):
         # These columns have no unit.
         unitless = slice(geometry.OUTWARD_X, geometry.SHAPE + 1)
         curve[unitless] = self.curve[unitless]
-        return replace(units.restore(self), curve=curve)
+        return replace(units.restore(self), curve=curve, inner_states=self.inner_states * units.state)
 
     def mirrored(self, channel: int, signs: Signs) -> LyapunovOrbit:
         """Return the exact image under a reflection in a frame at rest, so that mirror images escape at the same time."""
         x_sign, y_sign = signs
-        return replace(self, channel=channel, x=x_sign * self.x, y=y_sign * self.y, curve=mirrored_curve(self.curve, signs))
+        path, inner_states = (x_sign * self.x, y_sign * self.y), self.inner_states * np.tile(signs, 2)
+        curve = mirrored_curve(self.curve, signs)
+        return replace(self, channel=channel, x=path[0], y=path[1], curve=curve, inner_states=inner_states)
 
     def symmetrized(self, signs: Signs) -> LyapunovOrbit:
         """Return this orbit, which is its own mirror image, with an exit curve that is exactly its own mirror image."""

@@ -10,6 +10,7 @@ import functools
 import itertools
 import math
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -18,18 +19,17 @@ from engine.exits.beyond_exits import find_extent, returning_share
 from engine.exits.exit_lines import line_across
 from engine.exits.exit_shapes import curve_along, find_reach
 from engine.exits.lyapunov_orbit import LyapunovOrbit
-from engine.exits.mirrored_orbits import Images, OrbitSearchError, find_with_images, image_exits, meets_image
+from engine.exits.mirrored_orbits import Images, ImagesDifferError, OrbitSearchError, find_with_images, image_exits, meets_image
 from engine.exits.path_crossings import closes_channel, paths_meet
 from engine.exits.saddle_orbits.brake_orbits import (
     BrakeOrbit,
     chord_axes,
     continue_in_energy,
     find_directly,
-    find_from_both_ends,
     saddle_axes,
 )
 from engine.exits.saddle_orbits.merged_orbits import axes_between, find_merged_orbits
-from engine.exits.saddle_orbits.rotating_orbits import find_orbit_in_rotating_frame
+from engine.exits.saddle_orbits.multiple_shooting import find_brake_orbit, find_saddle_orbit
 from engine.foundations.validation import checked_number, checks_types
 from engine.foundations.wording import format_point
 from engine.integrator.kernels import exit_geometry as geometry
@@ -124,9 +124,10 @@ def find_known_exits(potential: Potential, energy: float) -> tuple[LyapunovOrbit
 
 _Search = Callable[[Potential, float, int], BrakeOrbit | None]
 # Functions that find the orbit over a saddle in a frame at rest. If the first one does not find all orbits, the slower ones are
-# tried, in turn.
+# tried, in turn. If these find orbits of mirror images that differ, only the last one is accurate enough.
 _FIRST = (find_directly,)
-_SLOWER = (continue_in_energy, find_from_both_ends)
+_SLOWER = (continue_in_energy, find_directly, find_brake_orbit)
+_LAST = (find_brake_orbit,)
 
 
 def _find_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:
@@ -185,10 +186,12 @@ def _find_all_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit
         orbits = tuple(_find_closed_orbit(potential, energy, channel) for channel in channels)
         _check_exits_apart(orbits)
         return orbits
-    try:
+    with suppress(OrbitSearchError):
         return _find_separate_orbits(potential, energy, _FIRST)
-    except OrbitSearchError:
+    try:
         return _find_separate_orbits(potential, energy, _SLOWER)
+    except ImagesDifferError:
+        return _find_separate_orbits(potential, energy, _LAST)
 
 
 def _find_separate_orbits(potential: Potential, energy: float, searches: Sequence[_Search]) -> tuple[LyapunovOrbit, ...]:
@@ -255,7 +258,7 @@ def _check_exits_apart(orbits: tuple[LyapunovOrbit, ...]) -> None:
 
 def _find_closed_orbit(potential: Potential, energy: float, channel: int) -> LyapunovOrbit:
     """Return the orbit over a saddle in a rotating frame, with the exit just outside the orbit."""
-    orbit = find_orbit_in_rotating_frame(potential, energy, channel)
+    orbit = find_saddle_orbit(potential, energy, channel)
     if orbit is None:
         raise OrbitSearchError(f"no Lyapunov orbit was found across channel {channel}; choose another energy")
     curve = line_across(potential, energy, channel, orbit.edge)
@@ -293,4 +296,5 @@ def _exit_over(potential: Potential, energy: float, channel: int, orbit: BrakeOr
     x, y = orbit.path
     there_and_back = np.concatenate([np.arange(x.size), np.arange(x.size - 1)[::-1]])
     path = x[there_and_back], y[there_and_back]
-    return LyapunovOrbit(channel, energy, 2.0 * orbit.half_period, *path, curve, potential=potential)
+    period, inner_states = 2.0 * orbit.half_period, orbit.inner_states
+    return LyapunovOrbit(channel, energy, period, *path, curve, inner_states=inner_states, potential=potential)

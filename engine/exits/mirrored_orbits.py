@@ -22,6 +22,10 @@ class OrbitSearchError(Exception):
     """No Lyapunov orbit was found, or the orbit found cannot be used as an exit."""
 
 
+class ImagesDifferError(OrbitSearchError):
+    """The orbits found over saddles that are mirror images are not mirror images."""
+
+
 def image_exits(potential: Potential, energy: float) -> Images:
     """Return the exits that are mirror images of each other at an energy."""
     numbers = potential.well.exit_numbers(energy)
@@ -52,8 +56,9 @@ def find_with_images(
     Raises
     ------
     OrbitSearchError
-        If no orbit is found, with `needs_all` also if one is not found, or if orbits of mirror images, or the two sides of a
-        symmetric orbit, differ.
+        If no orbit is found, with `needs_all` also if one is not found.
+    ImagesDifferError
+        If orbits of mirror images, or the two sides of a symmetric orbit, differ.
     """
     found: dict[int, LyapunovOrbit] = {}
     errors = []
@@ -78,7 +83,7 @@ def find_with_images(
         number = int(exits[first.channel])
         image = first.mirrored(number, signs)
         if not _are_same(found.setdefault(number, image), image):
-            raise OrbitSearchError(f"no Lyapunov orbit was found across channel {number}; choose another energy")
+            raise ImagesDifferError(f"no Lyapunov orbit was found across channel {number}; choose another energy")
     return found
 
 

@@ -26,6 +26,8 @@ _MAX_DISPLACEMENT = 2e-4
 _MAX_PERIODS_PER_PASSAGE = 12.0
 # Smallest multiplier of an unstable orbit. Over a saddle, multipliers are 38 or more; near 1, an orbit is almost stable.
 _MIN_MULTIPLIER = 1.5
+# Largest multiplier. Above, rounding errors are a large part of the smallest displacement.
+_MAX_MULTIPLIER = 1e9
 # End of the first image of a Lyapunov orbit that crosses the section, in units of the distance of the saddle from the origin.
 # Such an orbit is itself a point of the section, where one infinite curve begins. The image ends where a displacement that
 # continued to grow by the multiplier would reach this size.
@@ -78,8 +80,13 @@ class UnstableManifold:
         Raises
         ------
         ValueError
-            When the orbit is not unstable or crosses the section more than once in a period.
+            When the orbit is not unstable, is too unstable, or crosses the section more than once in a period.
         """
+        if not abs(orbit.stability_index) < 0.5 * _MAX_MULTIPLIER:
+            raise ValueError(
+                f"the Lyapunov orbit of channel {orbit.channel} is too unstable for its tube; its multiplier "
+                f"{2.0 * abs(orbit.stability_index):.3g} must be below {_MAX_MULTIPLIER:g}"
+            )
         monodromy = monodromy_matrix(orbit.potential, orbit.start, orbit.period)
         multiplier, direction = _leading_eigenpair(monodromy)
         if not multiplier > _MIN_MULTIPLIER:

@@ -66,7 +66,7 @@ INVALID = {
     "start and state": ("orbit", "I", "--energy", 0.2, "--start", 0, 0, "--state", 0, 0, 0, 0.1),
     "state and energy": ("orbit", "I", "--energy", 0.2, "--state", 0, 0, 0, 0.1),
     "energy and start on (x, h)": ("orbit", "I", "--plane", "x_h", "--energy", 0.2, "--start", 0, 0.2),
-    "energy without Lyapunov orbits": ("lyapunov", "III", "--energy", 8),
+    "energy without Lyapunov orbits": ("lyapunov", "III", "--energy", 100),
     "low above high": ("curves", "I", "--low", 0.3, "--high", 0.2, "--count", 3),
     "curves on (x, h)": ("curves", "I", "--plane", "x_h", "--low", 0.1, "--high", 0.2, "--count", 3),
     "unknown study": ("study", "fractals", "I"),

@@ -308,7 +308,7 @@ WRONG_CALLS = (
     ("classify_orbits(III, 0.18625 + 2e-9, [S])", "states: row 0 has energy 0.18625; must be energy=0.186250002 to within"),
     ('m.fractions(count_outside="no")', "count_outside='no': must be True or False"),
     ('sample_entrances(CASES["I"], 0.1, 10)', "energy=0.1: all exits are closed; must be above the escape energy 0.125"),
-    ('find_lyapunov_orbits(CASES["I"], 50.0)', "energy=50.0: no Lyapunov orbit was found across channel 1; choose another"),
+    ('find_lyapunov_orbits(CASES["I"], 1000.0)', "energy=1000.0: no Lyapunov orbit was found across channel 1; choose another"),
     ("sample_starts(III, 0.45, 0)", "count=0: must be an integer from 1 to 10000000"),
     (
         "sample_starts(III, 0.45, 10, rng=-1)",

@@ -100,7 +100,6 @@ class ComponentSearch:
 
     def __init__(self, expression: Expression, length: float) -> None:
         self._program: Program = make_graph((expression, *slopes(expression)))
-        self._value: Program = make_graph((expression,))
         self._length = length
 
     def examine(self, energy: float, barriers: Sequence[Barrier] = ()) -> Extent:
@@ -108,7 +107,7 @@ class ComponentSearch:
         return self._examine(energy, barriers, self.bounds)
 
     def sample(self, energy: float, barriers: Sequence[Barrier] = ()) -> Extent:
-        """Apply `examine` without proof: V is computed at nine points of each cell."""
+        """Apply `examine` without proof: V and its slopes are computed at nine points of each cell."""
         return self._examine(energy, barriers, self._sampled_bounds)
 
     def _examine(self, energy: float, barriers: Sequence[Barrier], bounds: _Bounds) -> Extent:
@@ -182,9 +181,17 @@ class ComponentSearch:
         return low, high
 
     def _sampled_bounds(self, first: np.ndarray, last: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the lowest and the highest value of V at nine points of each cell; infinite where V is not defined."""
-        values = np.nan_to_num(evaluate(*self._value, *_samples(first, last))[0], nan=np.inf, neginf=-np.inf, posinf=np.inf)
-        return values.min(axis=1), values.max(axis=1)
+        """Return estimates of the lowest and the highest value of V on cells from nine points; infinite where V is not defined.
+
+        With the largest slopes at these points, V may be higher between them: a ridge can be narrower than a cell.
+        """
+        value, along_x, along_y = evaluate(*self._program, *_samples(first, last))
+        value = np.nan_to_num(value, nan=np.inf, neginf=-np.inf, posinf=np.inf)
+        # No point of a cell is farther from one of the nine points than a quarter of its sides.
+        quarter_x, quarter_y = (0.25 * (last - first)).T
+        with np.errstate(invalid="ignore", over="ignore"):
+            rise = np.abs(along_x).max(axis=1) * quarter_x + np.abs(along_y).max(axis=1) * quarter_y
+        return value.min(axis=1), value.max(axis=1) + np.where(np.isfinite(rise), rise, np.inf)
 
 
 def _samples(first: np.ndarray, last: np.ndarray) -> np.ndarray:

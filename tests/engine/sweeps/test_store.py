@@ -139,7 +139,7 @@ def test_folder_with_other_files_is_refused(tmp_path: Path) -> None:
 
 
 def test_energy_without_exits_is_refused_before_writing(tmp_path: Path) -> None:
-    spec = replace(SPEC, window=Window(-1.0, 1.0, -1.0, 1.0), values=(0.3, 20.0))
+    spec = replace(SPEC, window=Window(-1.0, 1.0, -1.0, 1.0), values=(0.3, 100.0))
     with pytest.raises(ValueError, match="no Lyapunov orbit"):
         compute_sweep(spec, tmp_path / "store")
     assert not any(tmp_path.iterdir())

@@ -38,6 +38,17 @@ def test_a_region_is_bounded_below_the_energy_at_which_it_opens(formula: str, en
     assert [search.sample(below), search.sample(above)] == [Extent.BOUNDED, Extent.UNBOUNDED]
 
 
+@pytest.mark.parametrize(
+    "formula", ["½u² − 0.3106u⁴ + 0.0075y²; u = x − 0.3271y²", "½u² − 0.2020u⁴ + 0.0061y²; u = x − 0.0440y²"]
+)
+def test_samples_see_ridges_that_are_narrower_than_cells(formula: str) -> None:
+    text, definition = formula.split("; u = ")
+    potential = parse_formula(text.replace("u", f"({definition})"))
+    search = potential.well.component_search
+    below, above = (share * potential.in_well_units.escape_energy for share in (0.999, 1.01))
+    assert [search.sample(below), search.sample(above)] == [Extent.BOUNDED, Extent.UNBOUNDED]
+
+
 def test_a_region_around_a_body_is_bounded_below_the_energy_at_which_it_opens() -> None:
     search = search_for("−1/r")
     assert search.examine(-0.02) is Extent.BOUNDED

@@ -7,8 +7,8 @@ import pytest
 from scipy.optimize import brentq
 
 from engine import CASES, LyapunovOrbit, Potential, find_lyapunov_orbits
+from engine.exits.saddle_orbits.multiple_shooting import SaddleOrbit, find_saddle_orbit
 from engine.exits.saddle_orbits.orbit_parts import monodromy_matrix
-from engine.exits.saddle_orbits.rotating_orbits import SaddleOrbit, find_orbit_in_rotating_frame
 from tests.engine.exits.rotating_systems import EARTH_MOON, at_jacobi_constant, hill, integrate, three_body
 from tests.peers.random_systems import random_well
 
@@ -26,7 +26,7 @@ HILL_SADDLE = -0.5 * 3.0 ** (4.0 / 3.0)
 
 def orbit_of(potential: Potential, energy: float, channel: int) -> SaddleOrbit:
     """Return the orbit, in units of the well."""
-    orbit = find_orbit_in_rotating_frame(potential.in_well_units, energy / potential.units.energy, channel)
+    orbit = find_saddle_orbit(potential.in_well_units, energy / potential.units.energy, channel)
     assert orbit is not None
     return orbit
 
@@ -57,7 +57,7 @@ def crossings_of(mu: float | None, period: float, path: np.ndarray) -> np.ndarra
 def test_brake_orbits_are_also_found_by_continuation(potential: Potential, energy: float) -> None:
     scaled = energy / potential.units.energy
     for expected in find_lyapunov_orbits(potential.in_well_units, scaled):
-        orbit = find_orbit_in_rotating_frame(potential.in_well_units, scaled, expected.channel)
+        orbit = find_saddle_orbit(potential.in_well_units, scaled, expected.channel)
         assert orbit is not None
         assert orbit.period == pytest.approx(expected.period, abs=1e-9)
         path, wanted = orbit.path[:2], np.array([expected.x, expected.y])

@@ -1,4 +1,4 @@
-"""Periodic orbits over a saddle in a rotating frame, found by Newton's method and continuation.
+"""Periodic orbits over a saddle, found by Newton's method for several states of a period and by continuation.
 
 The motion linearised at a saddle of the effective potential Φ has a pair of eigenvalues ±iν: small oscillations of period 2π/ν,
 which span the centre subspace. By Lyapunov's centre theorem, a family of periodic orbits begins with these oscillations. Let E be
@@ -10,21 +10,21 @@ section 7.3.5). All quantities are in units of the well.
 
 from __future__ import annotations
 
+import functools
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 
-from engine.exits.saddle_orbits.brake_orbits import Axes, saddle_axes
+from engine.exits.saddle_orbits.brake_orbits import Axes, BrakeOrbit, find_roughly, saddle_axes
 from engine.exits.saddle_orbits.continuation import StepLimits, follow
 from engine.exits.saddle_orbits.orbit_parts import Parts, trace_parts, velocities
 from engine.integrator.kernels.dense_output import sample_path
 from engine.systems.landscape.closed_energy import ridge_bend
 from engine.systems.potential import Potential
 
-# Number of nodes: states of one period that are corrected together.
-_NODES = 8
-# Number of points of the path between two nodes.
-_POINTS_PER_NODE = 25
+# Number of intervals of the path.
+_INTERVALS = 200
 _MOST_CORRECTIONS = 12
 # Relative size below which corrections that no longer decrease are rounding errors.
 _CORRECTION_TOLERANCE = 1e-6
@@ -34,14 +34,29 @@ _ENERGY_ROUNDINGS = 64
 _LARGEST_CHANGE = 0.1
 # Number of orbits from which the next one is predicted.
 _PREDICTOR_ORBITS = 4
-# Smallest step of σ, in units of the final σ.
-_SMALLEST_STEP = 2.0**-10
 # Largest number of steps of σ.
 _MOST_STEPS = 400
 # Sharpness of the smooth maximum that defines the edge of an orbit, see `_edge`.
 _SHARPNESS = 50.0
+# Largest speed at the ends of an orbit in a frame at rest, in units of the well.
+_LARGEST_END_SPEED = 1e-12
 # Largest distance between the ends of neighbouring parts of an orbit, in units of the well.
 _LARGEST_GAP = 1e-10
+
+
+class _Effort(NamedTuple):
+    """The number of nodes, a divisor of 200, and the smallest step of σ in units of the final σ.
+
+    Nodes are states of one period that are corrected together.
+    """
+
+    nodes: int
+    smallest_step: float
+
+
+_ROTATING = _Effort(8, 2.0**-10)
+# Orbits in a frame at rest are followed where they are very unstable.
+_AT_REST = _Effort(20, 2.0**-6)
 
 # The values of σ reached last, each with the unknowns of its orbit, see `_correct`.
 _KnownOrbits = list[tuple[float, np.ndarray]]
@@ -56,6 +71,8 @@ class SaddleOrbit(NamedTuple):
         Period of the orbit, dimensionless.
     path
         (4, 201) x, y, ẋ, ẏ, evenly spaced in time; the last point is the first one.
+    nodes
+        (nodes, 4) the states that were corrected together, evenly spaced in time; the first one is that of the path.
     edge
         Value of u − a q² on the parabola just outside the orbit, dimensionless; u and q are in the axes of the saddle, and a is
         its `ridge_bend`.
@@ -63,6 +80,7 @@ class SaddleOrbit(NamedTuple):
 
     period: float
     path: np.ndarray
+    nodes: np.ndarray
     edge: float
 
 
@@ -75,31 +93,80 @@ class _Family(NamedTuple):
     axes: Axes
     bend: float
 
+    @property
+    def effort(self) -> _Effort:
+        return _ROTATING if self.potential.rotation else _AT_REST
 
-def find_orbit_in_rotating_frame(potential: Potential, energy: float, channel: int) -> SaddleOrbit | None:
+    @property
+    def nodes(self) -> int:
+        return self.effort.nodes
+
+    def sigma(self, energy: float) -> float:
+        """Return σ at an energy above that of the saddle."""
+        return float(np.sqrt(energy - self.saddle_energy))
+
+    def states(self, sigma: float, unknowns: np.ndarray) -> np.ndarray:
+        """Return the states at the nodes, (nodes, 4), from the unknowns of `_correct`."""
+        states: np.ndarray = self.saddle_state + sigma * unknowns[:-1].reshape(self.nodes, 4)
+        return states
+
+    def trace(self, states: np.ndarray, period: float) -> Parts | None:
+        """Return the parts of an orbit of some period that start at its nodes (nodes, 4); None if they cannot be integrated."""
+        return trace_parts(self.potential, states, np.full(self.nodes, period / self.nodes))
+
+
+@functools.lru_cache(maxsize=64)
+def find_brake_orbit(potential: Potential, energy: float, channel: int) -> BrakeOrbit | None:
+    """Return the orbit over a saddle in a frame at rest, also where it is too unstable for one integration of half a period.
+
+    If the orbit cannot be followed from the small oscillations, trial orbits from its ends are corrected.
+    """
+    family = _family_over(potential, channel)
+    with np.errstate(all="ignore"):
+        for unknowns in _find_unknowns(family, energy, channel):
+            orbit = None if unknowns is None else _complete_orbit(family, energy, unknowns)
+            # Both ends are nodes.
+            if orbit is not None and np.abs(orbit.nodes[[0, family.nodes // 2], 2:]).max() < _LARGEST_END_SPEED:
+                return BrakeOrbit(0.5 * orbit.period, orbit.path[:2, : _INTERVALS // 2 + 1], orbit.nodes[1:])
+    return None
+
+
+def find_saddle_orbit(potential: Potential, energy: float, channel: int) -> SaddleOrbit | None:
     """Return the orbit over a saddle at an energy above it, followed from the small oscillations; None if it is not found.
-
-    In a frame at rest, the result is the orbit that `brake_orbits` finds, up to rounding errors. Exits in such a frame are made
-    from the orbits of `brake_orbits`, because their ends are exactly at rest. Orbits over several saddles are not found, because
-    they do not begin as small oscillations.
 
     Parameters
     ----------
     potential
-        The potential in units of its well. The frame may be at rest, which tests use for comparison.
+        The potential in units of its well.
     energy
         h, above the energy of the saddle, dimensionless.
     channel
         Number of the saddle, from 1.
     """
-    saddle = potential.saddles[channel - 1]
-    saddle_energy = float(potential.well.saddle_energies[channel - 1])
-    axes = saddle_axes(potential, channel)
-    family = _Family(potential, np.array([*saddle, 0.0, 0.0]), saddle_energy, axes, ridge_bend(potential.form, *axes))
+    family = _family_over(potential, channel)
     # Trial orbits that diverge are rejected later.
     with np.errstate(all="ignore"):
-        unknowns = _continue_to(family, float(np.sqrt(energy - saddle_energy)))
+        unknowns = _continue_to(family, family.sigma(energy))
         return None if unknowns is None else _complete_orbit(family, energy, unknowns)
+
+
+def _family_over(potential: Potential, channel: int) -> _Family:
+    saddle, axes = potential.saddles[channel - 1], saddle_axes(potential, channel)
+    saddle_energy = float(potential.well.saddle_energies[channel - 1])
+    return _Family(potential, np.array([*saddle, 0.0, 0.0]), saddle_energy, axes, ridge_bend(potential.form, *axes))
+
+
+def _find_unknowns(family: _Family, energy: float, channel: int) -> Iterator[np.ndarray | None]:
+    """Yield the unknowns of orbits at an energy in a frame at rest, see `_correct`; None where a method finds none."""
+    sigma, half = family.sigma(energy), family.nodes // 2
+    yield _continue_to(family, sigma)
+    for half_period, there in find_roughly(family.potential, energy, channel, half + 1):
+        states = np.concatenate([there, there[-2:0:-1] * [1.0, 1.0, -1.0, -1.0]])
+        _, (first_q, last_q) = family.axes.coordinates(there[[0, -1], :2].T)
+        # The path begins at the smaller q.
+        states = states if first_q < last_q else np.roll(states, half, axis=0)
+        predicted = np.append((states - family.saddle_state) / sigma, 2.0 * half_period)
+        yield _correct(family, sigma, predicted)
 
 
 def _continue_to(family: _Family, sigma: float) -> np.ndarray | None:
@@ -109,7 +176,7 @@ def _continue_to(family: _Family, sigma: float) -> np.ndarray | None:
         corrected = _correct(family, target, _extrapolate(known, target))
         return None if corrected is None else [*known, (target, corrected)][-_PREDICTOR_ORBITS:]
 
-    limits = StepLimits(sigma, _SMALLEST_STEP * sigma, _MOST_STEPS)
+    limits = StepLimits(sigma, family.effort.smallest_step * sigma, _MOST_STEPS)
     known = follow(advance, [(0.0, _small_oscillation(family))], 0.0, sigma, limits)
     return None if known is None else known[-1][1]
 
@@ -130,7 +197,7 @@ def _small_oscillation(family: _Family) -> np.ndarray:
     oscillation = -eigenvector * np.conj(q_amplitude) / np.abs(q_amplitude)
     start = oscillation.real
     quadratic_energy = 0.5 * (start[2:] @ start[2:] - start[:2] @ flow[2:, :2] @ start[:2])
-    angles = 2.0 * np.pi * np.arange(_NODES) / _NODES
+    angles = 2.0 * np.pi * np.arange(family.nodes) / family.nodes
     nodes = (oscillation[None] * np.exp(1j * angles)[:, None]).real / np.sqrt(quadratic_energy)
     return np.append(nodes, 2.0 * np.pi / frequency)
 
@@ -182,13 +249,14 @@ def _linearise(family: _Family, sigma: float, unknowns: np.ndarray) -> tuple[np.
 
     The equations: each part ends where the next part begins, the energy is σ² above the saddle, and q̇ = 0 at the start.
     """
-    states = family.saddle_state + sigma * unknowns[:-1].reshape(_NODES, 4)
-    parts = _trace(family, states, unknowns[-1])
+    states = family.states(sigma, unknowns)
+    parts = family.trace(states, unknowns[-1])
     if parts is None:
         return None
-    jacobian, residual = np.zeros((4 * _NODES + 2, unknowns.size)), np.empty(4 * _NODES + 2)
+    equations = 4 * family.nodes + 2
+    jacobian, residual = np.zeros((equations, unknowns.size)), np.empty(equations)
     residual[:-2], jacobian[:-2, :-1] = parts.gaps(states) / sigma, parts.changes_of_gaps()
-    jacobian[:-2, -1] = (velocities(family.potential, parts.ends) / (_NODES * sigma)).ravel()
+    jacobian[:-2, -1] = (velocities(family.potential, parts.ends) / (family.nodes * sigma)).ravel()
     start, outward = states[0], family.axes.outward
     residual[-2] = (family.potential.energy(start) - family.saddle_energy) / sigma**2 - 1.0
     jacobian[-2, :4] = np.array([*family.potential.gradient(start[0], start[1]), start[2], start[3]]) / sigma
@@ -197,24 +265,19 @@ def _linearise(family: _Family, sigma: float, unknowns: np.ndarray) -> tuple[np.
     return (jacobian, residual) if np.isfinite(residual).all() and np.isfinite(jacobian).all() else None
 
 
-def _trace(family: _Family, states: np.ndarray, period: float) -> Parts | None:
-    """Return the parts of an orbit of some period that start at its nodes (nodes, 4); None if they cannot be integrated."""
-    return trace_parts(family.potential, states, np.full(_NODES, period / _NODES))
-
-
 def _complete_orbit(family: _Family, energy: float, unknowns: np.ndarray) -> SaddleOrbit | None:
     """Return the orbit with its path and edge; None if its parts do not join within `_LARGEST_GAP`."""
     sigma, period = float(np.sqrt(energy - family.saddle_energy)), float(unknowns[-1])
-    states = family.saddle_state + sigma * unknowns[:-1].reshape(_NODES, 4)
-    parts = _trace(family, states, period)
+    states = family.states(sigma, unknowns)
+    parts = family.trace(states, period)
     # `not … <` also rejects NaN.
     if parts is None or not np.abs(parts.gaps(states)).max() < _LARGEST_GAP:
         return None
-    kernels, duration = family.potential.well.kernels, period / _NODES
-    times = np.arange(_POINTS_PER_NODE) * (duration / _POINTS_PER_NODE)
+    kernels, intervals = family.potential.well.kernels, _INTERVALS // family.nodes
+    times = np.arange(intervals) * (period / family.nodes / intervals)
     pieces = [sample_path(kernels, steps, times) for steps in parts.steps]
     path = np.concatenate([*pieces, states[:1].T], axis=1)
-    return SaddleOrbit(period, path, _edge(family, path))
+    return SaddleOrbit(period, path, states, _edge(family, path))
 
 
 def _edge(family: _Family, path: np.ndarray) -> float:
