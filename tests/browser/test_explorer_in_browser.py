@@ -81,9 +81,9 @@ def test_a_launch_angle_is_chosen_as_an_axis(explorer: ExplorerPage) -> None:
 
 def test_an_invalid_energy_gives_a_warning_and_the_picture_stays_grey(explorer: ExplorerPage) -> None:
     before = explorer.column("fate")
-    explorer.type_number("Exact h", "100")
+    explorer.type_number("Exact h", "1000")
     warning = explorer.page.get_by_role("alert")
-    expect(warning).to_contain_text("h = 100")
+    expect(warning).to_contain_text("h = 1000")
     np.testing.assert_array_equal(explorer.column("fate"), before)
     pictures = explorer.page.locator(".map, .well")
     expect(pictures).to_have_count(4)

@@ -8,7 +8,7 @@ from functools import cached_property
 import heyoka as hy
 import numpy as np
 
-from engine import Potential
+from engine import LyapunovOrbit, Potential
 from tests.peers import taylor_heyoka
 
 # Number of points of a path in each step, number of times that the interval of a crossing is sampled anew, number of points of an
@@ -56,6 +56,16 @@ def _are_left(points: np.ndarray, starts: np.ndarray, ends: np.ndarray) -> np.nd
     return along[..., 0] * apart[..., 1] > along[..., 1] * apart[..., 0]
 
 
+def parts_of_half(orbit: LyapunovOrbit) -> tuple[np.ndarray, float]:
+    """Return the states (n, 4) from which the parts of the first half of an orbit begin, and the duration of a part.
+
+    A very unstable orbit has ten parts, other orbits one.
+    """
+    starts = np.vstack([orbit.start, orbit.inner_states])
+    starts = starts[: max(len(starts) // 2, 1)]
+    return starts, 0.5 * orbit.period / len(starts)
+
+
 @dataclass(frozen=True)
 class End:
     """The end of an orbit: channel (0 for none), time, place of shape (2,), and number of upward crossings of y = 0 before."""
@@ -89,9 +99,9 @@ class Peer:
         self.integrator.state[:] = state
         self.upward.clear()
 
-    def path_from_rest(self, place: np.ndarray, duration: float) -> np.ndarray:
-        """Return the states of an orbit that starts at rest, of shape (n, 4)."""
-        self.start(np.concatenate([place, [0.0, 0.0]]))
+    def path(self, start: np.ndarray, duration: float) -> np.ndarray:
+        """Return the states of an orbit, evenly spaced in time, of shape (n, 4)."""
+        self.start(start)
         path: np.ndarray = self.integrator.propagate_grid(np.linspace(0.0, duration, _EXIT_POINTS))[-1]
         return path
 

@@ -17,7 +17,7 @@ from scipy import ndimage
 from engine import Potential, classify_orbits, find_lyapunov_orbits
 from engine.exits.interior import find_outside_channels
 from tests.contracts.scaling import Scaling
-from tests.peers.sampled_paths import Exits, Peer
+from tests.peers.sampled_paths import Exits, Peer, parts_of_half
 
 # End time, number of starts, shift of starts, and largest distance of ends of a robust orbit. Units are those of the well.
 T_MAX, STARTS, SHIFT, APART = 60.0, 20, 1e-11, 1e-3
@@ -95,13 +95,21 @@ def compare_with_heyoka(potential: Potential, energy: float, seed: int, scaling:
 
 
 def integrated_exits(setting: Setting, peer: Peer, found: Comparison) -> Exits:
-    """Return the Lyapunov orbits, integrated from rest for half a period. They must end at rest on the zero-velocity curve."""
+    """Return the Lyapunov orbits, integrated anew for half a period. They must end at rest on the zero-velocity curve.
+
+    Very unstable orbits are integrated in parts, each of which must end where the next one begins.
+    """
     channels, paths = [], []
     potential, units = setting.potential, setting.potential.units
     for orbit in find_lyapunov_orbits(*setting.scaled):
-        place = np.array([orbit.x[0], orbit.y[0]]) / setting.scaling.length
-        path = peer.path_from_rest(place, 0.5 * orbit.period / setting.scaling.time)
-        moved = peer.path_from_rest(place + SHIFT * units.length, 0.5 * orbit.period / setting.scaling.time)[-1] - path[-1]
+        starts, duration = parts_of_half(orbit)
+        starts, duration = starts / setting.scaling.states(np.ones(4)), duration / setting.scaling.time
+        parts = [peer.path(start, duration) for start in starts]
+        for part, start in zip(parts[:-1], starts[1:], strict=True):
+            if not np.abs((part[-1] - start) / units.state).max() < 1e-7:
+                found.wrong.append(f"parts of the Lyapunov orbit across channel {orbit.channel} do not meet")
+        path = np.concatenate(parts)
+        moved = peer.path(starts[-1] + SHIFT * units.length * np.array([1.0, 1.0, 0.0, 0.0]), duration)[-1] - path[-1]
         # The rounding error of the start grows in proportion to a shift of the start.
         rest = 1e-7 * units.momentum + ROUNDING / SHIFT * np.abs(moved[2:]).max()
         error = abs(potential.energy(path[-1]) - setting.energy)

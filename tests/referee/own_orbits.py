@@ -111,11 +111,11 @@ class OwnOrbits:
         if not abs(np.diff(potential + kinetic)[0]) <= _LARGEST_CHANGE * np.sum(np.abs(potential) + kinetic):
             raise EnergyError("the energy of an own orbit changes")
 
-    def path_from_rest(self, place: np.ndarray, duration: float) -> np.ndarray:
-        """Return the states of an orbit that starts at rest, of shape (n, 4)."""
+    def path(self, start: np.ndarray, duration: float) -> np.ndarray:
+        """Return the states of an orbit, evenly spaced in time, of shape (n, 4)."""
         times = np.linspace(0.0, duration, _EXIT_POINTS)
         path = np.full((times.size, 4), np.nan)
-        for step in self.steps(np.array([*place, 0.0, 0.0]), duration):
+        for step in self.steps(start, duration):
             within = (times >= step.begin) & (times <= step.end)
             path[within] = step.states(times[within])
         return path

@@ -103,9 +103,9 @@ def test_a_late_result_is_not_shown(session: Session) -> None:
 
 
 def test_an_error_gives_a_message(session: Session) -> None:
-    bad = MapSpec(CASES["I"], Plane.X_PX, 50.0, (8, 8), (-0.1, 0.1, -0.1, 0.1))
+    bad = MapSpec(CASES["I"], Plane.X_PX, 1000.0, (8, 8), (-0.1, 0.1, -0.1, 0.1))
     session.request = lambda frame: REGULARITY.job(bad, {})
     session.requests.follow(bounded_map(0.2))
     with session.changed:
         assert session.changed.wait_for(lambda: bool(session.problems), SECONDS)
-    assert session.problems[0].startswith("h = 50: ")
+    assert session.problems[0].startswith("h = 1000: ")

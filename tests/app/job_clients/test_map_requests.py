@@ -226,10 +226,10 @@ def test_potentials_along_a_parameter_of_a_typed_formula_are_found_within_limits
 
 def test_an_invalid_energy_gives_a_message(session: Session) -> None:
     state, _, recorder, _ = session
-    state.energy = 50.0
+    state.energy = 1000.0
     recorder.wait_for(lambda: "map failed" in recorder.names())
     sentence = next(value for what, value in recorder.calls if what == "map failed")
-    assert sentence.startswith("h = 50: ")
+    assert sentence.startswith("h = 1000: ")
 
 
 @pytest.mark.parametrize("window", [None, Window(-0.2, 0.2, -0.2, 0.2)])

@@ -113,6 +113,6 @@ def test_potentials_along_a_parameter_of_a_typed_formula_are_found_within_limits
 
 
 def test_a_view_that_has_no_map_is_refused_in_a_sentence(session: Session, frame: EscapeMap) -> None:
-    session.state.compared = View(System("I"), Plane.X_PX, 50.0)
+    session.state.compared = View(System("I"), Plane.X_PX, 1000.0)
     session.show(frame)
     session.wait_for("There is no other view to compare with: ")
