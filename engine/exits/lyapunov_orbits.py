@@ -26,6 +26,7 @@ from engine.exits.saddle_orbits.brake_orbits import (
     chord_axes,
     continue_in_energy,
     find_directly,
+    find_from_both_ends,
     saddle_axes,
 )
 from engine.exits.saddle_orbits.merged_orbits import axes_between, find_merged_orbits
@@ -126,7 +127,7 @@ _Search = Callable[[Potential, float, int], BrakeOrbit | None]
 # Functions that find the orbit over a saddle in a frame at rest. If the first one does not find all orbits, the slower ones are
 # tried, in turn. If these find orbits of mirror images that differ, only the last one is accurate enough.
 _FIRST = (find_directly,)
-_SLOWER = (continue_in_energy, find_directly, find_brake_orbit)
+_SLOWER = (continue_in_energy, find_from_both_ends, find_brake_orbit)
 _LAST = (find_brake_orbit,)
 
 

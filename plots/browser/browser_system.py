@@ -23,6 +23,8 @@ WINDOW_EDGES = ("xLow", "xHigh", "ordinateLow", "ordinateHigh")
 
 # Number of energies with a tabulated window below the escape energy, where windows change slowly.
 _ENERGIES_BELOW = 5
+# Distance of the last of them from the escape energy, as a share of the range of energies.
+_MARGIN = 1e-6
 # Number of energies with a tabulated window above the escape energy.
 _ENERGIES_ABOVE = 13
 
@@ -135,7 +137,8 @@ def _tabulated_energies(potential: Potential, low: float, high: float) -> np.nda
         # A system with an escape circle has no escape energy.
         return np.linspace(low, high, _ENERGIES_BELOW + _ENERGIES_ABOVE)
     escape = min(max(potential.escape_energy, low), high)
-    below = np.linspace(low, escape, _ENERGIES_BELOW)
+    # Rounding decides whether exits are open at the escape energy itself.
+    below = np.linspace(low, max(escape - _MARGIN * (high - low), low), _ENERGIES_BELOW)
     # The square places energies closer together just above the escape energy.
-    above = escape + (high - escape) * np.linspace(0.0, 1.0, _ENERGIES_ABOVE) ** 2
+    above = escape + (high - escape) * np.linspace(0.0, 1.0, _ENERGIES_ABOVE)[1:] ** 2
     return np.unique([*below, *above])

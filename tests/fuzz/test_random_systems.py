@@ -78,7 +78,7 @@ def test_random_wells_agree_with_heyoka_in_random_units(chunk: int) -> None:
 
 
 @pytest.mark.parametrize(("seed", "factor"), [(97, 2.0), pytest.param(155, 2.0, marks=pytest.mark.slow)])
-def test_exits_found_by_continuation_or_in_parts_agree_with_heyoka(seed: int, factor: float) -> None:
+def test_exits_found_by_continuation_or_from_both_ends_agree_with_heyoka(seed: int, factor: float) -> None:
     potential = random_well(seed)
     assert not compare_with_heyoka(potential, factor * potential.escape_energy, seed).wrong
 

@@ -16,7 +16,6 @@ import numpy as np
 
 from engine.exits.saddle_orbits.continuation import StepLimits, follow
 from engine.foundations.root_finding import find_root
-from engine.integrator.kernels.dense_output import sample_path
 from engine.integrator.source.recurrence import TOLERANCE
 from engine.integrator.source.series import ORDER
 from engine.systems.potential import Potential
@@ -57,8 +56,12 @@ _MOST_ENERGY_STEPS = 256
 
 # Largest speed at the second end, in units of the well. A root with a larger speed is a discontinuity of the velocity.
 _LARGEST_END_SPEED = 1e-8
-# Largest speed at the second end of a trial orbit that is corrected later.
-_LARGEST_ROUGH_SPEED = 1e-3
+# Largest speed at the second end of a shot that is joined with another.
+_LARGEST_JOINED_END_SPEED = 1e-3
+# Largest distance between two shots where they are joined, in units of the well.
+_LARGEST_MISMATCH = 1e-8
+# Two shots that are joined are compared up to this share of the half period before and after the middle.
+_OVERLAP = 0.05
 # The path of half a period has one point more.
 _INTERVALS_PER_HALF_PERIOD = 100
 # Largest number of integrator steps of a trial orbit.
@@ -112,10 +115,29 @@ class _Search(NamedTuple):
 
 
 class _Shot(NamedTuple):
-    """A trial orbit: the integrator's steps, (n, 5) states and times at which they begin, and its duration."""
+    """A trial orbit of n steps, at rest at its start and nearly at rest at its end.
 
-    steps: np.ndarray
+    `coefficients`, (2, ORDER + 1, n), are the Taylor coefficients of x and y; `begins`, (n,), are the times at which steps begin.
+    """
+
+    coefficients: np.ndarray
+    begins: np.ndarray
     half_period: float
+
+    @property
+    def orbit(self) -> BrakeOrbit:
+        return BrakeOrbit(self.half_period, self.path)
+
+    @property
+    def path(self) -> np.ndarray:
+        """(2, 101) x and y, evenly spaced in time."""
+        return self.positions(np.linspace(0.0, self.half_period, _INTERVALS_PER_HALF_PERIOD + 1))
+
+    def positions(self, times: np.ndarray) -> np.ndarray:
+        """Return x and y at m `times`, of shape (2, m)."""
+        step = np.searchsorted(self.begins, times, side="right") - 1
+        powers = (times - self.begins[step]) ** np.arange(ORDER + 1)[:, None]
+        return (self.coefficients[:, :, step] * powers).sum(axis=1)
 
 
 def saddle_axes(potential: Potential, channel: int) -> Axes:
@@ -131,27 +153,23 @@ def chord_axes(path: np.ndarray) -> Axes:
 
 def find_directly(potential: Potential, energy: float, channel: int) -> BrakeOrbit | None:
     """Return the orbit over a saddle at one energy, searched from the saddle; None if it is not found."""
-    axes = saddle_axes(potential, channel)
-    orbit = _shoot(potential, energy, channel, axes, _saddle_search(potential, channel))
-    if orbit is None:
-        return None
-    # A start on a wall of another channel leads to an orbit across that channel.
-    _, q = axes.coordinates(orbit.path)
-    return orbit if q[0] < 0.0 < q[-1] else None
+    shot = _find_from_saddle(potential, energy, channel, saddle_axes(potential, channel), _LARGEST_END_SPEED)
+    return None if shot is None else shot.orbit
 
 
-def find_roughly(potential: Potential, energy: float, channel: int, count: int) -> Iterator[tuple[float, np.ndarray]]:
-    """Yield half a period and states (count, 4), evenly spaced over it, of trial orbits over a saddle from either of its walls.
+def find_from_both_ends(potential: Potential, energy: float, channel: int) -> BrakeOrbit | None:
+    """Return the orbit over a saddle at one energy, shot from both ends and joined in its middle; None if it is not found.
 
-    Errors grow along a very unstable orbit. These trial orbits are only nearly at rest at their ends.
+    Errors of a shot then grow over only a quarter of a period. The zero-velocity curve may also bend away at the first end.
     """
-    for direction in (1.0, -1.0):
-        axes = Axes(potential.saddles[channel - 1], direction * saddle_axes(potential, channel).outward)
-        trials = _Trials(potential, energy, axes, _LARGEST_EXCURSION * _saddle_distance(potential, channel))
-        bracket = _find_bracket(trials.outward_velocity, _saddle_search(potential, channel))
-        shot = None if bracket is None else trials.shoot(bracket, _LARGEST_ROUGH_SPEED)
-        if shot is not None:
-            yield shot.half_period, sample_path(potential.well.kernels, shot.steps, np.linspace(0.0, shot.half_period, count)).T
+    axes = saddle_axes(potential, channel)
+    # With reversed axes, the shot starts at the second end.
+    backward = _find_from_saddle(potential, energy, channel, Axes(axes.origin, -axes.outward), _LARGEST_JOINED_END_SPEED)
+    if backward is None:
+        return None
+    path = backward.path[:, ::-1]
+    forward = _shoot(potential, energy, channel, chord_axes(path), _chord_search(path), _LARGEST_JOINED_END_SPEED)
+    return None if forward is None else _join(forward, backward, chord_axes(path))
 
 
 def find_from_outside(potential: Potential, energy: float, axes: Axes, search_size: float) -> Iterator[BrakeOrbit]:
@@ -164,9 +182,9 @@ def find_from_outside(potential: Potential, energy: float, axes: Axes, search_si
     velocities = [trials.outward_velocity(u) for u in offsets.tolist()]
     for k in range(_STARTS - 1):
         if velocities[k] > 0.0 > velocities[k + 1]:
-            orbit = trials.solve((float(offsets[k + 1]), float(offsets[k])))
-            if orbit is not None:
-                yield orbit
+            shot = trials.solve((float(offsets[k + 1]), float(offsets[k])), _LARGEST_END_SPEED)
+            if shot is not None:
+                yield shot.orbit
 
 
 def continue_in_energy(potential: Potential, energy: float, channel: int) -> BrakeOrbit | None:
@@ -182,33 +200,75 @@ def continue_in_energy(potential: Potential, energy: float, channel: int) -> Bra
     return follow(advance, None, saddle_energy, energy, limits)
 
 
+def _find_from_saddle(potential: Potential, energy: float, channel: int, axes: Axes, largest_speed: float) -> _Shot | None:
+    """Return the orbit from a point with q < 0 in axes at the saddle to a point with q > 0; None if it is not found."""
+    saddle_distance = _saddle_distance(potential, channel)
+    search = _Search(_FIRST_STRIDE * saddle_distance, _LARGEST_OFFSET * saddle_distance)
+    shot = _shoot(potential, energy, channel, axes, search, largest_speed)
+    if shot is None:
+        return None
+    # A start on a wall of another channel leads to an orbit across that channel.
+    _, q = axes.coordinates(shot.path)
+    return shot if q[0] < 0.0 < q[-1] else None
+
+
+def _join(forward: _Shot, backward: _Shot, axes: Axes) -> BrakeOrbit | None:
+    """Join two shots from both ends to an orbit; None if they do not meet in the middle."""
+    path, reversed_path = forward.path, backward.path[:, ::-1]
+    if np.abs((path - reversed_path)[:, [0, -1]]).max() > _LARGEST_CHANGE * _chord_length(reversed_path):
+        return None
+    first_q, last_q = axes.coordinates(path)[1][0], axes.coordinates(reversed_path)[1][-1]
+    middle_q = 0.5 * (first_q + last_q)
+    forward_duration, backward_duration = _time_at(middle_q, forward, axes), _time_at(middle_q, backward, axes)
+    half_period = forward_duration + backward_duration
+    overlap = forward_duration + _OVERLAP * half_period * np.linspace(-1.0, 1.0, 11)
+    # `not … <` also rejects NaN.
+    if not np.abs(forward.positions(overlap) - backward.positions(half_period - overlap)).max() < _LARGEST_MISMATCH:
+        return None
+    times = np.linspace(0.0, half_period, _INTERVALS_PER_HALF_PERIOD + 1)
+    path = np.where(times < forward_duration, forward.positions(times), backward.positions(half_period - times))
+    return BrakeOrbit(half_period, path)
+
+
+def _time_at(q: float, shot: _Shot, axes: Axes) -> float:
+    """Return the time at which a trial orbit passes q."""
+
+    def distance(time: float) -> float:
+        return float(axes.coordinates(shot.positions(np.array([time])))[1][0]) - q
+
+    return find_root(distance, 0.0, shot.half_period, xtol=1e-15)
+
+
 def _next_orbit(potential: Potential, energy: float, channel: int, previous: BrakeOrbit) -> BrakeOrbit | None:
     """Continue the previous orbit to a nearby energy; None if the orbit found there is not close to the previous orbit."""
     ends = previous.path[:, [0, -1]]
-    length = float(np.hypot(*(ends[:, 1] - ends[:, 0])))
-    search = _Search(_FIRST_SHIFT * length, _LARGEST_SHIFT * length)
-    orbit = _shoot(potential, energy, channel, chord_axes(previous.path), search)
-    if orbit is None:
+    shot = _shoot(potential, energy, channel, chord_axes(previous.path), _chord_search(previous.path), _LARGEST_END_SPEED)
+    if shot is None:
         return None
+    orbit, length = shot.orbit, _chord_length(previous.path)
     move = float(np.hypot(*(orbit.path[:, [0, -1]] - ends)).max()) / length
     change = abs(orbit.half_period - previous.half_period) / previous.half_period
     return orbit if max(move, change) < _LARGEST_CHANGE else None
 
 
-def _saddle_search(potential: Potential, channel: int) -> _Search:
-    distance = _saddle_distance(potential, channel)
-    return _Search(_FIRST_STRIDE * distance, _LARGEST_OFFSET * distance)
+def _chord_length(path: np.ndarray) -> float:
+    return float(np.hypot(*(path[:, -1] - path[:, 0])))
+
+
+def _chord_search(path: np.ndarray) -> _Search:
+    length = _chord_length(path)
+    return _Search(_FIRST_SHIFT * length, _LARGEST_SHIFT * length)
 
 
 def _saddle_distance(potential: Potential, channel: int) -> float:
     return float(np.hypot(*potential.saddles[channel - 1]))
 
 
-def _shoot(potential: Potential, energy: float, channel: int, axes: Axes, search: _Search) -> BrakeOrbit | None:
+def _shoot(potential: Potential, energy: float, channel: int, axes: Axes, search: _Search, largest_speed: float) -> _Shot | None:
     """Return the orbit whose start is nearest to the origin of the axes along the channel; None if it is not found."""
     trials = _Trials(potential, energy, axes, _LARGEST_EXCURSION * _saddle_distance(potential, channel))
     bracket = _find_bracket(trials.outward_velocity, search)
-    return None if bracket is None else trials.solve(bracket)
+    return None if bracket is None else trials.solve(bracket, largest_speed)
 
 
 class _Trials:
@@ -222,21 +282,8 @@ class _Trials:
         """Return the velocity along the channel at the turning point, after a start at rest at offset u."""
         return float(self._kernels.shoot(u, *self._arguments)[0])
 
-    def solve(self, bracket: tuple[float, float]) -> BrakeOrbit | None:
-        """Return the orbit that starts between two offsets and ends at rest; None if no orbit does."""
-        shot = self.shoot(bracket, _LARGEST_END_SPEED)
-        if shot is None:
-            return None
-        coefficients = np.empty((2, ORDER + 1, len(shot.steps)))
-        self._kernels.jets(len(shot.steps), *(np.ascontiguousarray(column) for column in shot.steps[:, :4].T), *coefficients)
-        begins = shot.steps[:, 4]
-        times = np.linspace(0.0, shot.half_period, _INTERVALS_PER_HALF_PERIOD + 1)
-        step = np.searchsorted(begins, times, side="right") - 1
-        powers = (times - begins[step]) ** np.arange(ORDER + 1)[:, None]
-        return BrakeOrbit(shot.half_period, (coefficients[:, :, step] * powers).sum(axis=1))
-
-    def shoot(self, bracket: tuple[float, float], largest_speed: float) -> _Shot | None:
-        """Return the trial orbit that starts between two offsets and ends slower than `largest_speed`; None if none does."""
+    def solve(self, bracket: tuple[float, float], largest_speed: float) -> _Shot | None:
+        """Return the orbit that starts between two offsets and ends slower than `largest_speed`; None if no orbit does."""
         try:
             u = find_root(self.outward_velocity, *bracket, xtol=1e-17)
         except ValueError:
@@ -245,7 +292,9 @@ class _Trials:
         velocity, half_period, count = self._kernels.shoot(u, *self._arguments)
         if not (np.isfinite(half_period) and abs(velocity) < largest_speed):
             return None
-        return _Shot(self._steps[:count].copy(), half_period)
+        coefficients = np.empty((2, ORDER + 1, count))
+        self._kernels.jets(count, *(np.ascontiguousarray(column) for column in self._steps[:count, :4].T), *coefficients)
+        return _Shot(coefficients, self._steps[:count, 4].copy(), half_period)
 
 
 def _find_bracket(outward_velocity: Callable[[float], float], search: _Search) -> tuple[float, float] | None:

@@ -11,12 +11,11 @@ section 7.3.5). All quantities are in units of the well.
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 
-from engine.exits.saddle_orbits.brake_orbits import Axes, BrakeOrbit, find_roughly, saddle_axes
+from engine.exits.saddle_orbits.brake_orbits import Axes, BrakeOrbit, saddle_axes
 from engine.exits.saddle_orbits.continuation import StepLimits, follow
 from engine.exits.saddle_orbits.orbit_parts import Parts, trace_parts, velocities
 from engine.integrator.kernels.dense_output import sample_path
@@ -119,16 +118,13 @@ class _Family(NamedTuple):
 def find_brake_orbit(potential: Potential, energy: float, channel: int) -> BrakeOrbit | None:
     """Return the orbit over a saddle in a frame at rest, also where it is too unstable for one integration of half a period.
 
-    If the orbit cannot be followed from the small oscillations, trial orbits from its ends are corrected.
+    Orbits over several saddles are not found, because they do not begin as small oscillations.
     """
-    family = _family_over(potential, channel)
-    with np.errstate(all="ignore"):
-        for unknowns in _find_unknowns(family, energy, channel):
-            orbit = None if unknowns is None else _complete_orbit(family, energy, unknowns)
-            # Both ends are nodes.
-            if orbit is not None and np.abs(orbit.nodes[[0, family.nodes // 2], 2:]).max() < _LARGEST_END_SPEED:
-                return BrakeOrbit(0.5 * orbit.period, orbit.path[:2, : _INTERVALS // 2 + 1], orbit.nodes[1:])
-    return None
+    orbit = find_saddle_orbit(potential, energy, channel)
+    # Both ends are nodes.
+    if orbit is None or not np.abs(orbit.nodes[[0, _AT_REST.nodes // 2], 2:]).max() < _LARGEST_END_SPEED:
+        return None
+    return BrakeOrbit(0.5 * orbit.period, orbit.path[:2, : _INTERVALS // 2 + 1], orbit.nodes[1:])
 
 
 def find_saddle_orbit(potential: Potential, energy: float, channel: int) -> SaddleOrbit | None:
@@ -154,19 +150,6 @@ def _family_over(potential: Potential, channel: int) -> _Family:
     saddle, axes = potential.saddles[channel - 1], saddle_axes(potential, channel)
     saddle_energy = float(potential.well.saddle_energies[channel - 1])
     return _Family(potential, np.array([*saddle, 0.0, 0.0]), saddle_energy, axes, ridge_bend(potential.form, *axes))
-
-
-def _find_unknowns(family: _Family, energy: float, channel: int) -> Iterator[np.ndarray | None]:
-    """Yield the unknowns of orbits at an energy in a frame at rest, see `_correct`; None where a method finds none."""
-    sigma, half = family.sigma(energy), family.nodes // 2
-    yield _continue_to(family, sigma)
-    for half_period, there in find_roughly(family.potential, energy, channel, half + 1):
-        states = np.concatenate([there, there[-2:0:-1] * [1.0, 1.0, -1.0, -1.0]])
-        _, (first_q, last_q) = family.axes.coordinates(there[[0, -1], :2].T)
-        # The path begins at the smaller q.
-        states = states if first_q < last_q else np.roll(states, half, axis=0)
-        predicted = np.append((states - family.saddle_state) / sigma, 2.0 * half_period)
-        yield _correct(family, sigma, predicted)
 
 
 def _continue_to(family: _Family, sigma: float) -> np.ndarray | None:

@@ -22,8 +22,9 @@ from tests.plots.browser.test_agreement import as_view
 COMMAND = "make the files again: uv run python -m plots.browser.compile_catalogue"
 LARGEST_BYTES = 500_000
 QUICK = "I", "Copenhagen"
-# Tolerance of exits and windows. On another processor they differ in their last bits; exits are accurate to 1e-6.
-ACCURACY = 1e-8
+# Tolerance of exits and windows. On another processor they differ by rounding, which grows in small exits; exits are accurate to
+# 1e-6.
+ACCURACY = 1e-6
 
 
 def definition(name: str) -> tuple[Any, float, float]:
