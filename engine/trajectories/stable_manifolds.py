@@ -191,9 +191,9 @@ def find_stable_manifolds(
     concurrent.futures.CancelledError
         When cancelled.
     ValueError
-        When `energy` is not finite or too high for unstable Lyapunov orbits, a multiplier of one is above 1e9, `images` is
-        out of range, no exit is over a saddle because orbits escape at a circle, `section` is not legal, or a Lyapunov orbit
-        crosses it more than once in a period.
+        When `energy` is not finite or too high for unstable Lyapunov orbits, `images` is out of range, no exit is over a saddle
+        because orbits escape at a circle, `section` is not legal, or a Lyapunov orbit crosses it more than once in a period or
+        has a multiplier above 1e9.
 
     Notes
     -----

@@ -250,7 +250,7 @@ def _linearise(family: _Family, sigma: float, unknowns: np.ndarray) -> tuple[np.
 
 def _complete_orbit(family: _Family, energy: float, unknowns: np.ndarray) -> SaddleOrbit | None:
     """Return the orbit with its path and edge; None if its parts do not join within `_LARGEST_GAP`."""
-    sigma, period = float(np.sqrt(energy - family.saddle_energy)), float(unknowns[-1])
+    sigma, period = family.sigma(energy), float(unknowns[-1])
     states = family.states(sigma, unknowns)
     parts = family.trace(states, period)
     # `not … <` also rejects NaN.

@@ -10,7 +10,7 @@ from engine import LyapunovOrbit, Potential, find_lyapunov_orbits, find_stable_m
 from engine.systems.known_potentials import POTENTIALS
 from tests.peers.dop853 import equations
 
-# Wells along a parabola; errors grow by 1e8 to 1e20 in half a period over the saddles in their sides.
+# Wells along a parabola; errors grow by 1e12 to 1e25 in half a period over the saddles in their sides.
 BENT = {
     0.1: "½(x − 0.3271y²)² − 0.3106(x − 0.3271y²)⁴ + 0.0075y²",
     0.5: "½(x − 0.0440y²)² − 0.2020(x − 0.0440y²)⁴ + 0.0061y²",
